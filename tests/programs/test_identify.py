@@ -56,8 +56,7 @@ def test_told_for_people(pinnquad, flight):
     said = pinnquad("identify --flight", flight).out
     for words in ("95 % interval", "roll effectiveness", "not of them", "mass 1 kg (assumed)", "arms 0.2 m"):
         assert words in said, words
-    # the simulator's air drags by the square alone, of which px4_sih has none
-    assert re.search(r"^not told: quadratic drag along x .*; fly: ", said, re.M), said
+    assert re.search(r"^not told: gyroscopic term of roll .*; fly: ", said, re.M), said
 
 
 def test_mass_and_arms_are_taken_from_options(pinnquad, flight):
@@ -141,7 +140,7 @@ def hovering(line, cells):
 
 @pytest.mark.parametrize("change, word, code", [
     (column(FLIGHT["w_y"], to="0.25"), "w_y", 2),
-    (standing, "u1 to u4", 2),
+    (standing, "in the air", 2),
     (column(MOTORS[2], to="1"), "u3", 2),
     (exchanged, "motors", 2),
     (hovering, "roll effectiveness", 1),

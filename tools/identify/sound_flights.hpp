@@ -43,6 +43,21 @@ inline void require_motion(const std::string& file, const pinnquad::Flight& flig
   }
 }
 
+/// On the ground throughout no row is unlike the others, and grounded_rows() finds none.
+inline void require_flight(const std::string& file, const pinnquad::Flight& flight) {
+  constexpr double still_rad_s = 0.03, still_m_s2 = 0.5, most = 0.5;
+  std::size_t still = 0;
+  for (const pinnquad::Sample& sample : flight) {
+    const bool rests =
+        sample.body_rates_rad_s.norm() < still_rad_s && sample.linear_acceleration_m_s2.norm() < still_m_s2;
+    still += rests ? 1 : 0;
+  }
+  const double share = static_cast<double>(still) / static_cast<double>(flight.size());
+  if (share <= most) return;
+  refuse_flight(file, "a vehicle that moves in the air in columns w_x to w_z and vdot_bx to vdot_bz",
+                "rest in " + pinnquad::logs::percent(share) + " of the rows");
+}
+
 inline void require_free_commands(const std::string& file, const pinnquad::Flight& flight) {
   constexpr double edge = 1e-3, most = 0.5;
   for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
@@ -75,6 +90,7 @@ inline std::vector<pinnquad::Flight> sound_flights(const pinnquad::logs::Importe
     const pinnquad::Flight& flight = dataset.flights[i];
     const std::string& file = dataset.sources[i];
     detail::require_motion(file, flight);
+    detail::require_flight(file, flight);
     detail::require_free_commands(file, flight);
     const pinnquad::logs::RowMask grounded = pinnquad::logs::grounded_rows(flight, period_s);
     const double share = static_cast<double>(detail::count(grounded)) / static_cast<double>(flight.size());

@@ -34,7 +34,7 @@ struct IdentifiedAirframe {
 /// vehicle against the airframe's signs, and where no vehicle can have the numbers.
 inline std::optional<IdentifiedAirframe> identified_airframe(const Identification& found,
                                                              const Airframe<double>& like) {
-  constexpr double share = 0.3, pi = 3.141592653589793;
+  constexpr double share = 0.3, little_1_m = 0.05, pi = 3.141592653589793;
   const auto positive = [&](const Estimate& estimate) { return is_told(estimate, share) && estimate.value > 0; };
   if (!positive(found.thrust_m_s2) || !positive(found.effectiveness_rad_s2[0]) ||
       !positive(found.effectiveness_rad_s2[1])) {
@@ -88,8 +88,12 @@ inline std::optional<IdentifiedAirframe> identified_airframe(const Identificatio
   }
   const Estimate& apart = found.fall_after_rise_s;
   const bool two_lags = std::abs(apart.value) > apart.half_width && positive(found.rise_s) && positive(found.fall_s);
-  const double offset_x_m = is_told(found.imbalance[1], 1) ? -arm_x_m * found.imbalance[1].value : 0;
-  const double offset_y_m = is_told(found.imbalance[0], 1) ? arm_y_m * found.imbalance[0].value : 0;
+  const auto offset = [](const Estimate& imbalance) {
+    constexpr double fine = 0.05;  // arms: an interval no wider says more than that it lies in the middle
+    return imbalance.half_width <= fine ? imbalance.value : 0;
+  };
+  const double offset_x_m = -arm_x_m * offset(found.imbalance[1]);
+  const double offset_y_m = arm_y_m * offset(found.imbalance[0]);
   for (std::size_t i = 0; i < rotor_count; ++i) {
     RotorMount<double>& rotor = made.rotors[i];
     rotor.x_m -= offset_x_m;
@@ -102,8 +106,8 @@ inline std::optional<IdentifiedAirframe> identified_airframe(const Identificatio
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Estimate& drag = found.drag_1_m[axis];
-    if (is_told(drag, 1) && drag.value > 0) {
-      made.drag_area_m2[axis] = drag.value * like.mass_kg / rated_air_density_kg_m3<double>;
+    if (drag.half_width <= std::max(std::abs(drag.value), little_1_m)) {
+      made.drag_area_m2[axis] = std::max(drag.value, 0.0) * like.mass_kg / rated_air_density_kg_m3<double>;
     } else {
       result.assumed.push_back("drag_area_m2[" + std::to_string(axis) + "]");
     }
