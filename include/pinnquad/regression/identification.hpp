@@ -2,7 +2,7 @@
 // What flights say of the vehicle that flew them: thrust per mass, torque per inertia, drag, damping, and the rotors' lag
 // and delay, each with a 95 % interval. With s_i the thrust fractions behind lag and delay, sigma_i the signs of the
 // allocation, body FRD:
-//   w_a'  = B_a sum sigma_i s_i + C_a sum s_i - D_a w_a + G_a (w x w)_a          about each axis
+//   w_a'  = B_a sum sigma_i s_i + C_a sum s_i - D_a w_a + G_a w_b w_c            about each axis, b and c the next
 //   f_z   = - A sum s_i (1 + E (V - V_mean) / V_mean) - d_z v_z - q_z |v_z| v_z   specific force
 //   f_x,y = - d v - q |v| v + constant
 // The series are smoothed (smoothed_flights.hpp). Instruments are the same series a window and more earlier: a gyro's
