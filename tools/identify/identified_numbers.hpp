@@ -59,6 +59,12 @@ inline std::vector<IdentifiedNumber> identified_numbers(const pinnquad::Identifi
     numbers.push_back({std::string(turns[axis]) + "_effectiveness_rad_s2", std::string(turns[axis]) + " effectiveness",
                        "rad/s^2", found.effectiveness_rad_s2[axis], 0, about[axis], turned[axis]});
   }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t across = axis == 1 ? 0 : 1;
+    numbers.push_back({std::string(turns[axis]) + "_by_velocity_rad_s_m",
+                       std::string(turns[axis]) + " by the air, of speed along " + axes[across], "rad/s/m",
+                       found.by_velocity_rad_s_m[axis], 1, along[across], moved[across]});
+  }
   const std::string quick = "quick small rolls and pitches, 5 degrees at 2 to 5 Hz, for 20 s";
   numbers.push_back({"rotor_lag_s", "rotor lag", "s", found.lag_s, 0, quick, turned[0]});
   if (!found.delay_held) {

@@ -187,7 +187,7 @@ std::string why_none(const std::vector<programs::IdentifiedNumber>& numbers, con
       if (number.key != needed[i]) continue;
       const bool backwards = number.estimate.high() < 0;
       if (i == 3 && !backwards) continue;
-      if (pinnquad::is_told(number.estimate, 0.3) && !backwards) continue;
+      if (pinnquad::is_told(number.estimate, 0.5) && !backwards) continue;
       return "column " + std::string(columns[i]) + ": " + number.words + " is " +
              (backwards
                   ? "negative, " + interval_text(number.estimate) + ": the commands turn it the other way"

@@ -2,7 +2,8 @@
 // What flights say of the vehicle that flew them: thrust per mass, torque per inertia, drag, damping, and the rotors' lag
 // and delay, each with a 95 % interval. With s_i the thrust fractions behind lag and delay, sigma_i the signs of the
 // allocation, body FRD:
-//   w_a'  = B_a sum sigma_i s_i + C_a sum s_i - D_a w_a + G_a w_b w_c            about each axis, b and c the next
+//   w_a'  = B_a sum sigma_i s_i + C_a sum s_i - D_a w_a + G_a w_b w_c + F_a v_c   about each axis, b and c the next,
+//           v_c the velocity across it: along y for roll and yaw, along x for pitch
 //   f_z   = - A sum s_i (1 + E (V - V_mean) / V_mean) - d_z v_z - q_z |v_z| v_z   specific force
 //   f_x,y = - d v - q |v| v + constant
 // The series are smoothed (smoothed_flights.hpp). Instruments are the same series a window and more earlier: a gyro's
@@ -39,6 +40,7 @@ struct Identification {
                                                  ///< the offset of the centre of gravity over the arm
   std::array<Estimate, 3> damping_1_s;           ///< D
   std::array<Estimate, 3> gyroscopic;            ///< G: (J_y - J_z) / J_x and so on
+  std::array<Estimate, 3> by_velocity_rad_s_m;   ///< F: what the air turns, rad/s^2 per m/s
   std::array<Estimate, 3> linear_drag_1_s;       ///< d, beside q
   std::array<Estimate, 3> quadratic_drag_1_m;    ///< q, beside d
   std::array<Estimate, 3> drag_1_m;              ///< q of a vehicle without d
@@ -46,7 +48,7 @@ struct Identification {
   Estimate delay_s;     ///< before it, filters of the sensors included; may be negative by half a row
   Estimate response_s;  ///< both together
   Estimate rise_s, fall_s, fall_after_rise_s;  ///< time constants of growing and falling thrust, and their difference
-  bool delay_held = false;                     ///< lag and delay are not told apart: the delay is held at 0
+  bool delay_held = false;                     ///< lag and delay are not told apart: the delay is that of a grid
   double mean_voltage_V = 0;
   double duration_s = 0;  ///< of flight that was used
   std::size_t blocks = 0;
@@ -86,30 +88,42 @@ class Identifier {
   using Fractions = InstrumentedFlights::Fractions;
 
   void find_rotation(double curve, Identification& result) {
-    constexpr double usual_lag_s = 0.03;
     constexpr std::size_t of_axis = RotationFit::of_axis, first = RotationFit::of_response;
     const RotationFit fit(rows_, curve);
-    response_ = {usual_lag_s, usual_lag_s, 0};
-    BlockSolution solution = fit.converge(response_, RotationFit::lag_and_delay());
-    result.lag_s = solution.estimate(first);
+    const RotorResponse nearest = fit.nearest();
     // between coarse rows a command may have been anything: what a cubic misses grows with the square of the period
     const auto resolved = [this](Estimate estimate) {
       const double period_s = rows_.flights().period_s();
       estimate.half_width = std::hypot(estimate.half_width, period_s * period_s / (12 * response_.rise_s));
       return estimate;
     };
-    result.lag_s = resolved(result.lag_s);
-    result.delay_held = !(result.lag_s.half_width < std::abs(result.lag_s.value)) || result.lag_s.value <= 0;
+    // a fit that fails runs into a bound, or turns the vehicle about
+    const auto holds = [this](const BlockSolution& found) {
+      constexpr double edge = 0.99;
+      return response_.rise_s < edge * RotationFit::longest_s &&
+             std::abs(response_.delay_s) < edge * RotationFit::longest_delay_s && found.values()[0] > 0 &&
+             found.values()[of_axis] > 0;
+    };
+    response_ = nearest;
+    BlockSolution solution = fit.converge(response_, RotationFit::lag_and_delay());
+    result.lag_s = resolved(solution.estimate(first));
+    result.delay_held = !holds(solution) || !(result.lag_s.half_width < result.lag_s.value);
     if (!result.delay_held) {
       result.delay_s = resolved(solution.estimate(first + 1));
       result.response_s =
           solution.estimate_of([](const std::vector<double>& values) { return values[first] + values[first + 1]; });
     } else {
-      response_ = {usual_lag_s, usual_lag_s, 0};
+      response_ = nearest;
       solution = fit.converge(response_, RotationFit::lag());
-      result.lag_s = resolved({response_.rise_s, solution.estimate(first).half_width});
-      result.response_s = result.lag_s;
-      result.delay_s = {};
+      const bool lag_holds = holds(solution);
+      if (!lag_holds) {
+        response_ = nearest;
+        solution = fit.converge(response_, {});
+      }
+      result.lag_s = {response_.rise_s};
+      if (lag_holds) result.lag_s = resolved({response_.rise_s, solution.estimate(first).half_width});
+      result.delay_s = {response_.delay_s};
+      result.response_s = {response_.rise_s + response_.delay_s, result.lag_s.half_width};
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t from = axis * of_axis;
@@ -120,6 +134,7 @@ class Identifier {
       }
       result.damping_1_s[axis] = solution.estimate(from + 2);
       result.gyroscopic[axis] = solution.estimate(from + 3);
+      result.by_velocity_rad_s_m[axis] = solution.estimate(from + 4);
     }
     if (result.delay_held) return;
     RotorResponse each = response_;

@@ -30,11 +30,11 @@ struct IdentifiedAirframe {
 };
 
 /// The airframe that answers commands as identified, of the mass, the arms, the spins and the propeller of `like`. A
-/// number that is not told to within 30 % is that of `like`. None where thrust, roll or pitch are not told, or turn the
+/// number that is not told to within 50 % is that of `like`. None where thrust, roll or pitch are not told, or turn the
 /// vehicle against the airframe's signs, and where no vehicle can have the numbers.
 inline std::optional<IdentifiedAirframe> identified_airframe(const Identification& found,
                                                              const Airframe<double>& like) {
-  constexpr double share = 0.3, little_1_m = 0.05, pi = 3.141592653589793;
+  constexpr double share = 0.5, little_1_m = 0.05, pi = 3.141592653589793;
   const auto positive = [&](const Estimate& estimate) { return is_told(estimate, share) && estimate.value > 0; };
   if (!positive(found.thrust_m_s2) || !positive(found.effectiveness_rad_s2[0]) ||
       !positive(found.effectiveness_rad_s2[1])) {

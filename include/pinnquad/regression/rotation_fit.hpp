@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "pinnquad/core/types.hpp"
@@ -62,11 +63,11 @@ class InstrumentedFlights {
   std::vector<std::size_t> instants_;
 };
 
-/// Unknowns: B, C, D, G of roll, of pitch, of yaw; then the free parts of the rotors' response.
+/// Unknowns: B, C, D, G, F of roll, of pitch, of yaw; then the free parts of the rotors' response.
 class RotationFit {
  public:
   using Fractions = InstrumentedFlights::Fractions;
-  static constexpr std::size_t of_axis = 4;
+  static constexpr std::size_t of_axis = 5;
   static constexpr std::size_t of_response = 3 * of_axis;  ///< the first unknown of the response
 
   /// Numbers of the response that move together; each part is an unknown.
@@ -79,9 +80,41 @@ class RotationFit {
     return {{&RotorResponse::rise_s}, {&RotorResponse::fall_s}, {&RotorResponse::delay_s}};
   }
 
+  static constexpr double shortest_s = 5e-4, longest_s = 0.4, longest_delay_s = 0.3;  ///< a response is within
+
   RotationFit(const InstrumentedFlights& rows, double curve) : rows_(rows), curve_(curve) {}
 
-  /// Gauss and Newton from `response`, which becomes the solution's.
+  /// Of a grid the response under which least squares leave least of roll, pitch and yaw: where to begin. The noise that
+  /// comes back through the controller is in it.
+  RotorResponse nearest() const {
+    constexpr std::array<double, 4> lags_s = {0.005, 0.03, 0.06, 0.1};
+    constexpr double first_delay_s = -0.1, step_s = 0.02;
+    constexpr int delays = 16;
+    RotorResponse best{lags_s[1], lags_s[1], 0};
+    double least = std::numeric_limits<double>::infinity();
+    for (const double lag_s : lags_s) {
+      for (int k = 0; k < delays; ++k) {
+        const RotorResponse at{lag_s, lag_s, first_delay_s + step_s * k};
+        const Fractions s = rows_.flights().thrust_fractions(curve_, at);
+        double left = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          BlockRegression regression(of_axis, 0, 1);
+          std::array<double, of_axis> x{};
+          for (const std::size_t i : rows_.instants()) {
+            fill_axis(s, axis, i, x.data());
+            regression.add(0, x.data(), rows_.flights().angular_acceleration()[axis][i]);
+          }
+          left += std::log(deviation(s, axis, regression.solve(false), 0));
+        }
+        if (!(left < least)) continue;
+        least = left;
+        best = at;
+      }
+    }
+    return best;
+  }
+
+  /// Gauss and Newton from `response`, which becomes the solution's. No parts: the response stays.
   BlockSolution converge(RotorResponse& response, const std::vector<Part>& parts) const {
     constexpr int most_steps = 30, least_steps = 4;
     constexpr double close_s = 1e-6;
@@ -91,7 +124,7 @@ class RotationFit {
       const BlockSolution found = linearized(response, parts, effectiveness, weights).solve(false);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         effectiveness[axis] = found.values()[axis * of_axis];
-        weights[axis] = 1 / deviation(s, axis, found);
+        weights[axis] = 1 / deviation(s, axis, found, axis * of_axis);
       }
       if (step == 0) continue;  // without an effectiveness there was no slope
       double moved = 0;
@@ -110,10 +143,10 @@ class RotationFit {
 
  private:
   static constexpr std::size_t shifts = InstrumentedFlights::shifts;
-  static constexpr std::size_t instruments = 6 * shifts + 1;  // of an axis
+  static constexpr std::size_t instruments = 6 * shifts + 1;       // of an axis
+  static constexpr std::array<std::size_t, 3> across = {1, 0, 1};  // the velocity that turns the vehicle about an axis
 
   static double within_bounds(double value_s, const Part& part) {
-    constexpr double shortest_s = 5e-4, longest_s = 0.4, longest_delay_s = 0.3;
     if (part.front() == &RotorResponse::delay_s) return std::clamp(value_s, -longest_delay_s, longest_delay_s);
     return std::clamp(value_s, shortest_s, longest_s);
   }
@@ -169,10 +202,10 @@ class RotationFit {
     x[1] = InstrumentedFlights::sum(s, i);
     x[2] = -rows_.flights().rates()[axis][i];
     x[3] = rows_.flights().rate_products()[axis][i];
+    x[4] = rows_.flights().velocity()[across[axis]][i];
   }
 
   void fill_instruments(const Fractions& s, std::size_t axis, std::size_t i, double* z) const {
-    constexpr std::array<std::size_t, 3> moved_by = {1, 0, 2};  // roll moves the vehicle along y
     const SmoothedFlights& flights = rows_.flights();
     for (std::size_t k = 0; k < shifts; ++k) {
       const std::size_t before = rows_.before(i, k);
@@ -181,20 +214,20 @@ class RotationFit {
       *z++ = flights.rates()[axis][before];
       *z++ = flights.rate_products()[axis][before];
       *z++ = flights.angular_acceleration()[axis][before];
-      *z++ = flights.velocity()[moved_by[axis]][before];
+      *z++ = flights.velocity()[across[axis]][before];
     }
     *z = 1;
   }
 
-  /// Root mean square of what the unknowns of an axis leave, rad/s^2.
-  double deviation(const Fractions& s, std::size_t axis, const BlockSolution& solution) const {
+  /// Root mean square of what the unknowns of an axis, from the `first` on, leave, rad/s^2.
+  double deviation(const Fractions& s, std::size_t axis, const BlockSolution& solution, std::size_t first) const {
     constexpr double least = 1e-6;  // exact rows of a law leave nothing
     double squares = 0;
     std::array<double, of_axis> x{};
     for (const std::size_t i : rows_.instants()) {
       fill_axis(s, axis, i, x.data());
       double left = rows_.flights().angular_acceleration()[axis][i];
-      for (std::size_t k = 0; k < of_axis; ++k) left -= x[k] * solution.values()[axis * of_axis + k];
+      for (std::size_t k = 0; k < of_axis; ++k) left -= x[k] * solution.values()[first + k];
       squares += left * left;
     }
     return std::max(least, std::sqrt(squares / static_cast<double>(rows_.instants().size())));
