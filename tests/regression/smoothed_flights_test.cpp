@@ -72,6 +72,21 @@ TEST_CASE("thrust behind lag and delay has the amplitude and the phase of a firs
   }
 }
 
+TEST_CASE("commands and motion that run alike are alike, whichever way they are smoothed") {
+  Flight flight = sines(0.02, 6, 1);
+  for (Sample& sample : flight) {
+    const double ramp = 0.2 + 0.05 * sample.time_s;
+    sample.body_rates_rad_s = {ramp, 0, 0};
+    sample.commands = {ramp, ramp, ramp, ramp};
+  }
+  const SmoothedFlights smoothed({flight, {0, flight.size()}}, 0.16);
+  const auto thrust = smoothed.thrust_fractions(0, {});
+  for (const std::size_t i : {std::size_t(0), smoothed.size() / 2}) {
+    CHECK(thrust[0][i] == doctest::Approx(smoothed.rates()[0][i]).epsilon(1e-12));
+    CHECK(smoothed.angular_acceleration()[0][i] == doctest::Approx(0.05));
+  }
+}
+
 TEST_CASE("falling thrust may have a lag of its own; a curve bends the thrust before the lag") {
   const Flight flight = sines(0.004, 6, 2 * pi * 2);
   const SmoothedFlights smoothed({flight, {0, flight.size()}}, 0.16);

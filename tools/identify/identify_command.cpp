@@ -36,8 +36,8 @@ struct IdentifyOptions {
   std::vector<std::string> flights, logs;
   std::string dataset, mapping, airframe, out;
   std::string name = "identified";
-  std::string curve;
-  std::optional<double> mass_kg, arm_m, rate_hz;
+  std::optional<double> curve, mass_kg, arm_m, rate_hz;
+  bool fit_curve = false;
   bool json = false;
 };
 
@@ -54,7 +54,7 @@ pinnquad::Airframe<double> plain_airframe() {
   return plain;
 }
 
-/// What flew, as far as it is said: the airframe that was given, or that of the mapping.
+/// The vehicle as far as it is said: the airframe that was given, or that of the mapping.
 programs::NamedAirframe like_of(const IdentifyOptions& options, const logs::ImportedDataset& dataset) {
   programs::NamedAirframe like{"", plain_airframe()};
   bool known = false;  // a dataset keeps the name alone, of a file too
@@ -91,11 +91,8 @@ logs::ImportedDataset read(const IdentifyOptions& options) {
 pinnquad::IdentificationSettings settings_of(const IdentifyOptions& options, const pinnquad::Airframe<double>& like) {
   pinnquad::IdentificationSettings settings;
   settings.thrust_curve = like.rotors[0].thrust_curve;
-  settings.fit_thrust_curve = options.curve == "fit";
-  if (!options.curve.empty() && !settings.fit_thrust_curve &&
-      !programs::parse_decimal(options.curve, 0.0, 1.0, settings.thrust_curve)) {
-    throw std::invalid_argument("--thrust-curve: expected fit, or a number from 0 to 1, found '" + options.curve + "'");
-  }
+  settings.fit_thrust_curve = options.fit_curve;
+  if (options.curve) settings.thrust_curve = *options.curve;
   return settings;
 }
 
@@ -278,10 +275,19 @@ programs::Command programs::identify_command(CLI::App& program) {
   add_number(*line, "--mass", options->mass_kg, 1e-3, 1e3, "mass, kg: no flight tells it")->default_str("");
   add_number(*line, "--arm", options->arm_m, 1e-3, 1e2, "of each rotor along x and y, m: no flight tells it")
       ->default_str("");
-  line->add_option("--thrust-curve", options->curve,
-                   "from thrust proportional to the command, 0, to its square, 1; fit finds it (default: that of the "
-                   "airframe)")
-      ->type_name("fit|0..1");
+  const auto take_curve = [options](const std::string& text) {
+    double curve = 0;
+    options->fit_curve = text == "fit";
+    if (options->fit_curve) return;
+    if (!parse_decimal(text, 0.0, 1.0, curve)) {
+      throw CLI::ValidationError("--thrust-curve", "expected fit, or a number from 0 to 1, found '" + text + "'");
+    }
+    options->curve = curve;
+  };
+  line->add_option_function<std::string>(
+          "--thrust-curve", take_curve,
+          "from thrust proportional to the command, 0, to its square, 1; fit finds it (default: that of the airframe)")
+      ->type_name("0..1|fit");
   add_path(*line, "--out", options->out, "FILE.toml", "the airframe file to write");
   line->add_option("--name", options->name, "name in the airframe file")->capture_default_str();
   line->add_flag("--json", options->json, "the numbers as JSON, and nothing else, on stdout");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Linear regression of rows that follow each other in time, y = x' theta + e, by least squares or by instruments, with
 // intervals that hold where the errors of neighbouring rows are alike.
-//   theta = (sum w x')^-1 sum w y,   w = x, or with instruments z (two-stage least squares) w = (sum x z') (sum z z')^-1 z
+//   theta = (sum w x')^-1 sum w y;  w = x, or with instruments z (two-stage least squares)
+//   w = (sum x z') (sum z z')^-1 z
 // The rows stand in blocks of consecutive time. An interval is Student's t of blocks - 1 degrees of freedom times the
 // deviation that leaving out one block at a time gives (the delete-one-block jackknife, Kuensch, The jackknife and the
 // bootstrap for general stationary observations, 1989; t quantiles: Bester, Conley and Hansen, Inference with dependent
@@ -192,7 +193,7 @@ class BlockRegression {
     return {theta.data(), theta.data() + theta.size()};
   }
 
-  /// Which unknowns have a part of their own: elimination in their order.
+  /// True for an unknown that has a part of its own: elimination in their order.
   std::vector<bool> told_apart(const Normal& normal) const {
     constexpr double least_own_part = 1e-9;  // of its square: rounding leaves less
     Eigen::MatrixXd a = normal.a;

@@ -84,8 +84,8 @@ class RotationFit {
 
   RotationFit(const InstrumentedFlights& rows, double curve) : rows_(rows), curve_(curve) {}
 
-  /// Of a grid the response under which least squares leave least of roll, pitch and yaw: where to begin. The noise that
-  /// comes back through the controller is in it.
+  /// Of a grid the response under which least squares leave least of roll, pitch and yaw: where to begin. The noise
+  /// that comes back through the controller is in it.
   RotorResponse nearest() const {
     constexpr std::array<double, 4> lags_s = {0.005, 0.03, 0.06, 0.1};
     constexpr double first_delay_s = -0.1, step_s = 0.02;

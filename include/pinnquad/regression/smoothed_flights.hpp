@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Flights as smoothed series at instants, for regressions of motion on commands. A series is its mean over the time from
-// each row to the next, of a cubic through four rows; a derivative is the difference of the two rows over that time, so
-// that no noisy column is differentiated and the law between the two holds as it stands, however coarse the rows are.
-// All are weighted alike over a window around the instant, by 1 + cos(2 pi t / window): noise of higher frequencies is left
-// out, and with it most of what a gyro's noise does to the commands through the controller.
+// Flights as smoothed series at instants, for regressions of motion on commands. A series is its mean over the time
+// from each row to the next, of a cubic through four rows; a derivative is the difference of the two rows over that
+// time, so that no noisy column is differentiated and the law between the two holds as it stands, however coarse the
+// rows are. All are weighted alike over a window around the instant, by 1 + cos(2 pi t / window): noise of higher
+// frequencies is left out, and with it most of what a gyro's noise does to the commands through the controller.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <string_view>
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
@@ -62,8 +61,8 @@ class SmoothedFlights {
   const Triple& angular_acceleration() const noexcept { return derivatives_; }  ///< of the rates, rad/s^2
   const Triple& rate_products() const noexcept { return products_; }            ///< w_y w_z, w_z w_x, w_x w_y
   const Triple& specific_force() const noexcept { return forces_; }             ///< m/s^2
-  /// The same by the derivative of the velocity and by gravity: no accelerometer, and none of its offset, is in it. Empty
-  /// where no row has a velocity.
+  /// The same by the derivative of the velocity and by gravity: no accelerometer, and none of its offset, is in it.
+  /// Empty where no row has a velocity.
   const Triple& kinematic_force() const noexcept { return kinematic_forces_; }
   const Triple& velocity() const noexcept { return velocities_; }       ///< body, m/s
   const Triple& squared_velocity() const noexcept { return squares_; }  ///< |v_i| v_i
@@ -76,8 +75,15 @@ class SmoothedFlights {
     constexpr double longest_step_s = 0.005;
     const auto parts = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(period_s_ / longest_step_s - 1e-9)));
     const double step = 1 / static_cast<double>(parts);  // in rows
-    const double rise = lag_factor(response.rise_s, period_s_ * step);
-    const double fall = lag_factor(response.fall_s, period_s_ * step);
+    // what is left of a distance at the end of a step, and in the mean over it
+    struct Approach {
+      double end, mean;
+    };
+    const auto approach = [step_s = period_s_ * step](double lag_s) {
+      const double end = lag_factor(lag_s, step_s);
+      return Approach{end, (1 - end) * lag_s / step_s};
+    };
+    const Approach rise = approach(response.rise_s), fall = approach(response.fall_s);
     const double late = response.delay_s / period_s_;
     Series thrust;
     for (const Stretch& stretch : stretches_) {
@@ -90,9 +96,9 @@ class SmoothedFlights {
           for (std::size_t part = 0; part < parts; ++part) {
             const double at = static_cast<double>(row) + (static_cast<double>(part) + 0.5) * step - late;
             const double wanted = thrust_fraction(curve, clip_command(at_row(u, at)));
-            const double before = now;
-            now = wanted + (wanted >= now ? rise : fall) * (now - wanted);
-            sum += 0.5 * (before + now);
+            const Approach& by = wanted >= now ? rise : fall;
+            sum += wanted + by.mean * (now - wanted);
+            now = wanted + by.end * (now - wanted);
           }
           thrust[row] = sum * step;
         }
