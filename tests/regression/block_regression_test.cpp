@@ -39,7 +39,7 @@ TEST_CASE("quantiles of Student's t are those of the tables") {
 }
 
 TEST_CASE("a law without noise is found exactly, by least squares and by instruments, of any scale") {
-  for (const std::size_t instruments : {0, 3}) {
+  for (const std::size_t instruments : {std::size_t(0), std::size_t(3)}) {
     CAPTURE(instruments);
     std::mt19937_64 engine(1);
     BlockRegression regression(2, instruments, 5);

@@ -133,7 +133,9 @@ TEST_CASE("intervals of simulated flights hold the vehicle's numbers in 90 or mo
   }
   // 90 to 99 % of many flights; of few, what chance leaves of them in a thousandth of the cases
   const double few = flights < 100 ? 0.8 : 0.9;
-  for (const auto& [name, count] : held) {
+  for (const auto& one : held) {
+    const std::string& name = one.first;
+    const std::size_t count = one.second;
     CAPTURE(name);
     MESSAGE(name << ": " << count << " of " << flights);
     CHECK(double(count) >= few * double(flights));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The vehicle that flew, from its flights alone: thrust per mass, torque per inertia, drag, damping, the rotors' lag and
-// delay, each with a 95 % interval. With s_i the thrust fractions behind lag and delay, sigma_i the signs of the
+// The vehicle that flew, from its flights alone: thrust per mass, torque per inertia, drag, damping, the rotors' lag
+// and delay, each with a 95 % interval. With s_i the thrust fractions behind lag and delay, sigma_i the signs of the
 // allocation, body FRD:
 //   w_a'  = B_a sum sigma_i s_i + C_a sum s_i - D_a w_a + G_a w_b w_c + F_a v_c   about each axis, b and c the next,
 //           v_c the velocity across it: along y for roll and yaw, along x for pitch
