@@ -153,6 +153,12 @@ def test_refused(pinnquad, flight, change, word, code):
     no_partial_files(".")
 
 
+def test_a_flight_of_a_dataset_is_named(pinnquad, flight, dataset):
+    edited(flight, "bad.csv", column(FLIGHT["w_y"], to="0.25"))
+    dataset("flights", {"good": flight, "bad": "bad.csv"})
+    pinnquad.refused("identify --dataset flights", at="flights/bad.csv", keyword="w_y")
+
+
 def test_too_short(pinnquad, flown):
     short = flown("d1 --samples 100")
     pinnquad.refused("identify --out vehicle.toml --flight", short, at=short.name, keyword="10 s", code=1)

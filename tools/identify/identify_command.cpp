@@ -84,7 +84,12 @@ logs::ImportedDataset read(const IdentifyOptions& options) {
     settings.keep_saturated = true;
     return logs::read_dataset(options.logs, settings);
   }
-  if (!options.dataset.empty()) return logs::read_dataset_folder(options.dataset, settings.on_progress);
+  if (!options.dataset.empty()) {
+    logs::ImportedDataset dataset = logs::read_dataset_folder(options.dataset, settings.on_progress);
+    dataset.sources.clear();  // what is refused is a file of the folder
+    for (const std::string& file : logs::flight_files(dataset)) dataset.sources.push_back(options.dataset + "/" + file);
+    return dataset;
+  }
   return logs::read_source(options.flights, settings);
 }
 
