@@ -346,12 +346,17 @@ class Import {
       for (const Sample& sample : flight) out.push_back(is_idle(sample, mapping_));
       return out;
     });
+    if (settings_.keep_saturated) return drop_outliers();
     drop("saturated",
          "a command at its limit, " + text(mapping_.lowest_command) + " or " + text(mapping_.highest_command) +
              " or one it is held at",
          [this](const Flight& flight) {
            return saturated_rows(flight, mapping_.lowest_command, mapping_.highest_command);
          });
+    drop_outliers();
+  }
+
+  void drop_outliers() {
     drop("outliers", "a value like none of its neighbours", [](const Flight& flight) { return outlier_rows(flight); });
   }
 

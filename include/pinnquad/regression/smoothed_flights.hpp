@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// Flights as smoothed series at instants, for regressions of motion on commands. A series is its mean over the time
+// from each row to the next, of a cubic through four rows; a derivative is the difference of the two rows over that
+// time, so that no noisy column is differentiated and the law between the two holds as it stands, however coarse the
+// rows are. All are weighted alike over a window around the instant, by 1 + cos(2 pi t / window): noise of higher
+// frequencies is left out, and with it most of what a gyro's noise does to the commands through the controller.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "pinnquad/data/flight_features.hpp"
+#include "pinnquad/data/row_set.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
+#include "pinnquad/features/motion_parts.hpp"
+
+namespace pinnquad {
+
+/// From command to thrust: u(t - delay) makes the thrust fraction that is wanted, which the rotor follows with a
+/// first-order lag.
+struct RotorResponse {
+  double rise_s = 0, fall_s = 0;  ///< time constants
+  double delay_s = 0;             ///< may be negative: the commands' clock is late
+};
+
+/// Series at instants; all of one length.
+class SmoothedFlights {
+ public:
+  using Series = std::vector<double>;
+  using Triple = std::array<Series, 3>;
+  static constexpr double settling_s = 0.3;  ///< at the begin of each stretch: the rotors' first state is not known
+
+  /// `window_s`: at least eight rows. Stretches without a gap of fewer rows than settling and window are left out.
+  /// Rows of one period, see sample_period_s(); no instants without one.
+  SmoothedFlights(const RowSet& rows, double window_s) : period_s_(sample_period_s(rows)) {
+    if (!(period_s_ > 0)) return;
+    half_ = std::max<std::size_t>(4, static_cast<std::size_t>(std::lround(0.5 * window_s / period_s_)));
+    stride_ = std::max<std::size_t>(1, half_ / 4);
+    make_weights();
+    for (const FlightRows& piece : rows.pieces()) take(piece);
+    const auto moves = [](const Series& series) {
+      return std::any_of(series.begin(), series.end(), [](double v) { return v != 0; });
+    };
+    if (std::none_of(velocities_.begin(), velocities_.end(), moves)) kinematic_forces_ = {};
+  }
+
+  std::size_t size() const noexcept { return stretch_.size(); }
+  double period_s() const noexcept { return period_s_; }
+  double window_s() const noexcept { return 2 * static_cast<double>(half_) * period_s_; }
+  double step_s() const noexcept { return static_cast<double>(stride_) * period_s_; }
+  /// Seconds of flight that the instants stand for.
+  double duration_s() const noexcept { return static_cast<double>(size()) * step_s(); }
+
+  /// The stretch without a gap in which an instant lies.
+  std::size_t stretch(std::size_t instant) const { return stretch_[instant]; }
+
+  const Triple& rates() const noexcept { return rates_; }                       ///< rad/s
+  const Triple& angular_acceleration() const noexcept { return derivatives_; }  ///< of the rates, rad/s^2
+  const Triple& rate_products() const noexcept { return products_; }            ///< w_y w_z, w_z w_x, w_x w_y
+  const Triple& specific_force() const noexcept { return forces_; }             ///< m/s^2
+  /// The same by the derivative of the velocity and by gravity: no accelerometer, and none of its offset, is in it.
+  /// Empty where no row has a velocity.
+  const Triple& kinematic_force() const noexcept { return kinematic_forces_; }
+  const Triple& velocity() const noexcept { return velocities_; }       ///< body, m/s
+  const Triple& squared_velocity() const noexcept { return squares_; }  ///< |v_i| v_i
+  /// Of the column `battery_voltage`; empty unless all flights have it.
+  const Series& voltage() const noexcept { return voltage_; }
+
+  /// Smoothed thrust fractions of rotors whose commands have this curve (thrust_fraction()).
+  std::array<Series, rotor_count> thrust_fractions(double curve, const RotorResponse& response) const {
+    std::array<Series, rotor_count> result;
+    constexpr double longest_step_s = 0.005;
+    const auto parts = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(period_s_ / longest_step_s - 1e-9)));
+    const double step = 1 / static_cast<double>(parts);  // in rows
+    // what is left of a distance at the end of a step, and in the mean over it
+    struct Approach {
+      double end, mean;
+    };
+    const auto approach = [step_s = period_s_ * step](double lag_s) {
+      const double end = lag_factor(lag_s, step_s);
+      return Approach{end, (1 - end) * lag_s / step_s};
+    };
+    const Approach rise = approach(response.rise_s), fall = approach(response.fall_s);
+    const double late = response.delay_s / period_s_;
+    Series thrust;
+    for (const Stretch& stretch : stretches_) {
+      for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+        const Series& u = stretch.commands[rotor];
+        thrust.resize(u.size() - 1);
+        double now = thrust_fraction(curve, clip_command(at_row(u, -late)));
+        for (std::size_t row = 0; row < thrust.size(); ++row) {
+          double sum = 0;
+          for (std::size_t part = 0; part < parts; ++part) {
+            const double at = static_cast<double>(row) + (static_cast<double>(part) + 0.5) * step - late;
+            const double wanted = thrust_fraction(curve, clip_command(at_row(u, at)));
+            const Approach& by = wanted >= now ? rise : fall;
+            sum += wanted + by.mean * (now - wanted);
+            now = wanted + by.end * (now - wanted);
+          }
+          thrust[row] = sum * step;
+        }
+        smooth(thrust, stretch.instants, stretch.first, result[rotor]);
+      }
+    }
+    return result;
+  }
+
+ private:
+  struct Stretch {
+    std::array<Series, rotor_count> commands;
+    std::size_t first = 0;  ///< row of the first instant
+    std::size_t instants = 0;
+  };
+
+  void make_weights() {
+    constexpr double tau = 6.283185307179586;
+    const std::size_t count = 2 * half_;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+      weights_.push_back((1 - std::cos(tau * share)) / static_cast<double>(count));
+    }
+  }
+
+  /// At a row with its fraction, on a cubic through four rows (Catmull and Rom).
+  static double at_row(const Series& u, double row) noexcept {
+    const auto last = static_cast<double>(u.size() - 1);
+    if (row <= 0) return u.front();
+    if (row >= last) return u.back();
+    const auto i = static_cast<std::size_t>(row);
+    const double s = row - static_cast<double>(i);
+    const auto [a, b, c, d] = around(u, i);
+    return b + 0.5 * s * (c - a + s * (2 * a - 5 * b + 4 * c - d + s * (3 * (b - c) + d - a)));
+  }
+  /// Rows i - 1 to i + 2, the ends repeated.
+  static std::array<double, 4> around(const Series& u, std::size_t i) noexcept {
+    const std::size_t last = u.size() - 1;
+    return {u[i > 0 ? i - 1 : 0], u[i], u[std::min(i + 1, last)], u[std::min(i + 2, last)]};
+  }
+  /// Means from each row to the next, of that cubic.
+  static Series means(const Series& u) {
+    Series result(u.size() - 1);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      const auto [a, b, c, d] = around(u, i);
+      result[i] = (13 * (b + c) - a - d) / 24;
+    }
+    return result;
+  }
+  Series differences(const Series& u) const {
+    Series result(u.size() - 1);
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = (u[i + 1] - u[i]) / period_s_;
+    return result;
+  }
+
+  /// Appends the weighted sums around each instant.
+  void smooth(const Series& intervals, std::size_t instants, std::size_t first, Series& result) const {
+    for (std::size_t i = 0; i < instants; ++i) {
+      const double* const from = &intervals[first + i * stride_ - half_];
+      double sum = 0;
+      for (std::size_t k = 0; k < weights_.size(); ++k) sum += weights_[k] * from[k];
+      result.push_back(sum);
+    }
+  }
+
+  void take(const FlightRows& piece) {
+    const Flight& flight = *piece.flight;
+    std::size_t begin = piece.rows.begin;
+    for (std::size_t row = piece.rows.begin + 1; row <= piece.rows.end; ++row) {
+      if (row < piece.rows.end && flight[row].time_s - flight[row - 1].time_s < 1.5 * period_s_) continue;
+      take_stretch(flight, {begin, row});
+      begin = row;
+    }
+  }
+
+  void take_stretch(const Flight& flight, const IndexRange& rows) {
+    const auto settling = static_cast<std::size_t>(std::ceil(settling_s / period_s_));
+    const std::size_t first = settling + half_;
+    if (rows.size() < first + half_ + 1) return;
+    Stretch stretch;
+    stretch.first = first;
+    stretch.instants = (rows.size() - 1 - half_ - first) / stride_ + 1;
+    std::array<Series, 18> series;
+    const ExtraColumn* const battery = flight.column("battery_voltage");
+    Series voltage;
+    for (std::size_t row = rows.begin; row < rows.end; ++row) {
+      const Sample& sample = flight[row];
+      for (std::size_t k = 0; k < rotor_count; ++k) stretch.commands[k].push_back(sample.commands[k]);
+      const MotionInputs<double> motion = sample_inputs<MotionInputs<double>>(sample);
+      const Vector3<double> force = SpecificForce::of(motion);
+      const Vector3<double>& w = sample.body_rates_rad_s;
+      const Vector3<double>& v = sample.velocity_m_s;
+      const Vector3<double> but_derivative = force - sample.linear_acceleration_m_s2;  // omega x v - R^T g
+      for (int i = 0; i < 3; ++i) {
+        const auto axis = static_cast<std::size_t>(i);
+        series[axis].push_back(w[i]);
+        series[3 + axis].push_back(w[(i + 1) % 3] * w[(i + 2) % 3]);
+        series[6 + axis].push_back(force[i]);
+        series[9 + axis].push_back(v[i]);
+        series[12 + axis].push_back(std::abs(v[i]) * v[i]);
+        series[15 + axis].push_back(but_derivative[i]);
+      }
+      if (battery != nullptr) voltage.push_back(battery->values[row]);
+    }
+    const auto add = [&](const Series& intervals, Series& result) {
+      smooth(intervals, stretch.instants, first, result);
+    };
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      add(means(series[axis]), rates_[axis]);
+      add(differences(series[axis]), derivatives_[axis]);
+      add(means(series[3 + axis]), products_[axis]);
+      add(means(series[6 + axis]), forces_[axis]);
+      add(means(series[9 + axis]), velocities_[axis]);
+      add(means(series[12 + axis]), squares_[axis]);
+      Series kinematic = means(series[15 + axis]);
+      const Series derivative = differences(series[9 + axis]);
+      for (std::size_t i = 0; i < kinematic.size(); ++i) kinematic[i] += derivative[i];
+      add(kinematic, kinematic_forces_[axis]);
+    }
+    has_voltage_ = has_voltage_ && battery != nullptr;
+    if (has_voltage_) add(means(voltage), voltage_);
+    if (!has_voltage_) voltage_.clear();
+    stretch_.insert(stretch_.end(), stretch.instants, stretches_.size());
+    stretches_.push_back(std::move(stretch));
+  }
+
+  double period_s_ = 0;
+  std::size_t half_ = 0, stride_ = 1;
+  Series weights_;
+  std::vector<Stretch> stretches_;
+  std::vector<std::size_t> stretch_;
+  Triple rates_, derivatives_, products_, forces_, kinematic_forces_, velocities_, squares_;
+  Series voltage_;
+  bool has_voltage_ = true;
+};
+
+}  // namespace pinnquad

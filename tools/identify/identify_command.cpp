@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: MIT
+// Finds the vehicle that flew flights or logs: thrust, turning, drag, lag, each with an interval; writes it as an
+// airframe file.
+//   pinnquad identify --log flight.ulg --mapping px4 --mass 1.2 --out vehicle.toml
+#include "identify/identify_command.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "airframe/choice.hpp"
+#include "airframe/toml_writer.hpp"
+#include "command_line/commands.hpp"
+#include "command_line/file_roles.hpp"
+#include "command_line/progress_line.hpp"
+#include "identify/identified_numbers.hpp"
+#include "identify/sound_flights.hpp"
+#include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/logs/dataset_folder.hpp"
+#include "pinnquad/regression/identified_airframe.hpp"
+
+namespace {
+
+namespace logs = pinnquad::logs;
+
+constexpr double assumed_mass_kg = 1, assumed_arm_m = 0.2, assumed_lag_s = 0.03;
+
+struct IdentifyOptions {
+  std::vector<std::string> flights, logs;
+  std::string dataset, mapping, airframe, out;
+  std::string name = "identified";
+  std::optional<double> curve, mass_kg, arm_m, rate_hz;
+  bool fit_curve = false;
+  bool json = false;
+};
+
+/// An X of PX4's motor order: what stands for all that flights do not say.
+pinnquad::Airframe<double> plain_airframe() {
+  pinnquad::Airframe<double> plain{};
+  plain.mass_kg = assumed_mass_kg;
+  plain.rotors = pinnquad::x_rotors(assumed_arm_m, assumed_arm_m);
+  plain.propeller_diameter_m = 0.2;
+  plain.max_rotor_speed_rev_s = 100;
+  plain.thrust_coefficient = 0.1;
+  plain.power_coefficient = 0.05;
+  plain.rotor_time_constant_s = assumed_lag_s;
+  return plain;
+}
+
+/// The vehicle as far as it is said: the airframe that was given, or that of the mapping.
+programs::NamedAirframe like_of(const IdentifyOptions& options, const logs::ImportedDataset& dataset) {
+  programs::NamedAirframe like{"", plain_airframe()};
+  bool known = false;  // a dataset keeps the name alone, of a file too
+  programs::each_airframe([&](auto tag) { known = known || decltype(tag)::type::name == dataset.airframe; });
+  if (!options.airframe.empty() || known) {
+    like = programs::chosen_airframe(options.airframe.empty() ? dataset.airframe : options.airframe);
+  }
+  if (options.mass_kg) like.value.mass_kg = *options.mass_kg;
+  if (options.arm_m) {
+    for (pinnquad::RotorMount<double>& rotor : like.value.rotors) {
+      rotor.x_m = std::copysign(*options.arm_m, rotor.x_m);
+      rotor.y_m = std::copysign(*options.arm_m, rotor.y_m);
+    }
+  }
+  return like;
+}
+
+logs::ImportedDataset read(const IdentifyOptions& options) {
+  programs::JobLine progress;
+  logs::LogSettings settings;
+  settings.on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
+  if (!options.logs.empty()) {
+    settings.mapping = options.mapping;
+    settings.airframe = options.airframe;
+    settings.rate_hz = options.rate_hz;
+    settings.lag_s = 0;
+    settings.keep_saturated = true;
+    return logs::read_dataset(options.logs, settings);
+  }
+  if (!options.dataset.empty()) {
+    logs::ImportedDataset dataset = logs::read_dataset_folder(options.dataset, settings.on_progress);
+    dataset.sources.clear();  // what is refused is a file of the folder
+    for (const std::string& file : logs::flight_files(dataset)) dataset.sources.push_back(options.dataset + "/" + file);
+    return dataset;
+  }
+  return logs::read_source(options.flights, settings);
+}
+
+pinnquad::IdentificationSettings settings_of(const IdentifyOptions& options, const pinnquad::Airframe<double>& like) {
+  pinnquad::IdentificationSettings settings;
+  settings.thrust_curve = like.rotors[0].thrust_curve;
+  settings.fit_thrust_curve = options.fit_curve;
+  if (options.curve) settings.thrust_curve = *options.curve;
+  return settings;
+}
+
+/// "1.2 kg (--mass)" of what the flights do not say and the airframe has.
+std::vector<std::string> assumptions(const IdentifyOptions& options, const programs::NamedAirframe& like,
+                                     const pinnquad::IdentifiedAirframe& made) {
+  std::vector<std::string> told;
+  const auto text = [](double value) { return pinnquad::number_text(value); };
+  const std::string of = like.name.empty() ? "assumed" : "of " + like.name;
+  const pinnquad::RotorMount<double>& corner = like.value.rotors[0];
+  told.push_back("mass " + text(like.value.mass_kg) + " kg (" + (options.mass_kg ? "--mass" : of) + ")");
+  told.push_back("arms " + text(std::abs(corner.x_m)) + " m along x, " + text(std::abs(corner.y_m)) + " m along y (" +
+                 (options.arm_m ? "--arm" : of) + ")");
+  told.push_back("propeller " + text(like.value.propeller_diameter_m) + " m at " +
+                 text(like.value.max_rotor_speed_rev_s) + " rev/s (" + of + ")");
+  for (const std::string& key : made.assumed) {
+    if (key == "inertia_kg_m2[2]") told.push_back("Jz, 0.9 (Jx + Jy): the flights do not tell it");
+    if (key == "power_coefficient") told.push_back("torque of a rotor over its thrust (" + of + ")");
+    if (key == "rotor_time_constant_s") {
+      told.push_back("rotor lag " + text(like.value.rotor_time_constant_s) + " s (" + of + ")");
+    }
+    if (key.rfind("drag_area", 0) == 0) told.push_back(key + " (" + of + ")");
+  }
+  return told;
+}
+
+nlohmann::json json_of(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
+
+void print_json(const pinnquad::Identification& found, const std::vector<programs::IdentifiedNumber>& numbers,
+                const std::vector<std::string>& assumed, const logs::ImportedDataset& dataset, const std::string& out) {
+  nlohmann::json of_numbers = nlohmann::json::object();
+  for (const programs::IdentifiedNumber& number : numbers) {
+    nlohmann::json& one = of_numbers[number.key];
+    one = {{"value", json_of(number.estimate.value)},
+           {"low", json_of(number.estimate.low())},
+           {"high", json_of(number.estimate.high())},
+           {"unit", number.unit},
+           {"excitation", programs::excitation_words(number)}};
+    if (!programs::is_told(number)) one["fly"] = number.flight;
+  }
+  const nlohmann::json all = {{"format", 1},
+                              {"duration_s", found.duration_s},
+                              {"blocks", found.blocks},
+                              {"flights", dataset.flights.size()},
+                              {"lag_removed_s", dataset.lag_removed_s},
+                              {"numbers", of_numbers},
+                              {"assumed", assumed},
+                              {"warnings", dataset.warnings},
+                              {"airframe", out.empty() ? nlohmann::json() : nlohmann::json(out)}};
+  std::printf("%s\n", all.dump(2).c_str());
+}
+
+std::string interval_text(const pinnquad::Estimate& estimate) {
+  if (!std::isfinite(estimate.half_width)) return "none";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.4g to %.4g", estimate.low(), estimate.high());
+  return text;
+}
+
+void print_table(const pinnquad::Identification& found, const std::vector<programs::IdentifiedNumber>& numbers,
+                 const std::vector<std::string>& assumed, const logs::ImportedDataset& dataset) {
+  for (const std::string& warning : dataset.warnings) std::printf("warning: %s\n", warning.c_str());
+  std::printf("%zu flights, %.1f s of them, in %zu blocks\n", dataset.flights.size(), found.duration_s, found.blocks);
+  std::printf("%-38s %10s  %-22s %-8s %s\n", "number", "value", "95 % interval", "unit", "excitation");
+  for (const programs::IdentifiedNumber& number : numbers) {
+    std::printf("%-38s %10.4g  %-22s %-8s %s\n", number.words.c_str(), number.estimate.value,
+                interval_text(number.estimate).c_str(), number.unit.c_str(), programs::excitation_words(number));
+  }
+  for (const programs::IdentifiedNumber& number : numbers) {
+    if (programs::is_told(number)) continue;
+    std::printf("not told: %s (%s); fly: %s\n", number.words.c_str(), number.moved.c_str(), number.flight.c_str());
+  }
+  std::printf("ratios alone are of the flights; not of them:\n");
+  for (const std::string& one : assumed) std::printf("  %s\n", one.c_str());
+}
+
+/// Why there is no airframe: the number that is missing, with its column and what was seen.
+std::string why_none(const std::vector<programs::IdentifiedNumber>& numbers, const pinnquad::Identification& found) {
+  constexpr std::array<const char*, 4> needed = {"thrust_m_s2", "roll_effectiveness_rad_s2",
+                                                 "pitch_effectiveness_rad_s2", "yaw_effectiveness_rad_s2"};
+  constexpr std::array<const char*, 4> columns = {"vdot_bz", "w_x", "w_y", "w_z"};
+  constexpr double least_s = 10;
+  if (!std::isfinite(found.thrust_m_s2.half_width) && found.duration_s < least_s) {
+    return "expected 10 s or more of flight, in stretches of a second or more without a gap, found " +
+           pinnquad::number_text(std::round(10 * found.duration_s) / 10) + " s";
+  }
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    for (const programs::IdentifiedNumber& number : numbers) {
+      if (number.key != needed[i]) continue;
+      const bool backwards = number.estimate.high() < 0;
+      if (i == 3 && !backwards) continue;
+      if (pinnquad::is_told(number.estimate, 0.5) && !backwards) continue;
+      return "column " + std::string(columns[i]) + ": " + number.words + " is " +
+             (backwards
+                  ? "negative, " + interval_text(number.estimate) + ": the commands turn it the other way"
+                  : "not told, " + interval_text(number.estimate) + ", as " + number.moved + "; fly: " + number.flight);
+    }
+  }
+  return "no vehicle has these numbers";
+}
+
+int run(const IdentifyOptions& options) {
+  programs::FileRoles roles;
+  for (const std::string& flight : options.flights) roles.reads("--flight", flight);
+  for (const std::string& log : options.logs) roles.reads("--log", log);
+  if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
+  roles.writes("--out", options.out);
+  if (!options.out.empty() && !programs::is_airframe_file(options.out)) {
+    throw std::invalid_argument("--out " + options.out + ": a name that ends in .toml was expected");
+  }
+  const logs::ImportedDataset dataset = read(options);
+  const programs::NamedAirframe like = like_of(options, dataset);
+  const std::vector<pinnquad::Flight> flights = programs::sound_flights(dataset, like.value);
+  pinnquad::RowSet rows;
+  for (const pinnquad::Flight& flight : flights) rows.add(flight, {0, flight.size()});
+  std::array<std::array<double, pinnquad::rotor_count>, 3> signs{};
+  for (int axis = 0; axis < 3; ++axis) {
+    signs[static_cast<std::size_t>(axis)] = pinnquad::allocation_signs(like.value, axis);
+  }
+  pinnquad::Identification found = pinnquad::identify(rows, signs, settings_of(options, like.value));
+  found.delay_s.value += dataset.lag_removed_s;
+  found.response_s.value += dataset.lag_removed_s;
+  const std::vector<programs::IdentifiedNumber> numbers = programs::identified_numbers(found);
+  const auto made = pinnquad::identified_airframe(found, like.value);
+  const bool backwards = found.effectiveness_rad_s2[2].high() < 0;
+  if (!made || backwards) {
+    programs::complain("identify", dataset.sources.front() + ": " + why_none(numbers, found));
+    return programs::exit_failed;
+  }
+  const std::vector<std::string> assumed = assumptions(options, like, *made);
+  if (!options.out.empty()) {
+    pinnquad::AtomicFile file(options.out);
+    for (const std::string& one : assumed) file.stream() << "# not of the flights: " << one << "\n";
+    for (const programs::IdentifiedNumber& number : numbers) {
+      file.stream() << "# " << number.words << " " << pinnquad::number_text(number.estimate.value) << " " << number.unit
+                    << ", 95 % " << interval_text(number.estimate) << "\n";
+    }
+    file.stream() << programs::airframe_toml({options.name, made->value});
+    file.commit();
+  }
+  if (options.json) {
+    print_json(found, numbers, assumed, dataset, options.out);
+  } else {
+    print_table(found, numbers, assumed, dataset);
+    if (!options.out.empty()) std::printf("wrote %s\n", options.out.c_str());
+  }
+  return 0;
+}
+
+void require_one_source(const CLI::App& line) {
+  int count = 0;
+  for (const char* source : {"--flight", "--dataset", "--log"}) count += line.count(source) > 0 ? 1 : 0;
+  if (count == 0) throw std::invalid_argument("--flight, --dataset or --log is required");
+  if (count > 1) throw std::invalid_argument("expected one of --flight, --dataset and --log");
+  if ((line.count("--log") > 0) != (line.count("--mapping") > 0)) {
+    throw std::invalid_argument("--log and --mapping go together: what its columns mean");
+  }
+  if (line.count("--rate") > 0 && line.count("--log") == 0) {
+    throw std::invalid_argument("--rate goes with --log: other rows have their own");
+  }
+}
+
+}  // namespace
+
+programs::Command programs::identify_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand(
+      "identify", "Finds the vehicle that flew: thrust, turning, drag, lag, with intervals, and an airframe file");
+  const auto options = std::make_shared<IdentifyOptions>();
+  add_paths(*line, "--flight", options->flights, "FILE.csv", "recorded flights, CSV as `pinnquad fly` writes it");
+  add_path(*line, "--dataset", options->dataset, "DIR", "imported flights, a folder that `pinnquad import` wrote");
+  add_paths(*line, "--log", options->logs, "LOG", "flight logs: ULog, CSV, or folders of them");
+  line->add_option("--mapping", options->mapping, "what the columns of --log mean: see import")
+      ->type_name("NAME|FILE.toml");
+  add_number(*line, "--rate", options->rate_hz, 10.0, 2000.0, "rows per second of --log (default: see import)")
+      ->default_str("");
+  line->add_option("--airframe", options->airframe,
+                   "gives mass, arms, motor order and propeller; else 1 kg, 0.2 m, PX4's order: a file, or one of: " +
+                       airframe_names())
+      ->type_name("NAME|FILE.toml");
+  add_number(*line, "--mass", options->mass_kg, 1e-3, 1e3, "mass, kg: no flight tells it")->default_str("");
+  add_number(*line, "--arm", options->arm_m, 1e-3, 1e2, "of each rotor along x and y, m: no flight tells it")
+      ->default_str("");
+  const auto take_curve = [options](const std::string& text) {
+    double curve = 0;
+    options->fit_curve = text == "fit";
+    if (options->fit_curve) return;
+    if (!parse_decimal(text, 0.0, 1.0, curve)) {
+      throw CLI::ValidationError("--thrust-curve", "expected fit, or a number from 0 to 1, found '" + text + "'");
+    }
+    options->curve = curve;
+  };
+  line->add_option_function<std::string>(
+          "--thrust-curve", take_curve,
+          "from thrust proportional to the command, 0, to its square, 1; fit finds it (default: that of the airframe)")
+      ->type_name("0..1|fit");
+  add_path(*line, "--out", options->out, "FILE.toml", "the airframe file to write");
+  line->add_option("--name", options->name, "name in the airframe file")->capture_default_str();
+  line->add_flag("--json", options->json, "the numbers as JSON, and nothing else, on stdout");
+  line->footer(
+      "Examples:\n"
+      "  pinnquad identify --log logs --mapping px4 --mass 1.2 --arm 0.18 --out vehicle.toml\n"
+      "  pinnquad identify --dataset my_logs --airframe mine.toml --json\n"
+      "  pinnquad identify --flight d1.csv\n"
+      "Exit codes: 0; 1 the flights do not tell thrust, roll or pitch, or the commands turn the vehicle the other "
+      "way;\n"
+      "2 bad input or a file that can't be read or written; 130 interrupted. Then nothing was written.");
+  return {line, [options, line] {
+            require_one_source(*line);
+            return run(*options);
+          }};
+}

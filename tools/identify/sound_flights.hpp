@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Flights that a vehicle can be identified from: in the air, in motion, commands within their limits and in the order
+// of the airframe's motors. What is not is refused with file, column and evidence.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "logs/command_lag.hpp"
+#include "logs/log_checks.hpp"
+#include "logs/motor_order_check.hpp"
+#include "logs/row_checks.hpp"
+#include "pinnquad/data/row_set.hpp"
+#include "pinnquad/io/file_error.hpp"
+#include "pinnquad/logs/read_dataset.hpp"
+
+namespace programs {
+
+namespace detail {
+
+inline std::size_t count(const pinnquad::logs::RowMask& mask) {
+  return static_cast<std::size_t>(std::count(mask.begin(), mask.end(), true));
+}
+
+[[noreturn]] inline void refuse_flight(const std::string& file, const std::string& expected, const std::string& found) {
+  throw pinnquad::InputError(file, 0, 0, expected, found);
+}
+
+inline void require_motion(const std::string& file, const pinnquad::Flight& flight) {
+  constexpr std::array<const char*, 3> columns = {"w_x", "w_y", "w_z"};
+  std::vector<double> time_s, rate;
+  for (const pinnquad::Sample& sample : flight) time_s.push_back(sample.time_s);
+  for (int axis = 0; axis < 3; ++axis) {
+    rate.clear();
+    for (const pinnquad::Sample& sample : flight) rate.push_back(sample.body_rates_rad_s[axis]);
+    const std::string column = columns[static_cast<std::size_t>(axis)];
+    if (const auto finding = pinnquad::logs::check_frozen(column, time_s, rate)) {
+      refuse_flight(file, "a body rate that is measured in column " + column, *finding);
+    }
+  }
+}
+
+/// On the ground throughout no row is unlike the others, and grounded_rows() finds none.
+inline void require_flight(const std::string& file, const pinnquad::Flight& flight) {
+  constexpr double still_rad_s = 0.03, still_m_s2 = 0.5, most = 0.5;
+  std::size_t still = 0;
+  for (const pinnquad::Sample& sample : flight) {
+    const bool rests =
+        sample.body_rates_rad_s.norm() < still_rad_s && sample.linear_acceleration_m_s2.norm() < still_m_s2;
+    still += rests ? 1 : 0;
+  }
+  const double share = static_cast<double>(still) / static_cast<double>(flight.size());
+  if (share <= most) return;
+  refuse_flight(file, "a vehicle that moves in the air in columns w_x to w_z and vdot_bx to vdot_bz",
+                "rest in " + pinnquad::logs::percent(share) + " of the rows");
+}
+
+inline void require_free_commands(const std::string& file, const pinnquad::Flight& flight) {
+  constexpr double edge = 1e-3, most = 0.5;
+  for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
+    std::size_t held = 0;
+    for (const pinnquad::Sample& sample : flight) {
+      held += sample.commands[motor] <= edge || sample.commands[motor] >= 1 - edge ? 1 : 0;
+    }
+    if (static_cast<double>(held) <= most * static_cast<double>(flight.size())) continue;
+    refuse_flight(file, "a motor that is free to move in column u" + std::to_string(motor + 1),
+                  "0 or 1 in " +
+                      pinnquad::logs::percent(static_cast<double>(held) / static_cast<double>(flight.size())) +
+                      " of the rows");
+  }
+}
+
+}  // namespace detail
+
+/// The flights of a dataset without their rows on the ground. Throws InputError, one line.
+inline std::vector<pinnquad::Flight> sound_flights(const pinnquad::logs::ImportedDataset& dataset,
+                                                   const pinnquad::Airframe<double>& airframe) {
+  constexpr double most_grounded = 0.5;
+  std::vector<pinnquad::Flight> flights, aligned;
+  pinnquad::RowSet all;
+  for (const pinnquad::Flight& flight : dataset.flights.flights()) all.add(flight, {0, flight.size()});
+  const double period_s = pinnquad::sample_period_s(all);
+  if (!(period_s > 0)) {
+    detail::refuse_flight(dataset.sources.front(), "rows of one period in all flights", "several, or a single row");
+  }
+  for (std::size_t i = 0; i < dataset.flights.size(); ++i) {
+    const pinnquad::Flight& flight = dataset.flights[i];
+    const std::string& file = dataset.sources[i];
+    detail::require_motion(file, flight);
+    detail::require_flight(file, flight);
+    detail::require_free_commands(file, flight);
+    const pinnquad::logs::RowMask grounded = pinnquad::logs::grounded_rows(flight, period_s);
+    const double share = static_cast<double>(detail::count(grounded)) / static_cast<double>(flight.size());
+    if (share > most_grounded) {
+      detail::refuse_flight(
+          file, "a vehicle in the air in columns vdot_bz and u1 to u4",
+          "something else than the rotors bears it in " + pinnquad::logs::percent(share) + " of the rows");
+    }
+    flights.push_back(pinnquad::logs::without(flight, grounded));
+  }
+  std::vector<pinnquad::Flight> segments;
+  for (const pinnquad::Flight& flight : flights) {
+    for (pinnquad::Flight& part : pinnquad::logs::split_at_gaps(flight, 1.5 * period_s)) {
+      segments.push_back(std::move(part));
+    }
+  }
+  const pinnquad::logs::CommandLag lag = pinnquad::logs::estimate_command_lag(segments, period_s);
+  for (pinnquad::Flight& segment : segments) {
+    segment = pinnquad::logs::remove_lag(std::move(segment), period_s, lag.found ? lag.lag_s : 0);
+  }
+  const pinnquad::logs::MotorOrderCheck order = pinnquad::logs::check_motor_order(segments, airframe);
+  if (order.finding) {
+    detail::refuse_flight(dataset.sources.front(), "commands u1 to u4 in the order of the airframe's motors",
+                          *order.finding);
+  }
+  return flights;
+}
+
+}  // namespace programs
