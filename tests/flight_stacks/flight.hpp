@@ -229,9 +229,9 @@ class FaultyFlight {
       if (answer.reaction <= Reaction::levels && answer.status == Status::fell_back) ++figures_.fell_back[i];
     }
     if (answer.reaction != last_.reaction || answer.stale_inputs != last_.stale_inputs) {
-      constexpr const char* names[4] = {"body rates", "attitude", "position", "set point"};
+      constexpr const char* names[5] = {"body rates", "attitude", "position", "set point", "battery voltage"};
       std::string stale;
-      for (unsigned i = 0; i < 4; ++i) {
+      for (unsigned i = 0; i < 5; ++i) {
         if (answer.stale_inputs >> i & 1u) stale += std::string(stale.empty() ? " (stale: " : ", ") + names[i];
       }
       std::string line = to_string(answer.reaction) + (stale.empty() ? "" : stale + ")");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Flies an exported header, whatever it asks for, with its block in both cores: a figure-eight in the simulator, by the
-// header's own airframe, slow enough for the training envelopes of quiet logs. The battery is silent for a while.
-//   flight_stacks_header MODEL.block
+// header's own airframe, slow enough for the training envelopes of quiet logs. The battery is silent for a while; another
+// block takes the place of the first. What the cores recorded is for `pinnquad replay`.
+//   header_flight MODEL.block OTHER.block FOLDER
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -12,17 +13,20 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
+#include "record_csv.hpp"
 #include "stacks.hpp"
 
 namespace {
 
 using namespace pinnquad::autopilot::test;
 using pinnquad::Status;
+using pinnquad::autopilot::CoreRecord;
+using pinnquad::autopilot::CoreSettings;
 using pinnquad::autopilot::Reaction;
 
 using Vehicle = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag>;
 
-constexpr double duration_s = 12, battery_stops_s = 6, battery_is_back_s = 9;
+constexpr double duration_s = 12, other_block_s = 3, battery_stops_s = 6, battery_is_back_s = 9;
 
 /// Ticks by who answered.
 struct Phase {
@@ -53,7 +57,7 @@ double trained_voltage() {
 }
 
 template <class Stack>
-bool fly(const std::vector<char>& block) {
+bool fly(const std::vector<char>& block, const std::vector<char>& other, const std::string& folder) {
   Stack stack;
   const Status offered = stack.offer(block.data(), block.size());
   if (offered != Status::ok) return std::printf("%s refuses the block: %s\n", Stack::name, to_string(offered)), false;
@@ -71,6 +75,9 @@ bool fly(const std::vector<char>& block) {
   Phase start, flight, silent;
   double squares = 0;
   int counted = 0;
+  std::ofstream settings = record_file<CoreSettings>(folder, Stack::name);
+  std::ofstream ticks = record_file<CoreRecord>(folder, Stack::name);
+  settings << csv_row(stack.settings());
   for (int ms = 0; ms < 1000 * duration_s; ms += Stack::period_ms) {
     const double time_s = 1e-3 * ms;
     const auto now_us = static_cast<std::uint64_t>(5'000'000 + 1000 * ms);
@@ -81,7 +88,11 @@ bool fly(const std::vector<char>& block) {
     const bool silent_battery = time_s >= battery_stops_s && time_s < battery_is_back_s;
     if (ms % 200 == 0 || Stack::period_ms == 2) stack.battery(now_us, silent_battery ? 0 : volts);
     stack.situation({true, false});
+    if (ms == 1000 * other_block_s) {
+      std::printf("%s other block: %s\n", Stack::name, to_string(stack.offer(other.data(), other.size())));
+    }
     const Answer answer = stack.run(now_us);
+    ticks << csv_row(stack.record());
     // the voltage is in force for 2 s, the window is 0.16 s long
     (time_s < 0.2 ? start : silent_battery && time_s > battery_stops_s + 2 ? silent : flight).take(answer);
     if (answer.has_commands) std::copy(answer.commands.begin(), answer.commands.end(), commands.begin());
@@ -99,13 +110,17 @@ bool fly(const std::vector<char>& block) {
   return true;
 }
 
+std::vector<char> bytes_of(const char* path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 2) return std::fprintf(stderr, "flight_stacks_header MODEL.block\n"), 2;
-  std::ifstream file(arguments[1], std::ios::binary);
-  const std::vector<char> block{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  const bool px4 = fly<Px4StackOf<TrainedQuadModel>>(block);
-  const bool crazyflie = fly<CrazyflieStackOf<TrainedQuadModel>>(block);
+  if (count != 4) return std::fprintf(stderr, "header_flight MODEL.block OTHER.block FOLDER\n"), 2;
+  const std::vector<char> block = bytes_of(arguments[1]), other = bytes_of(arguments[2]);
+  const bool px4 = fly<Px4StackOf<TrainedQuadModel>>(block, other, arguments[3]);
+  const bool crazyflie = fly<CrazyflieStackOf<TrainedQuadModel>>(block, other, arguments[3]);
   return px4 && crazyflie ? 0 : 1;
 }

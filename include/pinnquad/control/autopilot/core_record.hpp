@@ -5,6 +5,7 @@
 // that is added is as a record is made where a log lacks it, so that earlier logs replay. NED, FRD, SI units, commands in the airframe's rotor order.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "pinnquad/control/bias_estimate.hpp"
@@ -15,6 +16,8 @@ namespace pinnquad::autopilot {
 /// One tick. Inputs are those that came last, refused ones too; of one input one sample per tick at most.
 struct CoreRecord {
   static constexpr const char* topic = "pinnquad_record";
+  /// Fields that earlier logs lack.
+  static constexpr std::array<const char*, 2> added = {"voltage_us", "battery_voltage"};
 
   std::uint64_t timestamp{0};  ///< of the tick, on the clock of the samples
   std::uint64_t body_rates_us{0};
