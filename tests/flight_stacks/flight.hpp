@@ -47,7 +47,7 @@ class FaultyFlight {
   using Model = typename Stack::Model;
   using Vehicle = pinnquad::AgileFlight::Vehicle;
 
-  static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20;
+  static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20, battery_period_ms = 200;
 
   explicit FaultyFlight(const CoreSettings& settings = {})
       : stack_(settings),
@@ -217,6 +217,7 @@ class FaultyFlight {
     if (due(attitude_period_ms) && !faulty(FaultKind::attitude_stops)) stack_.attitude(stamp_us, q);
     if (due(local_period_ms) && !faulty(FaultKind::local_stops)) stack_.local(stamp_us, position, velocity);
     if (due(set_point_period_ms) && !faulty(FaultKind::set_point_stops)) stack_.set_point(stamp_us, point);
+    if (due(battery_period_ms)) stack_.battery(stamp_us, faulty(FaultKind::battery_stops) ? 0 : 15);
   }
 
   template <class Faults>
