@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A model with a window and the battery voltage, as a header exports one: the linear inverse of the paper's quadrotor
-// about its hover, of the weighted motions of three instants, more thrust the emptier the battery is.
+// about its hover, of the weighted motions of the window's instants, more thrust the emptier the battery is.
 #pragma once
 
 #include <array>
@@ -20,9 +20,10 @@ constexpr std::array<float, Size> of_all(float value) noexcept {
   return x;
 }
 
-struct PastModel {
+template <int Taps>
+struct PastModelOf {
   using Scalar = float;
-  using Features = PartlyWindowed<WithColumns<AccelerationFeatures, BatteryVoltage>, AccelerationFeatures, 3,
+  using Features = PartlyWindowed<WithColumns<AccelerationFeatures, BatteryVoltage>, AccelerationFeatures, Taps,
                                   PeriodMicroseconds<20000>>;
   using Network = pinnquad::Network<float, InputSize<Features::size>, Dense<4>>;
   using Outputs = CommandOutputs;
@@ -33,8 +34,9 @@ struct PastModel {
   static constexpr const char* provenance = "tests/flight_stacks/past_model.hpp";
   static constexpr auto feature_names = Features::names;
 
-  static constexpr std::array<float, 3> tap_weights = {0.5f, 0.3f, 0.2f};  ///< the present one first
-  static constexpr float per_volt = -0.01f, rated_V = 15;                  ///< of every command
+  /// Of an instant, the present one first: they add up to 1, and the further back, the less it counts.
+  static constexpr double tap_weight(int tap) noexcept { return 2.0 * (Taps - tap) / (Taps * (Taps + 1)); }
+  static constexpr float per_volt = -0.01f, rated_V = 15;  ///< of every command
 
   using FeatureVector = std::array<float, Features::size>;
   static constexpr std::size_t inputs = Features::size;
@@ -54,10 +56,10 @@ struct PastModel {
                                             -a.inertia_kg_m2[0] / (4 * mount.y_m * thrust_N),
                                             a.inertia_kg_m2[1] / (4 * mount.x_m * thrust_N),
                                             a.inertia_kg_m2[2] / (4 * yaw_N_m)};
-      for (std::size_t tap = 0; tap < tap_weights.size(); ++tap) {
-        const std::size_t first = tap == 0 ? 0 : voltage + 1 + 6 * (tap - 1);
+      for (int tap = 0; tap < Taps; ++tap) {
+        const std::size_t first = tap == 0 ? 0 : voltage + 1 + 6 * static_cast<std::size_t>(tap - 1);
         for (std::size_t i = 0; i < 6; ++i) {
-          all[inputs * rotor + first + i] = static_cast<float>(static_cast<double>(tap_weights[tap]) * motion[i]);
+          all[inputs * rotor + first + i] = static_cast<float>(tap_weight(tap) * motion[i]);
         }
       }
       all[inputs * rotor + voltage] = per_volt;
@@ -84,5 +86,7 @@ struct PastModel {
     return all;
   }();
 };
+
+using PastModel = PastModelOf<3>;
 
 }  // namespace pinnquad::autopilot::test
