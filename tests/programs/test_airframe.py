@@ -45,7 +45,7 @@ def test_from_file_and_by_name(pinnquad):
     for name in names:
         pinnquad(f"airframe convert {name} --out {name}.toml")
         by_file, by_name = (pinnquad(f"airframe check {which}").out.splitlines() for which in (f"{name}.toml", name))
-        assert by_file[1:] == by_name[1:] and len(by_name) == 5, name  # a line, and one per rotor
+        assert by_file[1:] == by_name[1:] and len(by_name) == 6, name  # a line, one per rotor, hover and turns; no warning
         pinnquad(f"fly --airframe {name} --samples 30 --out by_name.csv")
         pinnquad(f"fly --airframe {name}.toml --samples 30 --out by_file.csv")
         same_bytes("by_name.csv", "by_file.csv")
@@ -82,3 +82,38 @@ def test_refused(pinnquad, tilted, words, at, keyword):
     assert Path("tilted.toml").read_bytes() == before, "the input was overwritten"
     assert sorted(path.name for path in Path().iterdir()) == ["broken.toml", "tilted.toml"]
     no_partial_files()
+
+
+# Published: Holybro X500 V2 kit (2216 920 KV, 10 inches, 4S; 2 kg, 500 mm wheelbase); a 5-inch racer with 1,200 g a motor
+@pytest.mark.parametrize("words, rotor_rpm, thrust_to_weight", [
+    ("--mass 2 --arm 0.25 --propeller 10 --kv 920 --cells 4", 920 * 4 * 3.7 * 0.75, None),
+    ("--mass 0.65 --arm 0.11 --propeller 5 --thrust 1200", None, 4 * 1.2 / 0.65)])
+def test_estimate(pinnquad, words, rotor_rpm, thrust_to_weight):
+    said = pinnquad(f"airframe estimate {words} --out mine.toml").out
+    assert "warning" not in said and said == pinnquad("airframe check mine.toml").out
+    _, rpm, ratio, hover = map(float, re.search(
+        r"mine: ([\d.]+) kg, rotors up to (\d+) rpm, thrust-to-weight ([\d.]+)\n(?:.*\n)*  hovers at command ([\d.]+)",
+        said).groups())
+    assert rotor_rpm is None or rpm == pytest.approx(rotor_rpm, abs=1)
+    assert thrust_to_weight is None or ratio == pytest.approx(thrust_to_weight, abs=1e-3)
+    assert hover == pytest.approx(1 / ratio, abs=1e-3)
+    pinnquad("fly --airframe mine.toml --samples 30 --max-speed 2 --out flown.csv")
+
+
+@pytest.mark.parametrize("change, at, keyword", [
+    (("^max_rotor_speed_rev_s = .*", "max_rotor_speed_rev_s = 22278.5"), "odd.toml:8:25", "rev/min"),
+    (("^max_rotor_speed_rev_s = .*", "max_rotor_speed_rev_s = 371.3\nrpm = 22278.5"), "odd.toml:9:1", "rpm"),
+    (("^propeller_diameter_m = .*\nmax_rotor_speed_rev_s = .*", "propeller_diameter_m = 7.0\nmax_rotor_speed_rev_s = 5.0"),
+     "odd.toml:7:24", "hub"), (("^thrust_coefficient = .*", "thrust_coefficient = 19.0"), "odd.toml:3:11", "thrust-to-weight")])
+def test_what_no_quadrotor_has(pinnquad, change, at, keyword):
+    pinnquad("airframe convert racer_5_inch --out usual.toml")
+    replaced("usual.toml", "odd.toml", change)
+    pinnquad.refused("airframe check odd.toml", at=at, keyword=keyword)
+
+
+def test_doubts(pinnquad):
+    """A unit mistaken is told: an inertia in kg cm^2."""
+    pinnquad("airframe convert racer_5_inch --out usual.toml")
+    replaced("usual.toml", "odd.toml", ("^inertia_kg_m2 = .*", "inertia_kg_m2 = [25.0, 21.0, 43.0]"))
+    said = pinnquad("airframe check odd.toml").out
+    assert re.findall("warning: greatest (roll|pitch|yaw)", said) == ["roll", "pitch", "yaw"]

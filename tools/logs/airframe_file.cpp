@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "logs/airframe_file.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 
+#include "logs/airframe_doubts.hpp"
 #include "logs/airframe_names.hpp"
 #include "logs/toml_table.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
@@ -39,6 +41,29 @@ RotorMount<double> rotor_of(const std::string& path, const toml::table& table) {
   r.fall_time_constant_s = rotor.number("fall_time_constant_s", from_zero, r.fall_time_constant_s);
   rotor.require_no_more();
   return r;
+}
+
+/// What no quadrotor can have.
+void require_buildable(TomlTable& table, const Airframe<double>& a) {
+  constexpr double most_thrust_to_weight = 40;
+  const auto rounded = [](double value) { return number_text(std::round(value * 1e3) / 1e3); };
+  if (!(tip_speed_m_s(a) < speed_of_sound_m_s)) {
+    table.refuse(table.required("max_rotor_speed_rev_s", ""),
+                 "rev/s (a sixtieth of rev/min) at which the blades' tips stay below the speed of sound",
+                 "tips at " + rounded(tip_speed_m_s(a)) + " m/s");
+  }
+  if (!(a.propeller_diameter_m < 2 * rotor_distance_m(a))) {
+    table.refuse(
+        table.required("propeller_diameter_m", ""),
+        "a propeller, in m, that does not reach the hub of the nearest, " + rounded(rotor_distance_m(a)) + " m away",
+        rounded(a.propeller_diameter_m) + " m");
+  }
+  if (!(a.thrust_to_weight() < most_thrust_to_weight)) {
+    table.refuse(table.required("mass_kg", ""),
+                 "a thrust-to-weight ratio below " + number_text(most_thrust_to_weight) +
+                     " (rotor speed in rev/s, mass in kg, thrust coefficient by rho n^2 D^4)",
+                 rounded(a.thrust_to_weight()));
+  }
 }
 
 }  // namespace
@@ -84,6 +109,7 @@ NamedAirframe read_airframe_file(const std::string& path) {
     table.refuse(table.required("mass_kg", ""), "an airframe that can hover",
                  "a thrust-to-weight ratio of " + number_text(a.thrust_to_weight()));
   }
+  require_buildable(table, a);
   if (check_airframe(a) != Status::ok) {
     Airframe<double> without = a;
     without.inertia_products_kg_m2 = {};

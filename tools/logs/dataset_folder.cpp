@@ -159,7 +159,7 @@ ImportedDataset read_dataset_folder(const std::string& path, const OnProgress& o
   };
   ImportedDataset dataset;
   dataset.sample_period_s = number(json, "sample_period_s", 0);
-  dataset.lag_removed_s = number(json, "lag_removed_s", -1);
+  dataset.lag_removed_s = number(json, "lag_removed_s", -4);
   if (json.contains("airframe")) dataset.airframe = text(json, "airframe");
   if (json.contains("mapping")) dataset.mapping = text(json, "mapping");
   const nlohmann::json flights = list("flights");

@@ -310,6 +310,12 @@ class Import {
       told = lag.found ? "estimated, confidence " + number_text(std::round(lag.confidence * 100) / 100) : "none found";
     }
     dataset_.lag_removed_s = std::round(*lag_s * 1e6) / 1e6;
+    if (dataset_.lag_removed_s < 0) {
+      dataset_.warnings.push_back(
+          "lag: the commands stand " + number_text(std::round(-dataset_.lag_removed_s * 1e4) / 10) +
+          " ms behind the motion that they make: the log's clocks or filters are off by more than the rotors lag; the "
+          "rows are aligned by it, and what is trained on them knows no lag of the rotors");
+    }
     for (Passage& passage : passages_) {
       for (Flight& segment : passage.segments) {
         segment = logs::remove_lag(std::move(segment), *period_s_, dataset_.lag_removed_s);

@@ -41,8 +41,7 @@ struct CertifyOptions {
 
 /// All that is known of a model in the end.
 struct Findings {
-  const char* argument = "";  ///< of a proof; empty: none
-  std::array<double, 3> slope{}, held_slope{};
+  std::optional<ProvenSigns> proof;
   std::optional<Certificate> certificate;    ///< of a structure
   std::optional<programs::Response> thrust;  ///< of the structure, to more thrust at all instants
   /// Of a window, to an acceleration that is held with the body rates that it makes; where it can be worked out.
@@ -52,30 +51,21 @@ struct Findings {
   std::vector<std::string> names;         ///< of the features
   std::size_t taps = 1;                   ///< with an angular acceleration
 
-  bool proven() const { return *argument != '\0'; }
+  bool proven() const { return proof.has_value(); }
+  bool by_path_bound() const { return proof && proof->by == SignProof::path_bound; }
 };
 
-constexpr const char* by_structure =
-    "structure: an affine base in which each signed sum sees the angular acceleration about its own axis alone, with a "
-    "slope above 0, and a residual that sees none";
-constexpr const char* by_path_bound =
-    "structure and path bound: an affine base in which each signed sum sees the angular acceleration about its own "
-    "axis alone, and a network whose weights leave the slopes above 0 on every path from it";
-constexpr const char* by_affinity = "the model is affine: its derivatives are the same everywhere";
-
-bool sees_angular_acceleration(const BlockModel& model) {
-  return model.network().part(model.network().part_count() - 1).path_bounded;
-}
-
-bool is_affine(const RunTimeNetwork& network) {
-  for (int i = 0; i < network.part_count(); ++i) {
-    const RunTimePart& part = network.part(i);
-    if (part.bounded || part.path_bounded) return false;
-    for (int layer = 0; layer < part.layer_count; ++layer) {
-      if (part.layers[layer].outputs == 0) return false;
-    }
+const char* in_words(SignProof by) {
+  switch (by) {
+    case SignProof::structure:
+      return "structure: an affine base in which each signed sum sees the angular acceleration about its own axis "
+             "alone, with a slope above 0, and a residual that sees none";
+    case SignProof::path_bound:
+      return "structure and path bound: an affine base in which each signed sum sees the angular acceleration about "
+             "its own axis alone, and a network whose weights leave the slopes above 0 on every path from it";
+    case SignProof::affinity: return "the model is affine: its derivatives are the same everywhere";
   }
-  return true;
+  return "";
 }
 
 bool has_base(const BlockModel& model) {
@@ -107,32 +97,13 @@ Findings findings_of(const CertifyOptions& options, const BlockModel& model) {
   if (findings.taps == 0) {
     throw InputError(model.path(), 0, 0, "a model that is asked for an angular acceleration", "one that is not");
   }
-  findings.certificate = model.certificate();
-  if (findings.certificate && findings.certificate->proven()) {
-    findings.argument = sees_angular_acceleration(model) ? by_path_bound : by_structure;
+  findings.proof = model.proven_signs();
+  if (findings.proven() && findings.proof->by != SignProof::affinity) {
+    findings.certificate = model.certificate();
     add_responses(model, findings);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      findings.slope[axis] = findings.certificate->slope[axis];
-      findings.held_slope[axis] = findings.certificate->held_slope[axis];
-    }
-    return findings;
   }
+  if (findings.proven()) return findings;
   const programs::SearchedModel searched = programs::searched_model(model);
-  if (model.has_affine_schema() && is_affine(model.network())) {
-    const std::vector<double>& anywhere = searched.starts.front();
-    findings.slope = model.derivatives(anywhere, false);
-    findings.held_slope = model.derivatives(anywhere, true);
-    const auto vehicle = pinnquad::detail::certified_vehicle<AxisCommandOutputs>(model.airframe());
-    bool above = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double floor = std::max(vehicle.least_slope[axis], 0.0);
-      above = above && findings.slope[axis] > floor && findings.held_slope[axis] > floor;
-    }
-    if (above) {
-      findings.argument = by_affinity;
-      return findings;
-    }
-  }
   findings.search = programs::search_counterexample(searched, options.seed, options.seconds);
   findings.ways = searched.ways;
   return findings;
@@ -168,10 +139,10 @@ void print_json(const BlockModel& model, const Findings& findings) {
                            {"airframe", model.airframe_name()},
                            {"verdict", verdict_of(findings)}};
   if (findings.proven()) {
-    report["argument"] = findings.argument;
+    report["argument"] = in_words(findings.proof->by);
     report["inputs"] = "all finite features";
-    report["slope"] = by_axis(findings.slope);
-    report["held_slope"] = by_axis(findings.held_slope);
+    report["slope"] = by_axis(findings.proof->slope);
+    report["held_slope"] = by_axis(findings.proof->held_slope);
     report["airframe_slope"] = by_axis(hover_slopes(model.airframe()));
   }
   if (findings.proven() && findings.certificate) {
@@ -188,7 +159,7 @@ void print_json(const BlockModel& model, const Findings& findings) {
       report["rounding"] = findings.certificate->rounding;
       report["sure_step"] = by_axis({step[0], step[1], step[2]});
     }
-    if (sees_angular_acceleration(model)) {
+    if (findings.by_path_bound()) {
       const double* other = findings.certificate->other_sums;
       report["other_sums"] = by_axis({other[0], other[1], other[2]});
     }
@@ -261,8 +232,8 @@ void print_with_rates(const Findings& findings) {
   }
 }
 
-void print_rounding(const BlockModel& model, const Findings& findings) {
-  if (sees_angular_acceleration(model)) {
+void print_rounding(const Findings& findings) {
+  if (findings.by_path_bound()) {
     std::printf(
         "rounding   may turn the order of two accelerations that differ by as little as it does; the proof is of "
         "the real function\n");
@@ -286,25 +257,26 @@ void print_text(const BlockModel& model, const Findings& findings) {
     const AxisSlopes own = hover_slopes(model.airframe());
     std::printf("proven     each signed sum of the commands rises with the angular acceleration about its axis%s\n",
                 !findings.certificate ? ""
-                                      : (sees_angular_acceleration(model) ? ", and each rotor goes the right way"
-                                                                          : " and with no other, before a limit "
-                                                                            "clips a command"));
+                                      : (findings.by_path_bound() ? ", and each rotor goes the right way"
+                                                                  : " and with no other, before a limit "
+                                                                    "clips a command"));
     std::printf("for        all finite features, inside the envelope and outside of it\n");
-    std::printf("by         %s\n", findings.argument);
+    std::printf("by         %s\n", in_words(findings.proof->by));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::printf("%s%-5s %.6f s^2/rad, %.2f of the airframe's own in hover", axis == 0 ? "slope      " : "           ",
-                  axes[axis], findings.held_slope[axis], findings.held_slope[axis] / own[axis]);
-      if (findings.taps > 1) std::printf(", of one that is held; of the present alone %.6f", findings.slope[axis]);
+                  axes[axis], findings.proof->held_slope[axis], findings.proof->held_slope[axis] / own[axis]);
+      if (findings.taps > 1)
+        std::printf(", of one that is held; of the present alone %.6f", findings.proof->slope[axis]);
       std::printf("\n");
     }
-    for (const std::string& doubt : programs::slope_doubts(findings.held_slope, own)) {
+    for (const std::string& doubt : programs::slope_doubts(findings.proof->held_slope, own)) {
       std::printf("warning    %s\n", doubt.c_str());
     }
     if (findings.certificate) {
       std::printf("bound      %s\n", programs::bound_in_words(*findings.certificate).c_str());
       print_thrust(model, findings);
       if (findings.taps > 1) print_with_rates(findings);
-      print_rounding(model, findings);
+      print_rounding(findings);
     }
     return;
   }

@@ -44,19 +44,15 @@ inline std::optional<std::string> thrust_doubt(const pinnquad::Certificate& cert
 }
 
 /// "the residual changes a command by at most 0.1669 0.1669 0.1669 0.1669", rotor by rotor; or that there is none.
-inline std::string bound_in_words(const pinnquad::Certificate& certificate) {
-  const double* bound = certificate.command_bound;
-  if (std::none_of(bound, bound + pinnquad::rotor_count, [](double most) { return most > 0; })) {
+inline std::string bound_in_words(const std::optional<pinnquad::Certificate>& structure) {
+  const double* bound = structure ? structure->command_bound : nullptr;
+  if (!structure || std::none_of(bound, bound + pinnquad::rotor_count, [](double most) { return most > 0; })) {
     return "there is no residual: the commands are an affine map of the features";
   }
   char text[128];
   std::snprintf(text, sizeof text, "the residual changes a command by at most %.4f %.4f %.4f %.4f", bound[0], bound[1],
                 bound[2], bound[3]);
   return text;
-}
-
-inline pinnquad::AxisSlopes held_slopes(const pinnquad::Certificate& certificate) {
-  return {certificate.held_slope[0], certificate.held_slope[1], certificate.held_slope[2]};
 }
 
 }  // namespace programs

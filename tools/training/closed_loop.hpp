@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -39,27 +41,44 @@ inline std::vector<double> held_columns(const pinnquad::BlockModel& model, const
   return held;
 }
 
-/// Limits that flights have reached in all but their last hundredths.
+/// Limits that flights have reached in all but their last hundredths; of body axes each its own.
 struct FlownEnvelope {
-  double speed_m_s = 0, tilt_rad = 0, turning_rad_s = 0, angular_acceleration_rad_s2 = 0;
+  std::array<double, 3> speed_m_s{}, turning_rad_s{}, angular_acceleration_rad_s2{};
+  double tilt_rad = 0;
 };
+
+namespace detail {
+
+inline bool within(const pinnquad::Vector3<double>& vector, const std::array<double, 3>& limits) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(std::abs(vector[axis]) <= limits[static_cast<std::size_t>(axis)])) return false;
+  }
+  return true;
+}
+
+}  // namespace detail
 
 inline FlownEnvelope flown_envelope(const pinnquad::RowSet& rows) {
   constexpr double share = 0.98;
-  std::array<std::vector<double>, 4> values;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const pinnquad::Sample& sample = rows[row];
-    values[0].push_back(sample.velocity_m_s.norm());
-    values[1].push_back(std::acos(std::clamp(std::cos(sample.roll_rad) * std::cos(sample.pitch_rad), -1.0, 1.0)));
-    values[2].push_back(sample.body_rates_rad_s.norm());
-    values[3].push_back(sample.angular_acceleration_rad_s2.norm());
-  }
-  const auto reached = [&](std::vector<double>& of) {
-    const auto place = of.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(of.size() - 1));
-    std::nth_element(of.begin(), place, of.end());
+  const auto reached = [&rows](const auto& value_of) {
+    std::vector<double> values;
+    for (std::size_t row = 0; row < rows.size(); ++row) values.push_back(value_of(rows[row]));
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), place, values.end());
     return *place;
   };
-  return {reached(values[0]), reached(values[1]), reached(values[2]), reached(values[3])};
+  FlownEnvelope envelope;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<int>(i);
+    envelope.speed_m_s[i] = reached([axis](const auto& sample) { return std::abs(sample.velocity_m_s[axis]); });
+    envelope.turning_rad_s[i] = reached([axis](const auto& sample) { return std::abs(sample.body_rates_rad_s[axis]); });
+    envelope.angular_acceleration_rad_s2[i] =
+        reached([axis](const auto& sample) { return std::abs(sample.angular_acceleration_rad_s2[axis]); });
+  }
+  envelope.tilt_rad = reached([](const auto& sample) {
+    return std::acos(std::clamp(std::cos(sample.roll_rad) * std::cos(sample.pitch_rad), -1.0, 1.0));
+  });
+  return envelope;
 }
 
 /// The fastest figure-eight of its size, within the envelope; speed counts for nothing where it was not logged. None if
@@ -67,29 +86,48 @@ inline FlownEnvelope flown_envelope(const pinnquad::RowSet& rows) {
 inline std::optional<pinnquad::FigureEight<double>> eight_within(const FlownEnvelope& envelope, bool has_velocity) {
   constexpr double slowest_s = 60, slower = 1.05;
   pinnquad::FigureEight<double> eight;
-  const double size = has_velocity ? std::clamp(envelope.speed_m_s / 4, 0.05, 1.0) : 0.25;
+  const auto size = [&](std::size_t axis) {
+    return has_velocity ? std::clamp(envelope.speed_m_s[axis] / 4, 0.05, 1.0) : 0.25;
+  };
   eight.center_m = {0, 0, -20};
-  eight.half_length_m *= size;
-  eight.half_width_m *= size;
-  eight.half_height_m *= size;
+  eight.half_length_m *= size(0);
+  eight.half_width_m *= size(1);
+  eight.half_height_m *= size(2);
   for (eight.period_s = 2; eight.period_s < slowest_s; eight.period_s *= slower) {
     bool inside = true;
     for (double time_s = 0; inside && time_s < eight.ramp_s + eight.period_s; time_s += 0.02 * eight.period_s) {
       const auto point = eight.sample(time_s);
       pinnquad::FlatMotion<double> motion;
       inside = pinnquad::flat_motion(point, pinnquad::standard_gravity_m_s2<double>, motion) == pinnquad::Status::ok &&
-               (!has_velocity || point.velocity_m_s.norm() <= envelope.speed_m_s) &&
+               (!has_velocity ||
+                detail::within(pinnquad::world_to_body(motion.attitude, point.velocity_m_s), envelope.speed_m_s)) &&
                pinnquad::tilt_rad(motion.attitude) <= envelope.tilt_rad &&
-               motion.body_rates_rad_s.norm() <= envelope.turning_rad_s &&
-               motion.angular_acceleration_rad_s2.norm() <= envelope.angular_acceleration_rad_s2;
+               detail::within(motion.body_rates_rad_s, envelope.turning_rad_s) &&
+               detail::within(motion.angular_acceleration_rad_s2, envelope.angular_acceleration_rad_s2);
     }
     if (inside) return eight;
   }
   return {};
 }
 
-/// Results of the flight, for report.json and the page; `why_not` alone where there was none. The model answers outside
-/// its envelope too; while its window fills, the analytic inverse does.
+/// Of what fly_logged() found: why the model is not fit to fly; empty if it is, or was not flown.
+inline std::string unfit_to_fly(const nlohmann::json& flown) {
+  constexpr double least_answered = 0.5;
+  if (!flown.contains("model")) return "";
+  const nlohmann::json& model = flown["model"];
+  char text[160] = "";
+  if (lost_vehicle(flown)) {
+    std::snprintf(text, sizeof text, "loses the vehicle in the closed loop (%.1f m off)",
+                  model["largest_error_m"].get<double>());
+  } else if (model["answered_share"] < least_answered) {
+    std::snprintf(text, sizeof text, "answers %.1f %% of a figure-eight that the logs' own limits hold",
+                  100 * model["answered_share"].get<double>());
+  }
+  return text;
+}
+
+/// Results of the flight, for report.json and the page; `why_not` alone where there was none. Under the guard of its
+/// export: outside its envelope, and while its window fills, the analytic inverse answers.
 inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnquad::RowSet& training,
                                  const NamedAirframe& airframe,
                                  const std::array<std::array<double, pinnquad::rotor_count>, 3>& signs,
@@ -109,19 +147,19 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
   plan.steps_per_control = 4;
   const pinnquad::FlightController<double> controller({}, pinnquad::flight_limits(*made, 1.0));
   using Analytic = pinnquad::AnalyticInverse<LoggedQuadrotor>;
-  using Guard = pinnquad::Guard<pinnquad::FiniteInputs, pinnquad::FiniteOutputs, pinnquad::ClipCommands<>,
-                                pinnquad::Fallback<Analytic>>;
   const Analytic analytic(vehicle);
   const auto fly = [&](const auto& feed_forward) {
     return pinnquad::track(vehicle, *eight, controller, feed_forward, plan);
   };
+  nlohmann::json result = {{"trajectory", "figure-eight"},           {"half_length_m", eight->half_length_m},
+                           {"half_width_m", eight->half_width_m},    {"period_s", eight->period_s},
+                           {"formula", loop_figures(fly(analytic))}, {"hover_trim", loop_figures(fly(trim))}};
+  if (lost_vehicle(result, "formula") || result["formula"]["rmse_m"] > result["hover_trim"]["rmse_m"]) {
+    return {{"why_not", "the vehicle of the logs is not known well enough: its own formula does not fly it"}};
+  }
+  using Guard = pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::Fallback<Analytic>>;
   const auto by_model = with_feed_forward(model, Guard(analytic), 0, held_columns(model, training), fly);
-  nlohmann::json result = {{"trajectory", "figure-eight"},
-                           {"half_length_m", eight->half_length_m},
-                           {"period_s", eight->period_s},
-                           {"model", loop_figures(by_model)},
-                           {"formula", loop_figures(fly(analytic))},
-                           {"hover_trim", loop_figures(fly(trim))}};
+  result["model"] = loop_figures(by_model);
   result["model"]["answered_share"] = answered_share(by_model.fallback);
   return result;
 }

@@ -37,8 +37,8 @@ inline double mean_validation_mae(const JudgedKind& kind) {
 
 }  // namespace detail
 
-/// The kinds that may be exported, indices of judged.kinds, best first; none if nothing fits the choice. After a
-/// rotation by their held-out error: every flight was held out once, and the export is fitted anew. Else by their error
+/// The kinds that may be exported, indices of judged.kinds, best first; none if nothing fits the choice. One whose signs
+/// are not proven is exported by its name alone. After a rotation by their held-out error: every flight was held out once, and the export is fitted anew. Else by their error
 /// on the validation rows: the rows held out have no say.
 /// Throws std::invalid_argument for the key of a kind that was not judged.
 inline std::vector<std::size_t> kinds_to_export(const JudgedKinds& judged, const std::string& choice, bool rotated) {
@@ -48,9 +48,10 @@ inline std::vector<std::size_t> kinds_to_export(const JudgedKinds& judged, const
     throw std::invalid_argument("--export " + choice + ": not applicable: " + judged.kinds[k].not_applicable);
   }
   std::vector<std::size_t> order = ranking(judged, choice == export_centred);
-  order.erase(
-      std::remove_if(order.begin(), order.end(), [&judged](std::size_t k) { return !judged.kinds[k].kind.exportable; }),
-      order.end());
+  order.erase(std::remove_if(
+                  order.begin(), order.end(),
+                  [&judged](std::size_t k) { return !judged.kinds[k].kind.exportable || !judged.kinds[k].proven(); }),
+              order.end());
   if (rotated) return order;
   const auto error_of = [&judged](std::size_t k) { return detail::mean_validation_mae(judged.kinds[k]); };
   order.erase(std::remove_if(order.begin(), order.end(), [&](std::size_t k) { return !std::isfinite(error_of(k)); }),
@@ -119,7 +120,7 @@ inline pinnquad::Provenance provenance_of(const Fold& fold, const pinnquad::Data
   const char* words = kind.words != nullptr ? kind.words : kind.title;
   pinnquad::Provenance from{flights, pinnquad::content_hash(dataset), rows, seed, epochs, words, verdict};
   from.sample_period_s = pinnquad::sample_period_s(fold.split.train);
-  from.lag_removed_s = lag_removed_s;
+  from.lag_removed_s = std::max(lag_removed_s, 0.0);  // below 0 it is none of the rotors
   return from;
 }
 

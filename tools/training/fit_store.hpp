@@ -47,6 +47,7 @@ class FitStore : public KnownFits {
     loaded.fit_s = head.fit_s;
     loaded.derivatives = head.derivatives;
     loaded.altitude = head.altitude;
+    loaded.proven = head.proven != 0;
     job = std::move(loaded);
     return true;
   }
@@ -61,6 +62,7 @@ class FitStore : public KnownFits {
     head.fit_s = job.fit_s;
     head.derivatives = job.derivatives;
     head.altitude = job.altitude;
+    head.proven = job.proven ? 1 : 0;
     pinnquad::AtomicFile file(path_of(job));
     write(file.stream(), head);
     for (const auto& row : job.held_out) write(file.stream(), row);
@@ -79,11 +81,12 @@ class FitStore : public KnownFits {
  private:
   /// As this machine has it in memory: such a file is read by the program that wrote it.
   struct Head {
-    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '2'};
+    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '3'};
     std::uint64_t key = 0, rows = 0;
     double validation_mae = 0, fit_s = 0;
     DerivativeFigures derivatives;
     AltitudeChoice altitude;
+    std::uint64_t proven = 0;
   };
   static_assert(std::is_trivially_copyable_v<Head>);
 

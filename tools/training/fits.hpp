@@ -52,6 +52,7 @@ struct FinishedFit {
   double fit_s = 0;
   DerivativeFigures derivatives;  ///< over the rows held out
   AltitudeChoice altitude;
+  bool proven = false;                          ///< TrainedNetwork::is_proven()
   std::shared_ptr<const TrainedNetwork> model;  ///< null: taken from a file of an earlier run
 };
 
@@ -122,6 +123,7 @@ inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) 
   job.model = kind.fit(task);
   job.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   job.altitude = job.model->altitude();
+  job.proven = job.model->is_proven();
   if (!kind.takes_validation(plan.settings)) {
     job.validation_mae = error_of(*job.model);
   } else if (plan.folds.size() == 1 && job.seed == plan.first_seed && !fold.split.test.empty()) {

@@ -25,6 +25,7 @@ struct JudgedFit {
   Judgement judged;
   double validation_mae = pinnquad::not_a_number;
   double fit_s = 0;
+  bool proven = false;
 };
 
 struct JudgedKind {
@@ -35,6 +36,10 @@ struct JudgedKind {
 
   bool applicable() const { return not_applicable.empty(); }
   std::size_t folds() const { return seeds.empty() ? 0 : fits.size() / seeds.size(); }
+  /// Of every fit it is proven that the commands turn the vehicle the way that is asked.
+  bool proven() const {
+    return std::all_of(fits.begin(), fits.end(), [](const JudgedFit& fit) { return fit.proven; });
+  }
   const JudgedFit& at(std::size_t seed, std::size_t fold) const { return fits[seed * folds() + fold]; }
 };
 
@@ -147,9 +152,9 @@ inline JudgedKinds judge_fits(const FitPlan& plan, const Fits& fits) {
       for (const FinishedFit* fit : of_seed) {
         const pinnquad::RowSet& rows = plan.folds[fit->fold].split.test;
         const std::vector<bool>& counts = result.counts[fit->fold];
-        kind.fits.push_back({fit->fold, seed, flight_errors(rows, fit->held_out, counts),
-                             error_by_flight(rows, fit->held_out, counts),
-                             detail::judgement_of(plan, rows, *fit, counts), fit->validation_mae, fit->fit_s});
+        kind.fits.push_back(
+            {fit->fold, seed, flight_errors(rows, fit->held_out, counts), error_by_flight(rows, fit->held_out, counts),
+             detail::judgement_of(plan, rows, *fit, counts), fit->validation_mae, fit->fit_s, fit->proven});
       }
     }
     if (kind.seeds.empty()) kind.not_applicable = "not finished: interrupted before every parting had a fit";

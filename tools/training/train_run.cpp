@@ -243,6 +243,11 @@ class Training {
     return recipe_ ? programs::Recipe::exported_of(plan_.kinds) : programs::export_causal;
   }
 
+  /// Of proven models the best.
+  bool is_default_choice() const {
+    return export_choice() == programs::export_causal || export_choice() == programs::export_centred;
+  }
+
   /// The verdict on a kind that may be exported: on the very fit, unless it is fitted anew.
   Verdict verdict_of(std::size_t kind) const {
     std::optional<std::uint64_t> seed;
@@ -257,7 +262,11 @@ class Training {
 
   int export_best() {
     const std::vector<std::size_t> order = programs::kinds_to_export(judged_, export_choice(), rotated());
-    if (order.empty()) return refuse("no model of the kind asked for was judged");
+    if (order.empty()) {
+      return refuse(
+          "no model of the kind asked for was judged of which it is proven that it turns the way it is told to",
+          "; --export NAME exports one of which it is not");
+    }
     chosen_ = order.front();
     const programs::ModelKind& first = judged_.kinds[*chosen_].kind;
     const Verdict verdict = verdict_of(*chosen_);
@@ -272,22 +281,26 @@ class Training {
     for (const std::size_t k : order) {
       if (k != order.front() && verdict_of(k).worse_than_mean()) continue;
       Exported next = exported(k);
+      if (is_default_choice() && !next.model->is_proven()) {
+        report_.warn(std::string(judged_.kinds[k].kind.title) +
+                     ", fitted to all flights, is not proven to turn the way it is told to: it stays out");
+        continue;
+      }
       next.flown = fly(next, judged_.kinds[k].kind);
-      const bool lost = programs::lost_vehicle(next.flown);
-      if (lost) {
-        report_.warn(std::string(judged_.kinds[k].kind.title) + " loses the vehicle in the closed loop (" +
-                     decimals(next.flown["model"]["largest_error_m"], 1) + " m off): not fit to fly" +
+      const std::string unfit = programs::unfit_to_fly(next.flown);
+      if (!unfit.empty()) {
+        report_.warn(std::string(judged_.kinds[k].kind.title) + " " + unfit + ": not fit to fly" +
                      (k != order.back() ? "; the next best is tried" : ""));
       }
-      if (!lost || !made) {
+      if (unfit.empty() || !made) {
         made = std::move(next);
         chosen_ = k;
       }
-      if (!lost) break;
+      if (unfit.empty()) break;
     }
-    if (order.size() > 1 && programs::lost_vehicle(made->flown)) {
-      report_.warn(
-          "every model loses the vehicle in the closed loop: what is exported is the best by its figures alone");
+    if (!made) return refuse("of no model that was fitted to all flights are the signs proven");
+    if (order.size() > 1 && !programs::unfit_to_fly(made->flown).empty()) {
+      report_.warn("no model is fit to fly in the closed loop: what is exported is the best by its figures alone");
     }
     write_with_warnings(*made);
     return 0;
@@ -321,9 +334,9 @@ class Training {
     write(made, kind.kind, verdict);
   }
 
-  /// A recipe exports what is proven, which may err more than what is not.
+  /// What is proven is exported, and may err more than what is not.
   void warn_of_better_kind(const programs::JudgedKind& exported) {
-    if (!recipe_ || !options_.export_choice.empty()) return;
+    if (!options_.export_choice.empty() || !exported.proven()) return;
     const auto least = [&](const programs::JudgedKind& kind) {
       double error = not_a_number;
       for (const programs::JudgedFit& fit : kind.fits) {
@@ -333,8 +346,8 @@ class Training {
     };
     const double own = least(exported);
     for (const programs::JudgedKind& kind : judged_.kinds) {
-      if (!kind.applicable() || !kind.kind.exportable || !(least(kind) < own)) continue;
-      report_.warn("the best " + std::string(kind.kind.title) + " network errs less on the validation rows (" +
+      if (!kind.applicable() || !kind.kind.exportable || kind.proven() || !(least(kind) < own)) continue;
+      report_.warn("the best " + std::string(kind.kind.title) + " errs less on the validation rows (" +
                    decimals(least(kind), 4) + " against " + decimals(own, 4) +
                    "), but nothing is proven of its signs; --export " + kind.kind.key + " exports it");
     }
@@ -365,8 +378,9 @@ class Training {
   }
 
   void write(const Exported& made, const programs::ModelKind& kind, const Verdict& verdict) {
-    const Provenance from = programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
-                                                    plan_.settings, made.seed, plan_.epochs, verdict);
+    Provenance from = programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
+                                              plan_.settings, made.seed, plan_.epochs, verdict);
+    from.signs_unproven = !made.model->is_proven();
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
     const pinnquad::Exported written = made.model->export_to({header, block, made.model->has_trust() ? trust : ""},
@@ -387,7 +401,7 @@ class Training {
     }
     std::printf("  %s: the same weights as a block of %zu bytes\n", block.c_str(), written.block_bytes);
     report_.trusted(trusted ? trust : "", written.no_trust_because);
-    tell_certificate(written.certificate);
+    tell_certificate(*made.model->block());
     tell_flight(made.flown);
     report_.write_exported(kind, made.seed, header, block);
     told_ = "Exported as " + header + ", struct " + options_.model_name + ", " +
@@ -398,28 +412,33 @@ class Training {
   }
 
   /// Proof of an export's signs, as `certify` finds it in the header.
-  void tell_certificate(const std::optional<Certificate>& certificate) {
-    if (!certificate || !certificate->proven()) {
+  void tell_certificate(const BlockModel& model) {
+    const std::optional<ProvenSigns> signs = model.proven_signs();
+    if (!signs) {
       std::printf("  nothing is proven of its signs: `pinnquad certify %s/model.hpp` looks for a counterexample\n",
                   options_.out.c_str());
       return;
     }
-    const AxisSlopes slopes = programs::held_slopes(*certificate), own = hover_slopes(plan_.airframe.value);
-    const double own_thrust = hover_thrust_slope(plan_.airframe.value);
-    report_.certified(*certificate, own, own_thrust);
+    const Airframe<double>& airframe = plan_.airframe.value;
+    const std::optional<Certificate> structure = signs->by == SignProof::affinity ? std::nullopt : model.certificate();
+    const AxisSlopes &slopes = signs->held_slope, own = hover_slopes(airframe);
+    const double own_thrust = hover_thrust_slope(airframe);
+    report_.certified(*signs, structure, airframe);
     std::printf(
         "  proven: each signed sum of the commands rises with the angular acceleration about its axis, for every "
         "input;\n"
-        "    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad: %.2f, %.2f, %.2f of the airframe's own in hover;\n"
-        "    thrust slope %.6f s^2/m: %.2f of the airframe's own in hover;\n"
-        "    %s\n",
-        slopes[0], slopes[1], slopes[2], slopes[0] / own[0], slopes[1] / own[1], slopes[2] / own[2],
-        certificate->held_thrust_slope, certificate->held_thrust_slope / own_thrust,
-        programs::bound_in_words(*certificate).c_str());
+        "    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad: %.2f, %.2f, %.2f of the airframe's own in hover;\n",
+        slopes[0], slopes[1], slopes[2], slopes[0] / own[0], slopes[1] / own[1], slopes[2] / own[2]);
+    if (structure) {
+      std::printf("    thrust slope %.6f s^2/m: %.2f of the airframe's own in hover;\n", structure->held_thrust_slope,
+                  structure->held_thrust_slope / own_thrust);
+    }
+    std::printf("    %s\n", programs::bound_in_words(structure).c_str());
     std::fflush(stdout);
     if (options_.airframe.empty() && options_.flights.empty()) return;  // whose airframe's?
     for (const std::string& doubt : programs::slope_doubts(slopes, own)) report_.warn(doubt);
-    if (const auto doubt = programs::thrust_doubt(*certificate, own_thrust)) report_.warn(*doubt);
+    if (!structure) return;
+    if (const auto doubt = programs::thrust_doubt(*structure, own_thrust)) report_.warn(*doubt);
   }
 
   /// The model in a closed loop on the vehicle that the logs show; what looks ahead is not flown on measured motion.
@@ -443,6 +462,11 @@ class Training {
         "without feed-forward %s\n",
         flown["period_s"].get<double>(), centimetres("model").c_str(), centimetres("formula").c_str(),
         centimetres("hover_trim").c_str());
+    const double answered = flown["model"]["answered_share"];
+    if (answered < 0.99 && programs::unfit_to_fly(flown).empty()) {
+      report_.warn("under its guard the model answered " + decimals(100 * answered, 1) +
+                   " % of the figure-eight, which the logs' own limits hold: the analytic inverse flew the rest");
+    }
     const std::string status = flown["model"]["status"];
     if (status != to_string(Status::ok)) {
       report_.warn("in the closed loop the model ended the flight after " + decimals(flown["model"]["flown_s"], 1) +

@@ -31,6 +31,8 @@ std::optional<pinnquad::Certificate> TrainedNetwork::certificate() const {
   return block() != nullptr ? block()->certificate() : std::nullopt;
 }
 
+bool TrainedNetwork::is_proven() const { return block() != nullptr && block()->proven_signs().has_value(); }
+
 BlockNetwork::BlockNetwork(const std::vector<unsigned char>& block) : block_("a trained model", block) {}
 
 Predictions BlockNetwork::predictions(const pinnquad::RowSet& rows) const { return answers(rows, false); }

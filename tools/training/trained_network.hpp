@@ -43,6 +43,8 @@ class TrainedNetwork {
   }
   /// As a program that has never seen its types flies it; null: a model to be compared with alone.
   virtual const pinnquad::BlockModel* block() const { return nullptr; }
+  /// Of it is proven that the commands turn the vehicle the way that is asked: pinnquad::BlockModel::proven_signs().
+  bool is_proven() const;
   /// Of its structure; none of a model without.
   std::optional<pinnquad::Certificate> certificate() const;
 };

@@ -260,7 +260,8 @@ inline nlohmann::json certificate_json(const nlohmann::json& report) {
         {{"name", name}, {"slope", shown::number(slope, 6)}, {"unit", unit}, {"ratio", shown::number(slope / own, 2)}});
   };
   for (const char* axis : axis_names) row(axis, proven["slope"][axis], proven["airframe_slope"][axis], "s²/rad");
-  row("thrust", proven["thrust_slope"], proven["airframe_thrust_slope"], "s²/m");
+  told["thrust"] = proven.contains("thrust_slope");
+  if (told["thrust"]) row("thrust", proven["thrust_slope"], proven["airframe_thrust_slope"], "s²/m");
   return told;
 }
 

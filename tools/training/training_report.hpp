@@ -262,16 +262,17 @@ class TrainingReport {
   }
 
   /// Of what was exported.
-  void certified(const pinnquad::Certificate& certificate, const pinnquad::AxisSlopes& airframe,
-                 double airframe_thrust_slope) {
-    const pinnquad::AxisSlopes slopes = held_slopes(certificate);
-    json_["certificate"] = {{"proven", certificate.proven()},
-                            {"command_bound", certificate.command_bound},
-                            {"slope", detail::by_axis(slopes)},
-                            {"airframe_slope", detail::by_axis(airframe)},
-                            {"thrust_slope", certificate.held_thrust_slope},
-                            {"airframe_thrust_slope", airframe_thrust_slope},
-                            {"in_words", bound_in_words(certificate)}};
+  /// `structure`: of a model that has one, besides.
+  void certified(const pinnquad::ProvenSigns& signs, const std::optional<pinnquad::Certificate>& structure,
+                 const pinnquad::Airframe<double>& airframe) {
+    json_["certificate"] = {{"proven", true},
+                            {"slope", detail::by_axis(signs.held_slope)},
+                            {"airframe_slope", detail::by_axis(pinnquad::hover_slopes(airframe))},
+                            {"in_words", bound_in_words(structure)}};
+    if (!structure) return;
+    json_["certificate"]["command_bound"] = structure->command_bound;
+    json_["certificate"]["thrust_slope"] = structure->held_thrust_slope;
+    json_["certificate"]["airframe_thrust_slope"] = pinnquad::hover_thrust_slope(airframe);
   }
   /// Limits of trust: their file, or why there is none.
   void trusted(const std::string& file, const std::string& why_not) {

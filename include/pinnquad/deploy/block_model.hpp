@@ -3,6 +3,7 @@
 // what is proven of it. Of any network, feature set, columns and outputs (exported/run_time_model.hpp).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -62,6 +63,18 @@ class RunTimeFlightInputs {
   std::vector<const std::vector<double>*> columns_;
 };
 
+/// No activation, no bound.
+inline bool is_affine(const RunTimeNetwork& network) {
+  for (int i = 0; i < network.part_count(); ++i) {
+    const RunTimePart& part = network.part(i);
+    if (part.bounded || part.path_bounded) return false;
+    for (int layer = 0; layer < part.layer_count; ++layer) {
+      if (part.layers[layer].outputs == 0) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace detail
 
 /// The answer of a model to a row.
@@ -70,6 +83,19 @@ struct AnsweredRow {
   AxisDerivatives derivatives{};  ///< in double; of a window by an acceleration that is held
   bool inside_envelope = true;
   std::vector<double> features{};  ///< in physical units, as the model's own scalar holds them
+};
+
+/// Why each signed sum of the commands rises with the angular acceleration about its axis, for all finite features.
+enum class SignProof {
+  structure,   ///< an affine base, and a residual that sees no angular acceleration
+  path_bound,  ///< an affine base, and a network whose paths from it leave the slopes above 0
+  affinity     ///< the model is affine: its derivatives are the same everywhere
+};
+
+/// s^2/rad: by the present angular acceleration alone, and by one that is held over the window.
+struct ProvenSigns {
+  SignProof by = SignProof::structure;
+  AxisDerivatives slope{}, held_slope{};
 };
 
 class BlockModel {
@@ -187,6 +213,30 @@ class BlockModel {
     const bool has_structure =
         with([&](const auto& model) { return run_time_certificate(model, work.data(), certificate); });
     return has_structure ? std::optional(certificate) : std::nullopt;
+  }
+  /// None: nothing is proven (which is no counterexample), or the model is asked no angular acceleration.
+  std::optional<ProvenSigns> proven_signs() const {
+    if (angular_accelerations().empty()) return {};
+    ProvenSigns proof;
+    if (const std::optional<Certificate> structure = certificate(); structure && structure->proven()) {
+      if (network().part(network().part_count() - 1).path_bounded) proof.by = SignProof::path_bound;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        proof.slope[axis] = structure->slope[axis];
+        proof.held_slope[axis] = structure->held_slope[axis];
+      }
+      return proof;
+    }
+    if (!has_affine_schema() || !detail::is_affine(network())) return {};
+    proof.by = SignProof::affinity;
+    const std::vector<double> anywhere = golden_features(0);
+    proof.slope = derivatives(anywhere, false);
+    proof.held_slope = derivatives(anywhere, true);
+    const auto vehicle = detail::certified_vehicle<AxisCommandOutputs>(airframe());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double floor = std::max(vehicle.least_slope[axis], 0.0);
+      if (!(proof.slope[axis] > floor && proof.held_slope[axis] > floor)) return {};
+    }
+    return proof;
   }
 
   /// Commands of features in physical units, in the model's own scalar.

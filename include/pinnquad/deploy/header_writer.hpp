@@ -198,6 +198,9 @@ std::uint64_t write_struct(std::ostream& out, const std::string& struct_name, co
   if (provenance.verdict && provenance.verdict->worse_than_mean()) {
     out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
   }
+  if (provenance.signs_unproven) {
+    out << "// NOT PROVEN: it may command less torque where more angular acceleration is asked (pinnquad certify).\n";
+  }
   out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n";
   std::string vehicle;
   if constexpr (own_airframe) {

@@ -48,8 +48,9 @@ struct Provenance {
   std::optional<CommandMeaning> command_meaning = std::nullopt;
   double command_lower = 0;  ///< the range that commands were given in
   double command_upper = 1;
-  double sample_period_s = 0;  ///< of the flights; 0: not said, or that of the features' window
-  double lag_removed_s = 0;    ///< of the rotors, taken out of the commands before the training
+  double sample_period_s = 0;   ///< of the flights; 0: not said, or that of the features' window
+  double lag_removed_s = 0;     ///< of the rotors, taken out of the commands before the training
+  bool signs_unproven = false;  ///< the header says so in its first lines
 
   // what was found out besides, for guards and certificates
   std::optional<detail::TorqueSigns> slope_signs = std::nullopt;  ///< proven signs of du/d(ang. acc.)

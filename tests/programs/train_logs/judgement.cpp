@@ -130,11 +130,19 @@ TEST_CASE("with fewer flights than a test needs nothing is called a success") {
   CHECK(run.of("spoiled").standing == Standing::no_better);
 }
 
+/// As if of every fit the signs were proven.
+void prove(programs::JudgedKinds& judged) {
+  for (programs::JudgedKind& kind : judged.kinds) {
+    for (programs::JudgedFit& fit : kind.fits) fit.proven = true;
+  }
+}
+
 TEST_CASE("models that look ahead are ranked apart, and are no simpler model of one that does not") {
-  const Judged run(8,
-                   {pinnquad_test::constant_kind(), pinnquad_test::oracle_kind(programs::TimeReach::centred),
-                    pinnquad_test::linear_kind()},
-                   each_flight);
+  Judged run(8,
+             {pinnquad_test::constant_kind(), pinnquad_test::oracle_kind(programs::TimeReach::centred),
+              pinnquad_test::linear_kind()},
+             each_flight);
+  prove(run.judged);
   CHECK(programs::ranking(run.judged, false) == std::vector<std::size_t>{2, 0});
   CHECK(programs::ranking(run.judged, true) == std::vector<std::size_t>{1});
   CHECK(programs::kinds_to_export(run.judged, "causal", true) == std::vector<std::size_t>{2, 0});
@@ -228,11 +236,16 @@ TEST_CASE("what is exported: by validation, none that diverged, of a recipe what
   CHECK(Recipe::exported_of(kinds({"linearized", "constant_weight", "pearson"})) == "constant_weight");
 
   Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::linear_kind()}, {{"flight2"}, {}}, 1);
+  prove(run.judged);
   CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{1, 0});
   // the rows held out have no say: what errs less on the validation rows goes first
   run.judged.kinds[0].fits[0].validation_mae = run.judged.kinds[1].fits[0].validation_mae / 2;
   CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{0, 1});
   CHECK(programs::kinds_to_export(run.judged, "causal", true) == std::vector<std::size_t>{1, 0});
+  run.judged.kinds[0].fits[0].proven = false;  // of which nothing is proven is exported by its name alone
+  CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{1});
+  CHECK(programs::kinds_to_export(run.judged, "constant", false) == std::vector<std::size_t>{0});
+  run.judged.kinds[0].fits[0].proven = true;
   run.judged.kinds[1].kind.exportable = false;
   CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{0});
 }
