@@ -12,17 +12,6 @@
 #include "past_model.hpp"
 #include "stacks.hpp"
 
-namespace pinnquad::autopilot::test {
-
-/// It is no exported header, and says less of itself.
-template <>
-Block sound_block<PastModel>() {
-  const auto& golden = PastModel::golden_features;
-  return pinnquad::model_block(trained_model<PastModel>(), {golden.begin(), golden.end()}, {});
-}
-
-}  // namespace pinnquad::autopilot::test
-
 namespace {
 
 using namespace pinnquad::autopilot::test;
