@@ -160,7 +160,7 @@ bool replay(const Inverse& inverse, const std::vector<ReplayRow>& rows) {
   return agrees;
 }
 
-/// Nanoseconds per predict(), best of several passes over the replay: each call depends on the one before.
+/// Nanoseconds per answer, best of several passes over the replay: each call depends on the one before.
 template <class Inverse>
 double nanoseconds_per_prediction(const Inverse& inverse, const std::vector<ReplayRow>& rows) {
   using Clock = std::chrono::steady_clock;
@@ -308,8 +308,8 @@ int fly_model(const Flown& model, const std::vector<ReplayRow>& rows, const Colu
   std::printf("  self test    %zu golden vectors: %s\n", model.golden_features.size(), to_string(tested));
   if (tested != Status::ok) return programs::exit_failed;
   const bool agrees = replay(inverse, rows);
-  std::printf("  speed        %.0f ns per predict(), checks and features included\n",
-              nanoseconds_per_prediction(inverse, rows));
+  std::printf("  speed        %.0f ns per %s\n", nanoseconds_per_prediction(inverse, rows),
+              asks_for_motion ? "predict(), checks and features included" : "predict_features(), checks included");
   const bool flew = closed_loop(model, columns);
   if (!agrees || !flew) programs::complain("fly_export", "the export does not fly as it should");
   return agrees && flew ? 0 : programs::exit_failed;
