@@ -59,6 +59,12 @@ struct TrajectorySetpoint {
   float yawspeed{0};        ///< rad/s
 };
 
+struct BatteryStatus {
+  std::uint64_t timestamp{0};
+  bool connected{false};
+  float voltage_v{0};  ///< V; 0: not known
+};
+
 /// Thrust of each motor over its greatest, 0..1. The motor order of a PX4 quadrotor in X is pinnquad's.
 struct ActuatorMotors {
   std::uint64_t timestamp{0};
@@ -107,7 +113,7 @@ struct PinnquadStatus {
   std::uint8_t reaction{0};      ///< pinnquad::autopilot::Reaction
   std::uint8_t status{0};        ///< pinnquad::Status
   std::uint8_t cause{0};         ///< pinnquad::Status of the network alone
-  std::uint8_t stale_inputs{0};  ///< bit 0 body rates, 1 attitude, 2 local position, 3 set point
+  std::uint8_t stale_inputs{0};  ///< bit 0 body rates, 1 attitude, 2 local position, 3 set point, 4 battery voltage
 };
 
 /// `Model` is an exported header; the weights come as a model block. `Controller`: one that records its inputs
@@ -162,6 +168,11 @@ class NeuralControl {
     wanted.yaw_rad = m.yaw;
     wanted.yaw_rate_rad_s = m.yawspeed;
     return controller_.set_point(m.timestamp, wanted);
+  }
+
+  /// For a model that asks for it; `out_of_range` of a battery that is not there.
+  pinnquad::Status take(const BatteryStatus& m) noexcept {
+    return m.connected ? controller_.battery_voltage(m.timestamp, m.voltage_v) : pinnquad::Status::out_of_range;
   }
 
   /// The motors' owner, and whether the vehicle stands (vehicle_status, vehicle_land_detected).

@@ -241,6 +241,11 @@ void PinnquadControl::take_samples() {
   if (_battery_sub.update(&battery)) {
     const bool scales = _param_battery_scale.get() != 0 && battery.connected;
     _core.battery_scale(scales ? battery.scale : 1.0f);
+    pinnquad_px4::BatteryStatus sample;
+    sample.timestamp = battery.timestamp;
+    sample.connected = battery.connected;
+    sample.voltage_v = battery.voltage_v;
+    static_cast<void>(_core.take(sample));
   }
   take_set_point();
 }

@@ -16,6 +16,7 @@ void copy_record(const pinnquad::autopilot::CoreRecord& from, Message& to) {
   to.attitude_us = from.attitude_us;
   to.local_us = from.local_us;
   to.set_point_us = from.set_point_us;
+  to.voltage_us = from.voltage_us;
   to.tick = from.tick;
   to.model = from.model;
   to.refused_samples = from.refused_samples;
@@ -29,6 +30,7 @@ void copy_record(const pinnquad::autopilot::CoreRecord& from, Message& to) {
   memcpy(to.wanted_jerk_m_s3, from.wanted_jerk_m_s3, sizeof to.wanted_jerk_m_s3);
   to.wanted_yaw_rad = from.wanted_yaw_rad;
   to.wanted_yaw_rate_rad_s = from.wanted_yaw_rate_rad_s;
+  to.battery_voltage = from.battery_voltage;
   memcpy(to.bias_m_s2, from.bias_m_s2, sizeof to.bias_m_s2);
   memcpy(to.predicted_velocity_m_s, from.predicted_velocity_m_s, sizeof to.predicted_velocity_m_s);
   memcpy(to.jump_position_m, from.jump_position_m, sizeof to.jump_position_m);

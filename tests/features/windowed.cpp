@@ -210,9 +210,10 @@ TEST_CASE("between samples of which one cannot be read there is none") {
     };
     const auto time_of = [&](int i) { return times_s[std::size_t(i)]; };
     MotionInputs<double> found;
-    CHECK(detail::read_at<double>(Past::Window{}, 0.01, 0, 2, 2, time_of, read, found) == (unreadable == 2));
-    CHECK(detail::read_at<double>(Past::Window{}, 0.03, 0, 2, 2, time_of, read, found) == (unreadable == 0));
-    CHECK(detail::read_at<double>(Past::Window{}, 0.02, 0, 2, 2, time_of, read, found) == (unreadable != 1));
+    int at = 2;
+    CHECK(detail::read_at<double>(Past::Window{}, 0.01, 0, 2, at, time_of, read, found) == (unreadable == 2));
+    CHECK(detail::read_at<double>(Past::Window{}, 0.03, 0, 2, at, time_of, read, found) == (unreadable == 0));
+    CHECK(detail::read_at<double>(Past::Window{}, 0.02, 0, 2, at, time_of, read, found) == (unreadable != 1));
   }
 }
 

@@ -36,6 +36,7 @@ using pinnquad::Vector3;
 enum class Estimator { kalman, complementary, ukf };
 
 std::uint32_t tick_ms = 0;
+float battery_V = 3.9f;
 
 /// The firmware calls it flying until 2 s have passed since any motor turned above the idle thrust, which is 0 on this
 /// platform. It looks at the motors 25 times a second.
@@ -272,6 +273,7 @@ class Firmware {
 
 extern "C" {
 uint32_t xTaskGetTickCount(void) { return tick_ms; }
+float pmGetBatteryVoltage(void) { return battery_V; }
 uint64_t usecTimestamp(void) { return std::uint64_t{tick_ms} * 1000; }
 void eventTrigger(const eventtrigger* event) { card.trigger(*event); }
 void vTaskDelay(uint32_t) { std::longjmp(app_waits, 1); }

@@ -26,7 +26,8 @@ enum class FaultKind {
   model_soft,        ///< a sound one whose thrust makes 40 % of what is asked beyond hover
   payload,           ///< the vehicle weighs `value` times what it did
   bent_rotor,        ///< rotor 1 makes `value` of its thrust
-  flown_by_hand,     ///< the pilot has it, or it is disarmed: nothing is asked of the module
+  battery_stops,
+  flown_by_hand,  ///< the pilot has it, or it is disarmed: nothing is asked of the module
 };
 
 struct Fault {

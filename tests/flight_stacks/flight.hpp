@@ -47,7 +47,7 @@ class FaultyFlight {
   using Model = typename Stack::Model;
   using Vehicle = pinnquad::AgileFlight::Vehicle;
 
-  static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20;
+  static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20, battery_period_ms = 200;
 
   explicit FaultyFlight(const CoreSettings& settings = {})
       : stack_(settings),
@@ -217,6 +217,7 @@ class FaultyFlight {
     if (due(attitude_period_ms) && !faulty(FaultKind::attitude_stops)) stack_.attitude(stamp_us, q);
     if (due(local_period_ms) && !faulty(FaultKind::local_stops)) stack_.local(stamp_us, position, velocity);
     if (due(set_point_period_ms) && !faulty(FaultKind::set_point_stops)) stack_.set_point(stamp_us, point);
+    if (due(battery_period_ms)) stack_.battery(stamp_us, faulty(FaultKind::battery_stops) ? 0 : 15);
   }
 
   template <class Faults>
@@ -229,9 +230,9 @@ class FaultyFlight {
       if (answer.reaction <= Reaction::levels && answer.status == Status::fell_back) ++figures_.fell_back[i];
     }
     if (answer.reaction != last_.reaction || answer.stale_inputs != last_.stale_inputs) {
-      constexpr const char* names[4] = {"body rates", "attitude", "position", "set point"};
+      constexpr const char* names[5] = {"body rates", "attitude", "position", "set point", "battery voltage"};
       std::string stale;
-      for (unsigned i = 0; i < 4; ++i) {
+      for (unsigned i = 0; i < 5; ++i) {
         if (answer.stale_inputs >> i & 1u) stale += std::string(stale.empty() ? " (stale: " : ", ") + names[i];
       }
       std::string line = to_string(answer.reaction) + (stale.empty() ? "" : stale + ")");

@@ -36,10 +36,15 @@ struct TrustOf {
   using type = void;
 };
 
-/// The exported model.
+/// The exported model. A header of the first format can't say all that a block does: its block is as of a training.
 template <class Model>
 Block sound_block() {
-  return pinnquad::model_block<Model, typename TrustOf<Model>::type>();
+  if constexpr (Model::format_version < 2) {
+    return pinnquad::model_block(trained_model<Model>(), {Model::golden_features.begin(), Model::golden_features.end()},
+                                 {});
+  } else {
+    return pinnquad::model_block<Model, typename TrustOf<Model>::type>();
+  }
 }
 
 /// The model after a training that went on: its weights moved by a thousandth each.

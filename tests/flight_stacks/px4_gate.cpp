@@ -3,15 +3,20 @@
 // The core of px4_module behind C functions, for the compile gates: its glue needs PX4's tree.
 #include <new>
 
+#if __has_include("model.hpp")
+#include "model.hpp"
+#else
 #include "models/demo_quadrotor.hpp"
+using TrainedQuadModel = DemoQuadModel;
+#endif
 #include "pinnquad/control/autopilot/recorded_controller.hpp"
 #include "px4_module/neural_control_core.hpp"
 
 namespace {
-using Core = pinnquad_px4::NeuralControl<DemoQuadModel>;
+using Core = pinnquad_px4::NeuralControl<TrainedQuadModel>;
 using RecordedCore =
-    pinnquad_px4::NeuralControl<DemoQuadModel,
-                                pinnquad::autopilot::Recorded<pinnquad::autopilot::NeuralController<DemoQuadModel>>>;
+    pinnquad_px4::NeuralControl<TrainedQuadModel,
+                                pinnquad::autopilot::Recorded<pinnquad::autopilot::NeuralController<TrainedQuadModel>>>;
 }  // namespace
 
 extern "C" {

@@ -271,7 +271,7 @@ TEST_CASE("a battery that sags: the controls grow by its scale where the paramet
     REQUIRE(shell("start") == PX4_OK);
     world.fly();
     uORB::Publication<battery_status_s> battery{ORB_ID(battery_status)};
-    battery.publish({World::now_us, connected, scale});
+    battery.publish({World::now_us, connected, scale, 15});
     world.run(20);
     return double(world.last.control[0]);
   };

@@ -92,6 +92,14 @@ class Px4StackOf {
     static_cast<void>(core_.take(m));
   }
 
+  void battery(std::uint64_t time_us, double volts) {
+    pinnquad_px4::BatteryStatus m;
+    m.timestamp = time_us;
+    m.connected = true;
+    m.voltage_v = static_cast<float>(volts);
+    static_cast<void>(core_.take(m));
+  }
+
   /// The module runs unselected too.
   void fly_by_hand(bool /*by_hand*/) {}
   void situation(const Situation& now) { core_.situation(now); }
@@ -175,6 +183,9 @@ class CrazyflieStackOf {
     for (std::uint8_t& mode : setpoint_.mode) mode = crazyflie_mode_abs;
     setpoint_.mode_yaw = crazyflie_mode_abs;
   }
+
+  /// Of each tick.
+  void battery(std::uint64_t /*time_us*/, double volts) { state_.battery_voltage = static_cast<float>(volts); }
 
   void fly_by_hand(bool by_hand) { by_hand_ = by_hand; }
   void situation(const Situation& now) {

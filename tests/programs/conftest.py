@@ -256,11 +256,13 @@ def compiler(request):
 
 @pytest.fixture(scope="session")
 def fly_export(compiler, flags):
-    """fly_export(header, folder): the program that flies this export, compiled in that folder."""
+    """fly_export(header, folder): the program that flies this export, compiled in that folder; `optimised` for less time
+    at the compiler."""
 
-    def build(header, folder="fly_export"):
+    def build(header, folder="fly_export", optimised="-O3 -DNDEBUG"):
         Program("cmake")("-G Ninja -DCMAKE_BUILD_TYPE=Release -S", SOURCE / "tools/fly_export", "-B", folder,
                          f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_CXX_FLAGS={' '.join(flags)}",
+                         f"-DCMAKE_CXX_FLAGS_RELEASE={optimised}",
                          f"-DPINNQUAD_MODEL_HEADER={Path(header).resolve()}")
         Program("cmake")("--build", folder)
         return Program(Path(folder, "fly_export").resolve())

@@ -40,6 +40,10 @@ class InputHistory<programs::FlightFeatures, Scalar, MostSamples, void> {
     return inputs_.complete ? Status::ok : Status::warming_up;
   }
   const Inputs& inputs() const noexcept { return inputs_; }
+  void clear() noexcept {
+    past_.clear();
+    inputs_.complete = false;
+  }
 
  private:
   using Samples = std::vector<detail::TimedInputs<Present>>;

@@ -16,6 +16,7 @@
 #include <model.hpp>  // the exported one, by the configuration
 
 #include "command_line/console.hpp"
+#include "command_line/held_columns.hpp"
 #include "command_line/options.hpp"
 #include "flight/loop_trajectories.hpp"
 #include "pinnquad/flight.hpp"
@@ -42,8 +43,14 @@ struct ZeroedModel : Model {
 /// A model that is shown the altitude flies near the ground, where it was trained.
 constexpr bool knows_altitude = std::is_base_of_v<MotionInputsWithAltitude<Scalar>, Model::Inputs>;
 
-/// Numbers of a row before the commands: the motion, and the altitude.
-constexpr std::size_t asked_numbers = knows_altitude ? 17 : 16;
+/// False of a model with a window or a column.
+constexpr bool asks_for_motion = !is_windowed<Model::Features> && extra_column_names<Model::Features>.size() == 0;
+
+/// Numbers of a row before the commands: the motion, and the altitude; of a model that asks for more, its features.
+constexpr std::size_t asked_numbers = !asks_for_motion ? static_cast<std::size_t>(Model::Features::size)
+                                      : knows_altitude ? 17
+                                                       : 16;
+using Asked = std::conditional_t<asks_for_motion, Model::Inputs, std::array<Scalar, Model::Features::size>>;
 
 /// Of a model that asks for it.
 template <class Inputs>
@@ -51,9 +58,45 @@ void set_altitude([[maybe_unused]] Inputs& inputs, [[maybe_unused]] double altit
   if constexpr (knows_altitude) inputs.altitude_m = Scalar(altitude_m);
 }
 
+template <class Numbers>
+void read_asked(const Numbers& v, Model::Inputs& inputs) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    inputs.linear_acceleration_m_s2[i] = Scalar(v[k]);
+    inputs.angular_acceleration_rad_s2[i] = Scalar(v[3 + k]);
+    inputs.velocity_m_s[i] = Scalar(v[6 + k]);
+    inputs.body_rates_rad_s[i] = Scalar(v[9 + k]);
+  }
+  inputs.attitude = {Scalar(v[12]), Scalar(v[13]), Scalar(v[14]), Scalar(v[15])};
+  set_altitude(inputs, v[16]);
+}
+template <class Numbers>
+void read_asked(const Numbers& v, std::array<Scalar, Model::Features::size>& features) noexcept {
+  for (std::size_t i = 0; i < features.size(); ++i) features[i] = Scalar(v[i]);
+}
+
+template <class Inverse>
+Status ask(const Inverse& inverse, const Model::Inputs& inputs, Commands<Scalar>& commands) noexcept {
+  return inverse.predict(inputs, commands);
+}
+template <class Inverse>
+Status ask(const Inverse& inverse, const std::array<Scalar, Model::Features::size>& features,
+           Commands<Scalar>& commands) noexcept {
+  return inverse.predict_features(features.data(), commands);
+}
+
+template <class AskedType>
+Scalar& first_number(AskedType& asked) noexcept {
+  if constexpr (asks_for_motion) {
+    return asked.velocity_m_s[0];
+  } else {
+    return asked[0];
+  }
+}
+
 /// A row of the replay file, as `train` writes it.
 struct ReplayRow {
-  Model::Inputs inputs;
+  Asked asked;
   std::array<double, rotor_count> predicted{};
   std::array<double, rotor_count> flown{};
 };
@@ -68,8 +111,9 @@ std::vector<ReplayRow> read_replay(const std::string& path) {
   std::size_t rows = 0;
   std::array<double, asked_numbers + 2 * rotor_count> v{};
   file >> magic >> version >> rows >> columns;
-  if (!file || magic != "pinnquad-replay" || version != 1 || columns != int(v.size()) || rows == 0) {
-    throw InputError(path, 1, 0, "'pinnquad-replay 1 <rows> " + std::to_string(v.size()) + "'", "something else");
+  const std::string expected = asks_for_motion ? "pinnquad-replay" : "pinnquad-replay-features";
+  if (!file || magic != expected || version != 1 || columns != int(v.size()) || rows == 0) {
+    throw InputError(path, 1, 0, "'" + expected + " 1 <rows> " + std::to_string(v.size()) + "'", "something else");
   }
   std::vector<ReplayRow> result;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -79,15 +123,7 @@ std::vector<ReplayRow> read_replay(const std::string& path) {
       }
     }
     ReplayRow r;
-    for (int i = 0; i < 3; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      r.inputs.linear_acceleration_m_s2[i] = Scalar(v[k]);
-      r.inputs.angular_acceleration_rad_s2[i] = Scalar(v[3 + k]);
-      r.inputs.velocity_m_s[i] = Scalar(v[6 + k]);
-      r.inputs.body_rates_rad_s[i] = Scalar(v[9 + k]);
-    }
-    r.inputs.attitude = {Scalar(v[12]), Scalar(v[13]), Scalar(v[14]), Scalar(v[15])};
-    set_altitude(r.inputs, v[16]);
+    read_asked(v, r.asked);
     for (std::size_t i = 0; i < rotor_count; ++i) {
       r.predicted[i] = v[asked_numbers + i];
       r.flown[i] = v[asked_numbers + rotor_count + i];
@@ -104,7 +140,7 @@ bool replay(const Inverse& inverse, const std::vector<ReplayRow>& rows) {
   std::size_t answered = 0, outside = 0;
   for (const ReplayRow& row : rows) {
     Commands<Scalar> commands{};
-    const Status status = inverse.predict(row.inputs, commands);
+    const Status status = ask(inverse, row.asked, commands);
     if (status == Status::outside_envelope) ++outside;
     if (status != Status::ok) continue;
     ++answered;
@@ -124,7 +160,7 @@ bool replay(const Inverse& inverse, const std::vector<ReplayRow>& rows) {
   return agrees;
 }
 
-/// Nanoseconds per predict(), best of several passes over the replay: each call depends on the one before.
+/// Nanoseconds per answer, best of several passes over the replay: each call depends on the one before.
 template <class Inverse>
 double nanoseconds_per_prediction(const Inverse& inverse, const std::vector<ReplayRow>& rows) {
   using Clock = std::chrono::steady_clock;
@@ -135,9 +171,9 @@ double nanoseconds_per_prediction(const Inverse& inverse, const std::vector<Repl
   for (int pass = 0; pass < passes; ++pass) {
     const auto start = Clock::now();
     for (const ReplayRow& row : rows) {
-      Model::Inputs inputs = row.inputs;
-      inputs.velocity_m_s[0] += commands[0] * Scalar(1e-12);  // chains the calls
-      const Status status = inverse.predict(inputs, commands);
+      Asked asked = row.asked;
+      first_number(asked) += commands[0] * Scalar(1e-12);  // chains the calls
+      const Status status = ask(inverse, asked, commands);
       sink += status == Status::ok ? commands[1] : Scalar(0);
     }
     const double ns = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
@@ -151,15 +187,41 @@ using Distant = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
 using NearGround = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
 using Vehicle = std::conditional_t<knows_altitude, NearGround, Distant>;
 
-/// Height above the ground as an altimeter measures it: exactly, in the simulator.
-struct Altimeter {
+constexpr auto column_names = extra_column_names<Model::Features>;
+constexpr auto column_units = extra_column_units<Model::Features>;
+using Columns = std::array<Scalar, column_names.size()>;
+
+/// Measured beside the motion: the height above the ground, exactly; columns that stand still.
+struct Measured {
   double ground_z_m = 0;
+  Columns columns{};
 
   template <class Inputs>
   void operator()(const State<double>& state, std::uint64_t, Inputs& present) const noexcept {
     set_altitude(present, ground_z_m - state.position_m[2]);
+    set_columns(present, columns.data());
   }
 };
+
+struct Column {
+  std::string name, unit;
+};
+
+/// What the columns stand at in the closed loop: where nothing is given, in the middle of the training envelope.
+Columns column_values(const std::vector<std::string>& given) {
+  std::vector<Column> asked;
+  for (std::size_t i = 0; i < column_names.size(); ++i) asked.push_back({column_names[i], column_units[i]});
+  const std::vector<std::optional<double>> values = programs::held_columns(asked, given);
+  Columns columns{};
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    std::size_t feature = 0;
+    while (asked[i].name != Model::Features::names[feature]) ++feature;
+    const double middle = 0.5 * (static_cast<double>(Model::envelope_lower[feature]) +
+                                 static_cast<double>(Model::envelope_upper[feature]));
+    columns[i] = Scalar(values[i].value_or(middle));
+  }
+  return columns;
+}
 
 /// Where the model was trained, if it is shown the altitude.
 std::optional<programs::NearGround> near_ground() {
@@ -191,7 +253,7 @@ TrackingResult<double> fly(const char* label, const Vehicle& vehicle, const Figu
 
 /// The closed loop. True if the export flew it, mostly by itself, and its weights were worth having.
 template <class Flown>
-bool closed_loop(const Flown& model) {
+bool closed_loop(const Flown& model, const Columns& columns) {
   const Vehicle vehicle(airframe_value<Model::Vehicle, double>(), paper_site<double>());
   if (vehicle.status() != Status::ok) {
     programs::complain("fly_export",
@@ -201,31 +263,35 @@ bool closed_loop(const Flown& model) {
   const FigureEight<double> trajectory =
       programs::eight_for(vehicle.airframe(), vehicle.site().ground_z_m, near_ground());
   const AnalyticInverse<Vehicle> analytic(vehicle);
-  const Altimeter altimeter{vehicle.site().ground_z_m};
+  const Measured measured{vehicle.site().ground_z_m, columns};
   HoverTrim<double> trim;
   if (hover_trim(vehicle, trajectory.center_m, trim) != Status::ok) return false;
   std::printf(
       "  closed loop  figure-eight, period %.1f s, %.0f s at 1 kHz, commands at 500 Hz; same feedback throughout\n",
       trajectory.period_s, TrackingPlan<double>{}.duration_s);
   if constexpr (knows_altitude) {
-    const double middle = altimeter.ground_z_m - trajectory.center_m[2];
+    const double middle = measured.ground_z_m - trajectory.center_m[2];
     std::printf("               in ground effect, %.2f to %.2f m above the ground\n", middle - trajectory.half_height_m,
                 middle + trajectory.half_height_m);
+  }
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    std::printf("               %s held at %g %s\n", printable(column_names[i]).c_str(), double(columns[i]),
+                printable(column_units[i]).c_str());
   }
   std::printf("  %-28s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "fell back to analytic");
   using Guard = Extend<TrainingGuard, Fallback<AnalyticInverse<Vehicle>>>;
   using Guarded = InverseDynamics<Flown, Guard>;
   using Zeroed = InverseDynamics<ZeroedModel, Guard>;
   const auto exported =
-      fly("export", vehicle, trajectory, NetworkInverse<Guarded, Altimeter>(Guarded(model, analytic), altimeter));
+      fly("export", vehicle, trajectory, NetworkInverse<Guarded, Measured>(Guarded(model, analytic), measured));
   fly("analytic inverse", vehicle, trajectory, analytic);
   if constexpr (knows_altitude) {
     fly("analytic, no ground effect", vehicle, trajectory,
         AnalyticInverse<Distant>(Distant(vehicle.airframe(), vehicle.site(), {}, {})));
   }
   fly("none (hover trim)", vehicle, trajectory, trim);
-  const auto zeroed = fly("export, weights zeroed", vehicle, trajectory,
-                          NetworkInverse<Zeroed, Altimeter>(Zeroed(analytic), altimeter));
+  const auto zeroed =
+      fly("export, weights zeroed", vehicle, trajectory, NetworkInverse<Zeroed, Measured>(Zeroed(analytic), measured));
   const double fallbacks = static_cast<double>(exported.fallback.fallbacks()) / exported.fallback.asked;
   if (fallbacks > fallback_limit) {
     std::printf("  the export declined %.1f %% of the samples: more than %.0f %%\n", 100 * fallbacks,
@@ -236,21 +302,21 @@ bool closed_loop(const Flown& model) {
 
 /// Self test, replay, speed, closed loop: the exit code.
 template <class Flown>
-int fly_model(const Flown& model, const std::vector<ReplayRow>& rows) {
+int fly_model(const Flown& model, const std::vector<ReplayRow>& rows, const Columns& columns) {
   const InverseDynamics<Flown> inverse(model);
   const Status tested = self_test(inverse);
   std::printf("  self test    %zu golden vectors: %s\n", model.golden_features.size(), to_string(tested));
   if (tested != Status::ok) return programs::exit_failed;
   const bool agrees = replay(inverse, rows);
-  std::printf("  speed        %.0f ns per predict(), checks and features included\n",
-              nanoseconds_per_prediction(inverse, rows));
-  const bool flew = closed_loop(model);
+  std::printf("  speed        %.0f ns per %s\n", nanoseconds_per_prediction(inverse, rows),
+              asks_for_motion ? "predict(), checks and features included" : "predict_features(), checks included");
+  const bool flew = closed_loop(model, columns);
   if (!agrees || !flew) programs::complain("fly_export", "the export does not fly as it should");
   return agrees && flew ? 0 : programs::exit_failed;
 }
 
 /// The same for the weights of a block that a later training has written for this header.
-int fly_block(const std::string& path, const std::vector<ReplayRow>& rows) {
+int fly_block(const std::string& path, const std::vector<ReplayRow>& rows, const Columns& columns) {
   require_regular_file(path);
   std::ifstream file(path, std::ios::binary);
   const std::vector<char> block{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -263,22 +329,28 @@ int fly_block(const std::string& path, const std::vector<ReplayRow>& rows) {
   std::printf("  block        %s, %zu bytes, trained on %u rows\n", path.c_str(), block.size(), view.training_rows);
   static LoadedModel<Model> loaded;
   if (loaded.load(view) != Status::ok) return programs::exit_failed;
-  return fly_model(loaded, rows);
+  return fly_model(loaded, rows, columns);
 }
 
 int run(int argument_count, char** arguments) {
   std::string path, block;
+  std::vector<std::string> given;
   CLI::App app{"Flies an exported model: self test, replay of its test flight, closed loop.", "fly_export"};
   app.footer("Exit codes: 0; 1 the export does not fly as it should; 2 bad input or a file that can't be read.");
   programs::add_path(app, "--replay", path, "FILE", "the test flight and the trainer's predictions, written by train")
       ->required();
   programs::add_path(app, "--block", block, "FILE",
                      "fly the weights of this model block, written by train, instead of the header's");
+  app.add_option("--column", given,
+                 "the value at which a column that the model asks for is held in the closed loop, in place of the "
+                 "middle of its training envelope: --column battery_voltage=15.2")
+      ->type_name("NAME=VALUE");
   if (const std::optional<int> code = programs::parse_command_line(app, argument_count, arguments)) return *code;
+  const Columns columns = column_values(given);
   const std::vector<ReplayRow> rows = read_replay(path);
   std::printf("  model        %s, %d parameters in %zu bytes, trained on %s (%d rows)\n", Model::name,
               Model::Network::parameter_count, sizeof Model::parameters, Model::training_data, Model::training_rows);
-  return block.empty() ? fly_model(Model{}, rows) : fly_block(block, rows);
+  return block.empty() ? fly_model(Model{}, rows, columns) : fly_block(block, rows, columns);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -61,6 +62,19 @@ inline const logs::LogColumn& core_column(const logs::LogTopic& topic, const std
 }
 
 }  // namespace detail
+
+/// Gives a topic a record's columns `names`, as a record is made, where it lacks them.
+template <class Names>
+void add_core_columns(logs::LogTopic& topic, const Names& names) {
+  const pinnquad::autopilot::CoreRecord layout{};
+  pinnquad::autopilot::CoreRecord::each_number(layout, [&](const char* name, const char*, const auto& value) {
+    if constexpr (!std::is_array_v<std::remove_reference_t<decltype(value)>>) {
+      const bool meant = std::find(names.begin(), names.end(), std::string_view(name)) != names.end();
+      if (!meant || topic.column(name) != nullptr || topic.text(name) != nullptr) return;
+      topic.columns.push_back({name, std::vector<double>(topic.size(), static_cast<double>(value))});
+    }
+  });
+}
 
 /// A Crazyflie's events (examples/crazyflie_app/src/core_log.h) say times in ms, under names of their own, and leave
 /// out what it does not know: that is as a record is made, or 0 of its settings. Columns are added to the topic.

@@ -26,8 +26,8 @@ inline std::string status_name(std::uint8_t number) {
                                           : pinnquad::to_string(static_cast<pinnquad::Status>(number));
 }
 
-inline constexpr std::array<const char*, 4> core_input_names = {"body rates", "attitude", "position and velocity",
-                                                                "set point"};
+inline constexpr std::array<const char*, 5> core_input_names = {"body rates", "attitude", "position and velocity",
+                                                                "set point", "battery voltage"};
 
 /// "attitude, set point" of bits; "none".
 inline std::string input_names(std::uint8_t bits) {
@@ -55,11 +55,12 @@ class CoreWords {
  public:
   explicit CoreWords(const pinnquad::autopilot::CoreSettings& settings)
       : settings_(settings),
-        limits_us_{settings.body_rates_us, settings.attitude_us, settings.local_us, settings.set_point_us} {}
+        limits_us_{settings.body_rates_us, settings.attitude_us, settings.local_us, settings.set_point_us,
+                   std::uint32_t{pinnquad::autopilot::voltage_limit_us}} {}
 
   void forget() { inputs_ = {}; }
 
-  /// A sample of input 0 to 3; `what` is wrong with it where it was refused.
+  /// A sample of input 0 to 4; `what` is wrong with it where it was refused.
   void came(int input, std::uint64_t time_us, pinnquad::Status status, const std::string& what) {
     Input& in = inputs_[static_cast<std::size_t>(input)];
     in.refused = status != pinnquad::Status::ok;
@@ -108,8 +109,8 @@ class CoreWords {
   }
 
   pinnquad::autopilot::CoreSettings settings_;
-  std::array<Input, 4> inputs_{};
-  std::array<std::uint32_t, 4> limits_us_;
+  std::array<Input, 5> inputs_{};
+  std::array<std::uint32_t, 5> limits_us_;
 };
 
 }  // namespace programs

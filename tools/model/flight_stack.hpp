@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "flight/block_feed_forward.hpp"
 #include "flight/run_time_view.hpp"
 #include "pinnquad/control/autopilot/neural_controller.hpp"
 
@@ -44,6 +45,30 @@ struct CoreFeatures {
     const pinnquad::RunTimeFeatures& features = model.features();
     return !model.is_double() && features.size() <= size && features.window().taps == 1 &&
            features.column_count() == 0 && !features.asks_for_altitude();
+  }
+};
+
+/// Features of a core with a window or the battery voltage. One set for the program: `of` says which.
+struct PastCoreFeatures : FlightFeatures {
+  static constexpr std::array<const char*, 1> column_names = {pinnquad::BatteryVoltage::name};
+  static constexpr std::array<const char*, 1> column_units = {pinnquad::BatteryVoltage::unit};
+
+  static inline const pinnquad::RunTimeFeatures* of = nullptr;
+  template <class Scalar>
+  static inline std::array<Scalar, std::size_t(size)> last{};  ///< X made last: what a report's feature was
+
+  template <class Scalar>
+  static void extract(const FlightInputs<Scalar>& in, Scalar* x) noexcept {
+    FlightFeatures::extract(in, x);
+    for (int i = 0; i < size; ++i) last<Scalar>[std::size_t(i)] = x[i];
+  }
+  /// True for a model that a core can fly: of the motion, its past, and the battery voltage.
+  static bool fits(const pinnquad::BlockModel& model) {
+    const pinnquad::RunTimeFeatures& features = model.features();
+    const bool known = features.column_count() == 0 ||
+                       (features.column_count() == 1 && features.column(0).name == pinnquad::BatteryVoltage::name &&
+                        features.column(0).unit == pinnquad::BatteryVoltage::unit);
+    return !model.is_double() && known && features.window().causal && !features.asks_for_altitude();
   }
 };
 
@@ -101,3 +126,31 @@ inline pinnquad::Airframe<float> flying_airframe(const pinnquad::BlockModel& mod
 }
 
 }  // namespace programs
+
+namespace pinnquad {
+
+/// Of a core, which gives it the motion and the voltage.
+template <class Scalar, int MostSamples>
+class InputHistory<programs::PastCoreFeatures, Scalar, MostSamples, void> {
+  using All = InputHistory<programs::FlightFeatures, Scalar>;
+
+ public:
+  using Inputs = typename All::Inputs;
+  using Present = typename WithColumns<PaperFeatures, BatteryVoltage>::template Inputs<Scalar>;
+
+  InputHistory() : past_(*programs::PastCoreFeatures::of) {}
+
+  Status take(const Present& present, double time_s) noexcept {
+    typename All::Present all;
+    static_cast<MotionInputs<Scalar>&>(all) = present;
+    all.columns[0] = present.columns[0];
+    return past_.take(all, time_s);
+  }
+  const Inputs& inputs() const noexcept { return past_.inputs(); }
+  void clear() noexcept { past_.clear(); }
+
+ private:
+  All past_;
+};
+
+}  // namespace pinnquad

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +15,7 @@
 
 #include "airframe/choice.hpp"
 #include "command_line/console.hpp"
+#include "command_line/held_columns.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
@@ -40,26 +40,7 @@ struct LoopOptions {
 /// The value of each column that the model asks for, in their order. Throws std::invalid_argument, one line.
 std::vector<double> column_values(const BlockModel& model, const std::vector<std::string>& given) {
   const std::vector<ColumnName> asked = model.columns();
-  std::vector<std::optional<double>> values(asked.size());
-  for (const std::string& text : given) {
-    const std::size_t equals = text.find('=');
-    const std::string name = text.substr(0, equals);
-    std::size_t at = 0;
-    while (at < asked.size() && asked[at].name != name) ++at;
-    if (at == asked.size()) {
-      throw std::invalid_argument(
-          "--column: the model asks for no column '" + printable(name) + "'; its columns: " +
-          (asked.empty() ? "none" : programs::listed(asked, [](const ColumnName& c) { return printable(c.name); })));
-    }
-    if (values[at]) throw std::invalid_argument("--column: " + printable(name) + " is given twice");
-    constexpr auto most = static_cast<double>(std::numeric_limits<float>::max());
-    double value = 0;
-    if (equals == std::string::npos || !programs::parse_decimal(text.substr(equals + 1), -most, most, value)) {
-      throw std::invalid_argument("--column: expected " + printable(name) + "=NUMBER in " + printable(asked[at].unit) +
-                                  ", found '" + printable(text) + "'");
-    }
-    values[at] = value;
-  }
+  const std::vector<std::optional<double>> values = programs::held_columns(asked, given);
   std::string missing;
   std::vector<double> result;
   for (std::size_t i = 0; i < asked.size(); ++i) {

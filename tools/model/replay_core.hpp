@@ -44,14 +44,17 @@ std::unique_ptr<CoreReplay> core_replay(const std::vector<pinnquad::BlockModel>&
 
 namespace detail {
 
+/// `Trust`: as a NeuralController's; it has a static set().
+template <class FeatureSet, class Trust>
 class CoreReplayOf : public CoreReplay {
-  using Shape = RunTimeShape<CoreFeatures, float>;
-  using View = RunTimeView<CoreFeatures, float>;
+  using Shape = RunTimeShape<FeatureSet, float>;
+  using View = RunTimeView<FeatureSet, float>;
   using Vehicle = pinnquad::Quadrotor<float, RecordedEffects>;
-  using Trust = RunTimeTrust<CoreFeatures>;
   using Controller = pinnquad::autopilot::NeuralController<Shape, View, Vehicle, Trust>;
   using Record = pinnquad::autopilot::CoreRecord;
   using Features = typename Shape::Features;
+  static constexpr bool trusts = !std::is_void_v<Trust>;
+  static constexpr std::uint8_t voltage_bit = pinnquad::autopilot::voltage_bit;
 
  public:
   CoreReplayOf(const std::vector<pinnquad::BlockModel>& models, const pinnquad::Airframe<float>& airframe,
@@ -61,7 +64,9 @@ class CoreReplayOf : public CoreReplay {
         options_(options),
         words_(options.settings) {
     const pinnquad::RunTimeFeatures& features = models.front().features();
-    CoreFeatures::of = &features;
+    FeatureSet::of = &features;
+    asks_for_voltage_ = features.column_count() > 0;
+    has_past_ = features.window().taps > 1;
     models.front().with([this](const auto& own) { take_trust(own); });
     for (const pinnquad::BlockModel& model : models) {
       if (model.feature_names() != models.front().feature_names()) {
@@ -89,6 +94,7 @@ class CoreReplayOf : public CoreReplay {
     } else {
       controller_->skip(record.timestamp);
     }
+    if (!asks_for_voltage_) report.stale_inputs = static_cast<std::uint8_t>(report.stale_inputs & ~voltage_bit);
     describe(record, report, commands, model, row);
     const bool known = is_known(record, report);
     if (known) {
@@ -114,7 +120,7 @@ class CoreReplayOf : public CoreReplay {
   }
   template <class Scalar>
   void take_trust([[maybe_unused]] const pinnquad::RunTimeModel<Scalar>& own) {
-    if constexpr (std::is_same_v<Scalar, float>) {
+    if constexpr (std::is_same_v<Scalar, float> && trusts) {
       if (options_.settings.distance_limit > 0) has_trust_ = Trust::set(own);
     }
   }
@@ -127,7 +133,7 @@ class CoreReplayOf : public CoreReplay {
     refused_base_ = 0;
     refused_base_known_ = true;
     unknown_inputs_ = 0;
-    holding_unknown_ = answer_unknown_ = false;
+    holding_unknown_ = answer_unknown_ = past_unknown_ = false;
   }
 
   /// Ticks that are missing: the controller is put together again from what the record says came last.
@@ -137,11 +143,12 @@ class CoreReplayOf : public CoreReplay {
     restart();
     if (from_the_start) return;
     holding_unknown_ = answer_unknown_ = true;
+    past_unknown_ = has_past_;
     window_known_us_ = record.timestamp + 2 * Controller::residual_window_us;
     alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * Controller::alarm_clear_s);
     controller_->resume(record);
-    take_inputs(record, static_cast<std::uint8_t>(~record.came & 15));
-    for (int i = 0; i < 4; ++i) {  // what was refused hides the good one before it
+    take_inputs(record, static_cast<std::uint8_t>(~record.came & 31));
+    for (int i = 0; i < 5; ++i) {  // what was refused hides the good one before it
       if (words_.refused(i)) unknown_inputs_ = static_cast<std::uint8_t>(unknown_inputs_ | (1 << i));
     }
     refused_base_ = record.refused_samples;
@@ -152,6 +159,7 @@ class CoreReplayOf : public CoreReplay {
     const pinnquad::autopilot::LocalState by{vector(record.jump_position_m), vector(record.jump_velocity_m_s)};
     if (!by.position_m.isZero(0) || !by.velocity_m_s.isZero(0) || std::fabs(record.jump_yaw_rad) > 0) {
       controller_->jump(by, record.jump_yaw_rad);
+      past_unknown_ = false;  // it is forgotten
     }
   }
 
@@ -194,6 +202,10 @@ class CoreReplayOf : public CoreReplay {
       wanted.yaw_rad = r.wanted_yaw_rad;
       wanted.yaw_rate_rad_s = r.wanted_yaw_rate_rad_s;
       note(3, r.set_point_us, controller_->set_point(r.set_point_us, wanted), "it asks for nothing, or beyond 1e6");
+    }
+    if ((which & voltage_bit) != 0 && asks_for_voltage_) {
+      note(4, r.voltage_us, controller_->battery_voltage(r.voltage_us, r.battery_voltage),
+           in_words("battery_voltage = %.3g", static_cast<double>(r.battery_voltage)));
     }
   }
 
@@ -247,14 +259,16 @@ class CoreReplayOf : public CoreReplay {
       return in_words("the bias stood at its bound, %.4g m/s^2: the model does not make the acceleration asked for",
                       static_cast<double>(options_.settings.most_bias_m_s2));
     }
-    if (report.cause == pinnquad::Status::distrusted) {
-      return in_words("command residual %.4g, limit %.4g, cleared at %.4g",
-                      static_cast<double>(controller_->command_residual()), Trust::command_residual_limit,
-                      Trust::command_residual_cleared);
-    }
-    if (report.cause == pinnquad::Status::outside_distribution) {
-      return in_words("squared distance %.4g, limit %.4g", static_cast<double>(report.squared_distance),
-                      Trust::squared_distance_limit);
+    if constexpr (trusts) {
+      if (report.cause == pinnquad::Status::distrusted) {
+        return in_words("command residual %.4g, limit %.4g, cleared at %.4g",
+                        static_cast<double>(controller_->command_residual()), Trust::command_residual_limit,
+                        Trust::command_residual_cleared);
+      }
+      if (report.cause == pinnquad::Status::outside_distribution) {
+        return in_words("squared distance %.4g, limit %.4g", static_cast<double>(report.squared_distance),
+                        Trust::squared_distance_limit);
+      }
     }
     return "";
   }
@@ -273,7 +287,7 @@ class CoreReplayOf : public CoreReplay {
   bool is_known(const Record& record, const pinnquad::autopilot::StepReport& report) const {
     using pinnquad::autopilot::Reaction;
     if (record.asked == 0) return true;
-    if (unknown_inputs_ != 0) return false;
+    if (unknown_inputs_ != 0 || past_unknown_) return false;
     const auto logged = static_cast<Reaction>(record.reaction);
     const bool distrusts = report.cause == pinnquad::Status::distrusted;
     const bool distrusted = record.cause == static_cast<std::uint8_t>(pinnquad::Status::distrusted);
@@ -357,6 +371,7 @@ class CoreReplayOf : public CoreReplay {
   const std::vector<pinnquad::BlockModel>& models_;
   Vehicle vehicle_;
   CoreReplayOptions options_;
+  bool asks_for_voltage_ = false, has_past_ = false;
   bool has_trust_ = false;  ///< the core that flew had limits, and the block has them
   CoreWords words_;
   std::vector<ReasonOf<View>> reasons_;  ///< of each model
@@ -369,6 +384,7 @@ class CoreReplayOf : public CoreReplay {
   bool refused_base_known_ = true;
   std::uint8_t unknown_inputs_ = 0;  ///< behind a gap: bits of inputs of which the last good sample is not known
   bool holding_unknown_ = false, answer_unknown_ = false;
+  bool past_unknown_ = false;  ///< behind a gap: which motions the window is made of, until the core has forgotten them
 };
 
 }  // namespace detail

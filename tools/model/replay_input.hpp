@@ -104,7 +104,11 @@ inline void take_settings(const logs::LogTopic& topic, ReplayInput& input) {
   input.has_settings = true;
 }
 
-inline ReplayInput read_core_topics(const std::string& path, const logs::FlightLog& log) {
+inline ReplayInput read_core_topics(const std::string& path, logs::FlightLog& log) {
+  for (logs::LogTopic& topic : log.topics) {
+    if (topic.name == pinnquad::autopilot::CoreRecord::topic)
+      add_core_columns(topic, pinnquad::autopilot::CoreRecord::added);
+  }
   const logs::LogTopic* ticks = log.topic(pinnquad::autopilot::CoreRecord::topic);
   if (ticks == nullptr || ticks->size() == 0) {
     throw pinnquad::InputError(path, 0, 0,

@@ -15,6 +15,7 @@
   TIME(attitude_us, attitude_ms)              \
   TIME(local_us, local_ms)                    \
   TIME(set_point_us, set_point_ms)            \
+  TIME(voltage_us, voltage_ms)                \
   ONE(uint32, tick)                           \
   ONE(uint32, model)                          \
   ONE(uint32, refused_samples)                \
@@ -27,6 +28,7 @@
   MANY(3, float, wanted_acceleration_m_s2)    \
   ONE(float, wanted_yaw_rad)                  \
   ONE(float, wanted_yaw_rate_rad_s)           \
+  ONE(float, battery_voltage)                 \
   MANY(3, float, bias_m_s2)                   \
   MANY(3, float, predicted_velocity_m_s)      \
   ONE(float, lift)                            \

@@ -29,6 +29,17 @@ using FlownLimits = TrainedQuadModelTrust;
 using FlownLimits = void;  // without limits of trust
 #endif
 
+// A block is opened and tested on the app's task.
+#if __has_include("autoconf.h")
+#include "autoconf.h"
+#endif
+#ifdef CONFIG_APP_STACKSIZE
+constexpr int past_stack_words = 800;
+static_assert(
+    !pinnquad::is_windowed<FlownModel::Features> || CONFIG_APP_STACKSIZE >= past_stack_words,
+    "pinnquad: a model with a window is tested on more stack: raise CONFIG_APP_STACKSIZE to 800 (app-config)");
+#endif
+
 namespace {
 
 using Controller = pinnquad::autopilot::Recorded<

@@ -20,9 +20,10 @@ struct CrazyflieState {
   uint32_t attitude_timestamp;
   float attitude_quaternion[4]; /* x, y, z, w: body to world, as state_t has it */
   uint32_t position_timestamp;
-  float position[3];  /* m, world */
-  float velocity[3];  /* m/s, world */
-  bool drives_motors; /* the forces of the last step reached the motors */
+  float position[3];     /* m, world */
+  float velocity[3];     /* m/s, world */
+  float battery_voltage; /* V, of this tick, for a model that asks for it */
+  bool drives_motors;    /* the forces of the last step reached the motors */
   bool landed;
 };
 
@@ -53,7 +54,7 @@ struct CrazyflieReport {
   uint8_t reaction;     /* pinnquad::autopilot::Reaction */
   uint8_t status;       /* pinnquad::Status */
   uint8_t cause;        /* pinnquad::Status of the network alone */
-  uint8_t stale_inputs; /* bit 0 gyro, 1 attitude, 2 position, 3 set point */
+  uint8_t stale_inputs; /* bit 0 gyro, 1 attitude, 2 position, 3 set point, 4 battery voltage */
 };
 
 /* Opens and tests a model block; its address is a multiple of 8 and it stays there. 0, or a pinnquad::Status.

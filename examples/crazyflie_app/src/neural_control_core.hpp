@@ -39,6 +39,7 @@ class NeuralControl {
     if (asks_for_a_place(setpoint)) {
       controller_.situation({state.drives_motors, state.landed});
       take(state);
+      static_cast<void>(controller_.battery_voltage(in_us(now_ms), state.battery_voltage));
       take(setpoint);
       has_commands = controller_.step(in_us(now_ms), commands_, why_) != pinnquad::autopilot::Reaction::gives_up;
     } else {

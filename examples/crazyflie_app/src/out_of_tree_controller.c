@@ -16,6 +16,7 @@
 #include "neural_control_core.h"
 #include "param.h"
 #include "platform_defaults.h"
+#include "pm.h"
 #include "sample_clock.h"
 #include "stabilizer_types.h"
 #include "supervisor.h"
@@ -32,8 +33,7 @@
 #error "pinnquad: needs the Kalman estimator: the complementary one estimates no x and y (app-config)"
 #endif
 #ifndef CONFIG_ENABLE_THRUST_BAT_COMPENSATED
-#error \
-    "pinnquad: needs CONFIG_ENABLE_THRUST_BAT_COMPENSATED: else controlModeForce sets voltages (app-config)"
+#error "pinnquad: needs CONFIG_ENABLE_THRUST_BAT_COMPENSATED: else controlModeForce sets voltages (app-config)"
 #endif
 /* The stack of a step below the stabilizer's own frames, and that of those, of interrupts and of the PID controller.
  * The first is checked against the compiler's own count (tests/flight_stacks/stack_depth.py). */
@@ -148,6 +148,7 @@ static void copy_state(const sensorData_t* sensors, const state_t* state) {
   const float local[6] = {at.position[0], at.position[1], at.position[2],
                           at.velocity[0], at.velocity[1], at.velocity[2]};
   at.position_timestamp = crazyflie_sample_time(&position_clock, state->position.timestamp, now, local, 6);
+  at.battery_voltage = pmGetBatteryVoltage();
   at.drives_motors = !pid_flies && supervisorAreMotorsAllowedToRun();
 }
 

@@ -73,6 +73,19 @@ struct InputsWithColumns : Base {
 };
 }  // namespace detail
 
+/// Sets every column of a model's inputs, from `values` in the order of extra_column_names; what follows is returned.
+/// Inputs without a column stay as they are.
+template <class Scalar>
+const Scalar* set_columns(MotionInputs<Scalar>& /*inputs*/, const Scalar* values) noexcept {
+  return values;
+}
+template <class Base, class Scalar, class... Column>
+const Scalar* set_columns(detail::InputsWithColumns<Base, Scalar, Column...>& inputs, const Scalar* values) noexcept {
+  values = set_columns(static_cast<Base&>(inputs), values);
+  for (Scalar& column : inputs.columns) column = *values++;
+  return values;
+}
+
 /// A feature set with columns: X of `FeatureSet`, then each column as it was measured. A guard's fallback sees the
 /// inputs of `FeatureSet`.
 template <class FeatureSet, class... Column>

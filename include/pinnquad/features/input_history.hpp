@@ -57,14 +57,13 @@ InputsWithColumns<Base, Scalar, Column...> interpolated(const InputsWithColumns<
   return result;
 }
 
-/// Inputs at an instant among samples `first` to `last`, whose times rise; the search begins at `near`. A sample within
-/// the window's tolerance is taken as it is. False before the first and behind the last sample. `window`: a TapWindow,
-/// or one that is known at run time alone.
+/// Inputs at an instant among samples `first` to `last`, whose times rise; the search begins at `at`, which is left
+/// where it ended: near the next tap. A sample within the window's tolerance is taken as it is. False before the first
+/// and behind the last sample. `window`: a TapWindow, or one that is known at run time alone.
 template <class Scalar, class Window, class Index, class TimeOf, class Read, class Tap>
-bool read_at(const Window& window, double time_s, Index first, Index last, Index near, const TimeOf& time_of,
+bool read_at(const Window& window, double time_s, Index first, Index last, Index& at, const TimeOf& time_of,
              const Read& read, Tap& result) noexcept {
   const double until_s = time_s + window.tolerance_s;
-  Index at = near;
   while (at > first && time_of(at) > until_s) --at;
   while (at < last && time_of(at + 1) <= until_s) ++at;
   const double behind_s = time_s - time_of(at);

@@ -125,6 +125,7 @@ extern "C" {
 uint32_t xTaskGetTickCount(void);
 void vTaskDelay(uint32_t ticks);
 uint64_t usecTimestamp(void);
+float pmGetBatteryVoltage(void);
 void eventTrigger(const eventtrigger* event);
 bool supervisorIsFlying(void);
 bool supervisorAreMotorsAllowedToRun(void);

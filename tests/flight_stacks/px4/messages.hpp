@@ -28,7 +28,8 @@ struct trajectory_setpoint_s {
 struct battery_status_s {
   uint64_t timestamp;
   bool connected;
-  float scale;  ///< from 1 on; -1: not known
+  float scale;      ///< from 1 on; -1: not known
+  float voltage_v;  ///< 0: not known
 };
 struct goto_setpoint_s {
   uint64_t timestamp;
@@ -141,6 +142,7 @@ struct pinnquad_record_s {
   uint64_t attitude_us;
   uint64_t local_us;
   uint64_t set_point_us;
+  uint64_t voltage_us;
   uint32_t tick;
   uint32_t model;
   uint32_t refused_samples;
@@ -154,6 +156,7 @@ struct pinnquad_record_s {
   float wanted_jerk_m_s3[3];
   float wanted_yaw_rad;
   float wanted_yaw_rate_rad_s;
+  float battery_voltage;
   float bias_m_s2[3];
   float predicted_velocity_m_s[3];
   float jump_position_m[3];

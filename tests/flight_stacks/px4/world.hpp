@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include <model.hpp>  // the one that the module is built with
 #include "land_detector.hpp"
-#include "model.hpp"
 #include "model_blocks.hpp"
 #include "px4.hpp"
 #include "px4_module/px4_version.hpp"

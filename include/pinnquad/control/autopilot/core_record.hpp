@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The record of a tick: the controller's inputs and its answer as plain numbers. A module logs it; `pinnquad replay`
 // runs it through the same controller on the ground (docs/replay_log.md). each_number() is the format: numbers, order,
-// names and units of PX4's message (px4_module/msg), of a Crazyflie's event and of a CSV. A field keeps its name, so
-// that earlier logs replay. NED, FRD, SI units, commands in the airframe's rotor order.
+// names and units of PX4's message (px4_module/msg), of a Crazyflie's event and of a CSV. A field keeps its name, and one
+// that is added is as a record is made where a log lacks it, so that earlier logs replay. NED, FRD, SI units, commands in the airframe's rotor order.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "pinnquad/control/bias_estimate.hpp"
@@ -15,12 +16,15 @@ namespace pinnquad::autopilot {
 /// One tick. Inputs are those that came last, refused ones too; of one input one sample per tick at most.
 struct CoreRecord {
   static constexpr const char* topic = "pinnquad_record";
+  /// Fields that earlier logs lack.
+  static constexpr std::array<const char*, 2> added = {"voltage_us", "battery_voltage"};
 
   std::uint64_t timestamp{0};  ///< of the tick, on the clock of the samples
   std::uint64_t body_rates_us{0};
   std::uint64_t attitude_us{0};
   std::uint64_t local_us{0};
   std::uint64_t set_point_us{0};
+  std::uint64_t voltage_us{0};
   std::uint32_t tick{0};   ///< counts from 1; a number that is missing was not logged
   std::uint32_t model{0};  ///< checksum of the model block that flew; 0: none was accepted yet
   std::uint32_t refused_samples{0};
@@ -34,6 +38,7 @@ struct CoreRecord {
   float wanted_jerk_m_s3[3]{};
   float wanted_yaw_rad{0};
   float wanted_yaw_rate_rad_s{0};
+  float battery_voltage{0};           ///< V; of a model that asks for it
   float bias_m_s2[3]{};               ///< of the bias estimate, NED
   float predicted_velocity_m_s[3]{};  ///< of the bias estimate
   float jump_position_m[3]{};         ///< step of the estimator before this tick, NED; 0: none
@@ -63,6 +68,7 @@ struct CoreRecord {
     visit("attitude_us", "us", self.attitude_us);
     visit("local_us", "us", self.local_us);
     visit("set_point_us", "us", self.set_point_us);
+    visit("voltage_us", "us", self.voltage_us);
     visit("tick", "1", self.tick);
     visit("model", "1", self.model);
     visit("refused_samples", "1", self.refused_samples);
@@ -76,6 +82,7 @@ struct CoreRecord {
     visit("wanted_jerk_m_s3", "m/s^3", self.wanted_jerk_m_s3);
     visit("wanted_yaw_rad", "rad", self.wanted_yaw_rad);
     visit("wanted_yaw_rate_rad_s", "rad/s", self.wanted_yaw_rate_rad_s);
+    visit("battery_voltage", "V", self.battery_voltage);
     visit("bias_m_s2", "m/s^2", self.bias_m_s2);
     visit("predicted_velocity_m_s", "m/s", self.predicted_velocity_m_s);
     visit("jump_position_m", "m", self.jump_position_m);

@@ -13,7 +13,11 @@
 namespace pinnquad::autopilot {
 
 /// An input's bit, in reports and records.
-inline constexpr std::uint8_t body_rates_bit = 1, attitude_bit = 2, local_bit = 4, set_point_bit = 8;
+inline constexpr std::uint8_t body_rates_bit = 1, attitude_bit = 2, local_bit = 4, set_point_bit = 8, voltage_bit = 16;
+
+/// The greatest age of a battery voltage: it changes slowly, and stacks say it as seldom as once a second. Without one
+/// the analytic inverse flies in place of a model that asks for it.
+inline constexpr std::uint64_t voltage_limit_us = 2'000'000;
 
 /// A tick's reaction, from good to bad.
 enum class Reaction : std::uint8_t {

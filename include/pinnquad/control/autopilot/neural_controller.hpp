@@ -10,6 +10,7 @@
 #include "pinnquad/control/autopilot/core_settings.hpp"
 #include "pinnquad/control/autopilot/flown_motion.hpp"
 #include "pinnquad/control/autopilot/inputs.hpp"
+#include "pinnquad/control/autopilot/model_inputs.hpp"
 #include "pinnquad/control/autopilot/model_slots.hpp"
 #include "pinnquad/control/autopilot/take_off.hpp"
 #include "pinnquad/control/desaturate.hpp"
@@ -36,8 +37,11 @@ template <class Shape, class View = ModelView<Shape>, class VehicleType = Quadro
 class NeuralController {
   using FlownTrust = detail::FlownTrust<Trust>;
   static constexpr bool trusts = FlownTrust::known;
+  using ModelInputs = detail::ModelInputs<typename Shape::Features>;
 
  public:
+  /// False: the voltage is of no use to the model, and battery_voltage() does nothing.
+  static constexpr bool asks_for_voltage = ModelInputs::asks_for_voltage;
   using Vehicle = VehicleType;
   using Analytic = AnalyticInverse<Vehicle>;
   /// Without Fallback: step() asks the analytic inverse itself, below which the network's stack is free again.
@@ -50,10 +54,9 @@ class NeuralController {
   static constexpr std::uint64_t residual_window_us = detail::FlownMotion::window_us;
   static constexpr float alarm_clear_s = detail::BiasAlarm::clear_s;
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
-  static_assert(
-      std::is_same_v<typename Shape::Features::template Inputs<float>, MotionInputs<float>>,
-      "this controller is given no altitude above ground and no extra column: it flies models that ask for the "
-      "motion alone (pinnquad train --altitude no)");
+  static_assert(!trusts || ModelInputs::of_motion_alone,
+                "pinnquad: limits of trust are those of a model of the present motion alone: fly one with a window or "
+                "a column without them (docs/trust.md)");
 
   explicit NeuralController(const CoreSettings& settings = {}) noexcept
       : NeuralController(Vehicle(airframe_value<typename Shape::Vehicle, float>()), settings) {}
@@ -116,6 +119,9 @@ class NeuralController {
     return set_point_.accept(time_us, wanted, detail::check_set_point(wanted));
   }
 
+  /// Of the pack under load, for a model that asks for it: `not_finite`, or `out_of_range` for what is none.
+  Status battery_voltage(std::uint64_t time_us, float volts) noexcept { return model_inputs_.voltage(time_us, volts); }
+
   /// Given before each step, by a stack that knows. Until then the commands drive nothing and the vehicle is in the
   /// air. A controller that takes over holds the place of that moment.
   void situation(const Situation& now) noexcept {
@@ -134,6 +140,7 @@ class NeuralController {
     held_yaw_rad_ += yaw_rad;
     bias_.resume(bias_.acceleration_m_s2(), bias_.predicted_velocity_m_s() + by.velocity_m_s);
     if constexpr (trusts) trust_.motion().interrupt();
+    model_inputs_.clear();
   }
 
   const BiasEstimate<float>& bias() const noexcept { return bias_; }
@@ -162,6 +169,7 @@ class NeuralController {
   /// the reaction is gives_up. `now_us` is of the samples' clock; any time may lie between two calls.
   Reaction step(std::uint64_t now_us, Commands<float>& commands, StepReport& report) noexcept {
     report = {};
+    model_inputs_.tick(now_us);
     const Inverse* inverse = models_.take();
     take_checksum(models_.checksum(inverse));
     Reaction reaction = inverse == nullptr ? Reaction::gives_up : judge_ages(now_us, report);
@@ -209,7 +217,7 @@ class NeuralController {
   /// The network's answers since the start, by Status.
   const FallbackCount& count() const noexcept { return count_; }
   std::uint32_t refused_samples() const noexcept {
-    return rates_.refused() + attitude_.refused() + local_.refused() + set_point_.refused();
+    return rates_.refused() + attitude_.refused() + local_.refused() + set_point_.refused() + model_inputs_.refused();
   }
   /// Fills a message of PX4 or the Crazyflie: their fields have the same names.
   template <class Message>
@@ -244,7 +252,8 @@ class NeuralController {
         static_cast<std::uint8_t>(bit_if(!rates_.fresh(now_us, settings_.body_rates_us), body_rates_bit) |
                                   bit_if(!attitude_.fresh(now_us, settings_.attitude_us), attitude_bit) |
                                   bit_if(!local_.fresh(now_us, settings_.local_us), local_bit) |
-                                  bit_if(!set_point_.fresh(now_us, settings_.set_point_us), set_point_bit));
+                                  bit_if(!set_point_.fresh(now_us, settings_.set_point_us), set_point_bit) |
+                                  bit_if(!model_inputs_.voltage_is_fresh(), voltage_bit));
     if (!report.stale(set_point_bit)) holding_ = false;
     if (report.stale(body_rates_bit | attitude_bit)) return Reaction::keeps_commands;
     if (report.stale(local_bit)) {
@@ -322,7 +331,8 @@ class NeuralController {
     MotionInputs<float> wanted;
     const Status outer = want(reaction, wanted);
     if (outer != Status::ok) return outer;
-    report.cause = trusted() && !bias_alarm() ? ask_network(inverse, wanted, commands, report) : Status::distrusted;
+    const typename Inverse::Inputs& inputs = model_inputs_.take(wanted);
+    report.cause = trusted() && !bias_alarm() ? ask_network(inverse, inputs, commands, report) : Status::distrusted;
     count_.add(report.cause);
     if (has_output(report.cause)) return report.cause;
     Commands<float> replaced{};
@@ -333,10 +343,10 @@ class NeuralController {
     return Status::fell_back;
   }
 
-  PINNQUAD_NOINLINE static Status ask_network(const Inverse& inverse, const MotionInputs<float>& wanted,
+  PINNQUAD_NOINLINE static Status ask_network(const Inverse& inverse, const typename Inverse::Inputs& inputs,
                                               Commands<float>& commands, StepReport& report) noexcept {
     typename Inverse::Report why;
-    const Status status = inverse.predict(wanted, commands, why);
+    const Status status = inverse.predict(inputs, commands, why);
     report.worst_feature = why.worst_feature;
     report.squared_distance = why.squared_distance;
     if (why.worst_feature >= 0) report.worst_excess = why.excess[static_cast<std::size_t>(why.worst_feature)];
@@ -392,6 +402,7 @@ class NeuralController {
   std::uint64_t answered_us_ = 0;
   bool answered_ = false;
   bool ready_ = false;
+  ModelInputs model_inputs_;
   std::uint32_t checksum_ = 0;
   FallbackCount count_{};
   FlownTrust trust_;

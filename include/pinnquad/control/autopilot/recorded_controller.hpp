@@ -50,6 +50,16 @@ class Recorded : public Controller {
     return Controller::set_point(time_us, wanted);
   }
 
+  /// A model that does not ask for it has nothing to record.
+  Status battery_voltage(std::uint64_t time_us, float volts) noexcept {
+    if constexpr (Controller::asks_for_voltage) {
+      note(voltage_bit);
+      record_.voltage_us = time_us;
+      record_.battery_voltage = volts;
+    }
+    return Controller::battery_voltage(time_us, volts);
+  }
+
   void jump(const LocalState& by, float yaw_rad) noexcept {
     begin();
     Controller::jump(by, yaw_rad);

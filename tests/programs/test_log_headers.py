@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""A header of any log compiles and flies, whatever window and columns its model asks for: in fly_export and in the cores
+of both flight stacks. What the cores recorded replays to the bit."""
+import json
+import lzma
+import math
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from conftest import SOURCE, edited
+
+FLIGHT_FLAGS = ["-fno-exceptions", "-fno-rtti", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wshadow",
+                "-Werror"]
+INCLUDES = [f"-I{SOURCE}/{path}" for path in ("examples", "examples/crazyflie_app/src", "tests/flight_stacks")]
+CORES = SOURCE / "tests/flight_stacks/header_flight.cpp"
+
+
+def closer_rows(source, target, interval_s, number):
+    """Writes a flight's table with rows closer together, on straight lines, and a battery that runs down."""
+    head, *rows = Path(source).read_text().splitlines()
+    rows = [[float(cell) for cell in row.split(",")] for row in rows]
+    yaw = head.split(",").index("yaw")
+    for before, row in zip(rows, rows[1:]):
+        row[yaw] += 2 * math.pi * round((before[yaw] - row[yaw]) / (2 * math.pi))
+    lines, start_s, apart_s = [head + ",battery_voltage [V]"], rows[0][0], rows[1][0] - rows[0][0]
+    for line in range(int((rows[-1][0] - start_s) / interval_s)):
+        at = int(line * interval_s / apart_s + 1e-9)
+        share = line * interval_s / apart_s - at
+        cells = [a + share * (b - a) for a, b in zip(rows[at], rows[at + 1])]
+        cells.append(15.6 - 0.01 * cells[0] + 0.2 * math.sin(0.7 * cells[0] + number))
+        lines.append(",".join(map(repr, cells)))
+    Path(target).write_text("\n".join(lines) + "\n")
+    return target
+
+
+@pytest.fixture
+def two_models(pinnquad):
+    """two_models(kind, source, held out, held out): folders one/ and other/, two models of a kind, fitted to other rows
+    of the same flights."""
+
+    def train(kind, source, *held_out):
+        for folder, flight in zip(("one", "other"), held_out):
+            pinnquad(f"train {source} --models ridge,{kind} --export {kind} --seeds 1 --epochs 3 --allow-poor",
+                     "--hold-out", flight, "--out", folder)
+
+    return train
+
+
+@pytest.fixture
+def fly_cores(compiler, pinnquad):
+    """fly_cores(): flies one/ in both cores, other/'s block from 3 s on, the battery silent from 6 to 9 s; the ticks of
+    each stack and phase by who answered. What was recorded replays."""
+
+    def fly():
+        compiler("", "-O1", *FLIGHT_FLAGS, *INCLUDES, "-Ione", CORES, "-o", "cores")
+        Path("logged").mkdir()
+        said = type(compiler)(Path("cores").resolve())("one/model.block other/model.block logged").out
+        for stack in "px4_module", "crazyflie_app":
+            assert f"{stack} other block: ok" in said, said
+            done = pinnquad(f"replay logged/{stack}_pinnquad_record_0.csv --model one/model.block --model other/model.block")
+            assert "commands    equal to the log's, bit for bit" in done.out, done
+        figures = re.findall(r"^(\w+) (\w+): ticks (\d+) model (\d+) warming_up (\d+) not_finite (\d+)", said, re.M)
+        names = "ticks", "model", "warming_up", "not_finite"
+        assert len(figures) == 6, said
+        return {(stack, phase): dict(zip(names, map(int, numbers))) for stack, phase, *numbers in figures}
+
+    return fly
+
+
+def test_window_and_battery(two_models, fly_cores, fly_export, pinnquad, dataset, flown):
+    """Of the simulator's flights: the model flies all but what it can't know."""
+    flights = {f"f{i}": closer_rows(flown(f"--seed {i} --samples 1500"), f"f{i}.csv", 0.02, i) for i in (1, 2, 3)}
+    dataset("rows", flights)
+    facts = json.loads(Path("rows/dataset.json").read_text())
+    Path("rows/dataset.json").write_text(json.dumps({**facts, "sample_period_s": 0.02}))
+    two_models("ridge_causal", "--dataset rows --airframe paper_quadrotor", "f3", "f1")
+    header = Path("one/model.hpp").read_text()
+    assert "PartlyWindowed<pinnquad::WithColumns<" in header and "BatteryVoltage" in header
+
+    for (stack, phase), ticks in fly_cores().items():
+        period = 1 if stack == "px4_module" else 2
+        if phase == "start":  # a window of 160 ms
+            assert ticks["warming_up"] == 160 / period and ticks["model"] == 40 / period
+        elif phase == "silent":
+            assert ticks["not_finite"] == ticks["ticks"] > 400
+        else:  # again behind the silence
+            assert ticks["warming_up"] == 160 / period
+            assert ticks["model"] == ticks["ticks"] - ticks["warming_up"] - ticks["not_finite"]
+
+    # a log from before the voltage was recorded is read, and its core had none
+    record = Path("logged/px4_module_pinnquad_record_0.csv")
+    names = record.open().readline().rstrip("\n").split(",")
+    later = {names.index(name) for name in ("voltage_us", "battery_voltage")}
+    edited(record, "earlier.csv", lambda _, cells: [cell for at, cell in enumerate(cells) if at not in later])
+    done = pinnquad("replay earlier.csv --model one/model.block --model other/model.block", code=1)
+    assert "battery voltage: never came" in done.out, done
+    # behind a gap the window is not known: nothing is said of it
+    at = names.index("tick")
+    edited(record, "gap.csv", lambda line, cells: None if line == 1 or not 2000 < int(cells[at]) < 2100 else False)
+    done = pinnquad("replay gap.csv --model one/model.block --model other/model.block")
+    assert re.search(r"^same +as logged, in all 2000 ticks compared", done.out, re.M), done
+
+    program = fly_export("one/model.hpp", optimised="-O1 -DNDEBUG")
+    said = program("--replay one/replay.txt", code=None).out
+    assert re.search("self test .*: ok", said) and ": agrees" in said, said
+    middle = float(re.search("battery_voltage held at ([0-9.]+) V", said).group(1))
+    assert 15 < middle < 15.8, said
+    fallbacks, asked = map(int, re.search(r"^  export .* (\d+) of (\d+) ", said, re.M).groups())
+    assert fallbacks < 0.5 * asked, said
+    said = program("--replay one/replay.txt --column battery_voltage=30", code=1).out
+    assert "battery_voltage held at 30 V" in said and re.search(r"^  export .* 15000 of 15000 ", said, re.M), said
+    program.refused("--replay one/replay.txt --column battery=12", keyword="battery_voltage")
+    program.refused("--replay one/replay.txt --column battery_voltage=full", keyword="NUMBER in V")
+
+
+LOGS = {
+    "sih": ("structured_causal", "train_figure8", "train_random", 0.9),
+    "nanobench": ("ridge_causal", "B7_oval_fast_rep1", "B2_circle_fast_rep1", 0.01),
+    "arpl": ("structured_causal", "arpl_cf_log15_12s", "arpl_cf_log10_30s", 0.1),
+}
+
+
+@pytest.mark.parametrize("logs", LOGS)
+def test_real_logs(logs, two_models, fly_cores, fly_export, recorded):
+    """The cores of each set of logs; and fly_export of one that flies as PX4's simulation does."""
+    kind, *held_out, share = LOGS[logs]
+    if logs == "sih":
+        Path("logs").mkdir()
+        for name in "train_random", "train_figure8", "train_excite":
+            packed = recorded(f"sih/{name}.ulg.xz")
+            with lzma.open(packed) as log, open(f"logs/{name}.ulg", "wb") as out:
+                shutil.copyfileobj(log, out)
+        source = "--log logs --mapping px4 --airframe px4_sih"
+    else:
+        table = recorded("flight_logs/nanobench_subset_50hz.csv" if logs == "nanobench" else "flight_logs/arpl_crazyflie.csv")
+        source = f"--log {table} --mapping {logs} --airframe crazyflie_2_1"
+    two_models(kind, source, *held_out)
+    assert "PartlyWindowed<" in Path("one/model.hpp").read_text()
+    for (_, phase), ticks in fly_cores().items():
+        if phase == "flight":
+            assert ticks["model"] > share * ticks["ticks"], ticks
+    if logs != "sih":
+        return
+    said = fly_export("one/model.hpp", optimised="-O1 -DNDEBUG")("--replay one/replay.txt", code=None).out
+    assert re.search("self test .*: ok", said) and ": agrees" in said, said
+    assert "battery_voltage held at" in said, said
