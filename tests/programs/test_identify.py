@@ -180,3 +180,5 @@ def test_a_curve_is_a_number_or_fit(pinnquad, flight):
 def test_the_flight_is_not_overwritten(pinnquad, flight):
     shutil.copy(flight, "flight.toml")
     pinnquad.refused("identify --flight flight.toml --out flight.toml", keyword="same file")
+    Path("mine.toml").write_text("")
+    pinnquad.refused("identify --log flight.toml --mapping mine.toml --out mine.toml", keyword="same file")

@@ -204,6 +204,7 @@ int run(const IdentifyOptions& options) {
   for (const std::string& flight : options.flights) roles.reads("--flight", flight);
   for (const std::string& log : options.logs) roles.reads("--log", log);
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
+  if (programs::is_airframe_file(options.mapping)) roles.reads("--mapping", options.mapping);  // a .toml too
   roles.writes("--out", options.out);
   if (!options.out.empty() && !programs::is_airframe_file(options.out)) {
     throw std::invalid_argument("--out " + options.out + ": a name that ends in .toml was expected");
