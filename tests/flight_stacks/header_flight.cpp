@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Flies an exported header, whatever it asks for, with its block in both cores: a figure-eight in the simulator, by the
-// header's own airframe, slow enough for the training envelopes of quiet logs. The battery is silent for a while; another
-// block takes the place of the first. What the cores recorded is for `pinnquad replay`.
+// Flies an exported header, whatever it asks for, with its block in both cores: a figure-eight in the simulator, by
+// the header's own airframe, slow enough for the training envelopes of quiet logs. The battery is silent for a while;
+// another block takes the place of the first. What the cores recorded is for `pinnquad replay`.
 //   header_flight MODEL.block OTHER.block FOLDER
 #include <cstdio>
 #include <fstream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An airframe from what people know of a quadrotor: all-up weight, arm, propeller, and the motors' thrust or the battery
-// that turns them. What is not known is taken from like vehicles.
+// An airframe from what people know of a quadrotor: all-up weight, arm, propeller, and the motors' thrust or the
+// battery that turns them. What is not known is taken from like vehicles.
 #pragma once
 
 #include <cmath>

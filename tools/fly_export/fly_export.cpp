@@ -207,7 +207,7 @@ struct Column {
   std::string name, unit;
 };
 
-/// What the columns stand at in the closed loop: where nothing is given, in the middle of the training envelope.
+/// Values that the columns stand at in the closed loop: where nothing is given, in the middle of the training envelope.
 Columns column_values(const std::vector<std::string>& given) {
   std::vector<Column> asked;
   for (std::size_t i = 0; i < column_names.size(); ++i) asked.push_back({column_names[i], column_units[i]});

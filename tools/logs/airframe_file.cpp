@@ -43,7 +43,7 @@ RotorMount<double> rotor_of(const std::string& path, const toml::table& table) {
   return r;
 }
 
-/// What no quadrotor can have.
+/// Refuses numbers that no quadrotor can have.
 void require_buildable(TomlTable& table, const Airframe<double>& a) {
   constexpr double most_thrust_to_weight = 40;
   const auto rounded = [](double value) { return number_text(std::round(value * 1e3) / 1e3); };
@@ -109,7 +109,6 @@ NamedAirframe read_airframe_file(const std::string& path) {
     table.refuse(table.required("mass_kg", ""), "an airframe that can hover",
                  "a thrust-to-weight ratio of " + number_text(a.thrust_to_weight()));
   }
-  require_buildable(table, a);
   if (check_airframe(a) != Status::ok) {
     Airframe<double> without = a;
     without.inertia_products_kg_m2 = {};
@@ -121,6 +120,7 @@ NamedAirframe read_airframe_file(const std::string& path) {
   if (Rotors<double>(a).status() != Status::ok) {
     table.refuse(rotors, "rotors that make thrust and three torques independently", "an allocation without inverse");
   }
+  require_buildable(table, a);
   return result;
 }
 

@@ -74,8 +74,8 @@ inline std::string needs_velocity(const FitTask& fit) {
   return fit.lacks("velocity") ? "needs velocity, which the logs lack" : "";
 }
 
-/// Those that logs are compared by, the simplest first: constant, last_commands, physics, linear, linearized, ridge, vanilla,
-/// physics_informed, structured; ridge and structured also with "_causal" and "_centred" windows.
+/// Those that logs are compared by, the simplest first: constant, last_commands, physics, linear, linearized, ridge,
+/// vanilla, physics_informed, structured; ridge and structured also with "_causal" and "_centred" windows.
 /// Those that validation rows stop (vanilla, physics_informed) train on the training rows; those that choose by leaving
 /// out trajectories in turn have to be left nothing else.
 const std::vector<ModelKind>& log_model_kinds();

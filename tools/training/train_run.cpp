@@ -339,7 +339,7 @@ class Training {
     write(made, kind.kind, verdict);
   }
 
-  /// What is proven is exported, and may err more than what is not.
+  /// A proven model is exported, and may err more than one that is not.
   void warn_of_better_kind(const programs::JudgedKind& exported) {
     if (!options_.export_choice.empty() || !exported.proven()) return;
     const auto least = [&](const programs::JudgedKind& kind) {

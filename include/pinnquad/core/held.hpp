@@ -17,6 +17,7 @@ class Held {
   Held() = default;
   explicit Held(const T&) noexcept {}
   static const T& held() noexcept { return value_; }
+  static void hold(const T&) noexcept {}
 
  private:
   static constexpr T value_{};
@@ -27,6 +28,7 @@ class Held<T, false> {
  public:
   explicit Held(const T& value) noexcept : value_(value) {}
   const T& held() const noexcept { return value_; }
+  void hold(const T& value) noexcept { value_ = value; }
 
  private:
   T value_;

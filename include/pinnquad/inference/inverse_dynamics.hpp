@@ -93,6 +93,8 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
 
   const Model& model() const noexcept { return detail::Held<Model>::held(); }
   const Guard& guard() const noexcept { return detail::Held<Guard>::held(); }
+  /// Of a model that is opened at run time, in place: a new InverseDynamics would be on the stack beside the old.
+  void set_model(const Model& model) noexcept { detail::Held<Model>::hold(model); }
 
   /// Commands that make the motion asked for; not clipped to 0..1 unless the guard does (the rotor clips).
   /// `ok`, `limited`: the network's. `fell_back`: the fallback's. `not_finite`, `not_unit_quaternion`: a bad input.

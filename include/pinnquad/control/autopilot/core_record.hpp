@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The record of a tick: the controller's inputs and its answer as plain numbers. A module logs it; `pinnquad replay`
 // runs it through the same controller on the ground (docs/replay_log.md). each_number() is the format: numbers, order,
-// names and units of PX4's message (px4_module/msg), of a Crazyflie's event and of a CSV. A field keeps its name, and one
-// that is added is as a record is made where a log lacks it, so that earlier logs replay. NED, FRD, SI units, commands in the airframe's rotor order.
+// names and units of PX4's message (px4_module/msg), of a Crazyflie's event and of a CSV. A field keeps its name, and
+// one that is added is as a record is made where a log lacks it, so that earlier logs replay. NED, FRD, SI units,
+// commands in the airframe's rotor order.
 #pragma once
 
 #include <array>

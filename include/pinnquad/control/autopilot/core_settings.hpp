@@ -48,4 +48,9 @@ CoreSettings with_effects(CoreSettings settings, const Quadrotor<float, Effects.
   return settings;
 }
 
+/// Commands that neither rotor nor sound network asks for: the analytic inverse is asked instead.
+struct AbsurdCommands {
+  static constexpr double lower = -0.5, upper = 1.5;
+};
+
 }  // namespace pinnquad::autopilot::detail

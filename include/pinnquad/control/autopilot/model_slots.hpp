@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <new>
 #include <type_traits>
 
 #include "pinnquad/exported/loaded_model.hpp"
@@ -54,9 +53,7 @@ class ModelSlots {
       return Status::block_incompatible;
     }
     Inverse& spare = current == &slots_[0] ? slots_[1] : slots_[0];
-    const typename Inverse::Guard guard = spare.guard();
-    spare.~Inverse();  // in place: an assignment has the new one on the stack, too
-    new (&spare) Inverse(view, guard);
+    spare.set_model(view);
     checksums_[&spare == &slots_[0] ? 0 : 1] = checksum_of(block);
     const Status tested = self_test(spare);
     if (tested == Status::ok) published_.store(&spare, std::memory_order_release);

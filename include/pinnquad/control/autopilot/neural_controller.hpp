@@ -21,13 +21,6 @@
 
 namespace pinnquad::autopilot {
 
-namespace detail {
-/// Commands that neither rotor nor sound network asks for: the analytic inverse is asked instead.
-struct AbsurdCommands {
-  static constexpr double lower = -0.5, upper = 1.5;
-};
-}  // namespace detail
-
 /// `Shape`: an exported header, whose blocks it flies. `View` opens a block; on the ground its network may be known at
 /// run time alone (tools/model/replay_core.hpp). `VehicleType`: a Quadrotor, airframe and effects of the analytic
 /// inverse. `Trust`: the struct of trust.hpp beside the model (docs/trust.md), beyond whose limits the analytic inverse
@@ -257,8 +250,8 @@ class NeuralController {
     if (!report.stale(set_point_bit)) holding_ = false;
     if (report.stale(body_rates_bit | attitude_bit)) return Reaction::keeps_commands;
     if (report.stale(local_bit)) {
-      const std::uint64_t levels_us = std::uint64_t{settings_.local_us} + settings_.level_us;
-      return local_.fresh(now_us, levels_us) ? Reaction::levels : Reaction::gives_up;
+      return local_.fresh(now_us, std::uint64_t{settings_.local_us} + settings_.level_us) ? Reaction::levels
+                                                                                          : Reaction::gives_up;
     }
     return report.stale(set_point_bit) ? Reaction::holds_position : Reaction::flies;
   }
@@ -360,19 +353,15 @@ class NeuralController {
     Accelerations<float> wanted, feedback;
     TrajectoryPoint<float> point = target(reaction, now);
     const Vector3<float>& bias = bias_.acceleration_m_s2();
-    if (reaction == Reaction::levels) {
-      point.acceleration_m_s2[2] -= bias[2];  // thrust alone: level stays level
-    } else {
-      point.acceleration_m_s2 -= bias;
-    }
+    // a vehicle that levels: thrust alone, so that level stays level
+    point.acceleration_m_s2 -= reaction == Reaction::levels ? Vector3<float>(0.0f, 0.0f, bias[2]) : bias;
     point.acceleration_m_s2 = outer_loop_.limited(point.acceleration_m_s2);
     const Status outer = outer_loop_(now, point, wanted, feedback);
     if (outer != Status::ok) return outer;
     wanted.linear_m_s2 += feedback.linear_m_s2;
     wanted.angular_rad_s2 += feedback.angular_rad_s2;
     // rotors make no lateral force: the network has seen what gravity and rotation leave of it
-    const float gravity = vehicle_.site().gravity_m_s2;
-    const Vector3<float> at_rest = body_derivative<float>(now, {0.0f, 0.0f, gravity});
+    const Vector3<float> at_rest = body_derivative<float>(now, {0.0f, 0.0f, vehicle_.site().gravity_m_s2});
     wanted.linear_m_s2[0] = at_rest[0];
     wanted.linear_m_s2[1] = at_rest[1];
     expected_m_s2_ = world_acceleration<float>(now, wanted.linear_m_s2);

@@ -17,7 +17,7 @@
 
 namespace pinnquad {
 
-/// What the rows before and after say of a feature that noise bends a slope of.
+/// A feature of which noise bends a slope, as the rows before and after tell it.
 struct DenoisedFeature {
   int place = 0;
   /// Of the standardised features, then of the noisy ones before and after; the noisy ones of now count nothing.
