@@ -28,8 +28,8 @@ struct InstrumentRoles {
 struct InstrumentedWeight {
   double least_squares = 0, instrumented = 0;
   double least_squares_error = 0, instrumented_error = 0;  ///< standard errors, of autocorrelated rows too
-  /// Strength of the instruments for this regressor alone: F of the first stage. Below 10 they are weak (Staiger, Stock,
-  /// Econometrica 65, 1997): then the interval says how little is known.
+  /// Strength of the instruments for this regressor alone: F of the first stage. Below 10 they are weak (Staiger,
+  /// Stock, Econometrica 65, 1997): then the interval says how little is known.
   double strength = 0;
   /// Of the null hypothesis that least squares keep at least 1 - tolerated_attenuation of the weight: large where they
   /// do not.
