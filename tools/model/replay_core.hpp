@@ -67,7 +67,7 @@ class CoreReplayOf : public CoreReplay {
     FeatureSet::of = &features;
     asks_for_voltage_ = features.column_count() > 0;
     has_past_ = features.window().taps > 1;
-    models.front().with([this](const auto& own) { take_trust(own); });
+    models.front().with([this](const auto& own) { this->take_trust(own); });
     for (const pinnquad::BlockModel& model : models) {
       if (model.feature_names() != models.front().feature_names()) {
         throw std::invalid_argument("--model: " + models.front().path() + " and " + model.path() +
