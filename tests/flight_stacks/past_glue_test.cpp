@@ -8,16 +8,11 @@
 #include <cstring>
 
 #include "core_log.h"
+#include "crazyflie/block_room.hpp"
 #include "crazyflie/firmware.h"
 #include "model_blocks.hpp"
 #include "pinnquad/control/autopilot/inputs.hpp"
 #include "world.hpp"
-
-// the symbols of model_block.S, around room for a block
-extern "C" unsigned char pinnquad_model_block[];
-__asm__(
-    ".pushsection .data\n .balign 8\n .global pinnquad_model_block\n pinnquad_model_block: .space 32768\n"
-    " .global pinnquad_model_block_end\n pinnquad_model_block_end:\n .popsection\n");
 
 namespace {
 

@@ -36,6 +36,7 @@ inline double mean_validation_mae(const JudgedKind& kind) {
 }
 
 }  // namespace detail
+
 /// The kinds that may be exported, indices of judged.kinds, best first; none if nothing fits the choice. One whose
 /// signs are not proven is exported by its name alone. After a rotation by their held-out error: every flight was held
 /// out once, and the export is fitted anew. Else by their error on the validation rows: the rows held out have no say.
