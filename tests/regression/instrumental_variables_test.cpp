@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "pinnquad/core/random.hpp"
+#include "pinnquad/regression/block_regression.hpp"
 
 using namespace pinnquad;
 
@@ -147,7 +148,7 @@ TEST_CASE("standard errors are the spread over draws, of residuals that remember
       const InstrumentedWeight found = weight_of(law, 100 + seed, 100);
       weights.push_back(found.instrumented);
       errors.push_back(found.instrumented_error);
-      const double half = interval_factor(19) * found.instrumented_error;
+      const double half = student_t_975(19) * found.instrumented_error;
       covered += std::abs(found.instrumented - law.slope) < half ? 1 : 0;
       if (seed < 3) row_by_row.push_back(weight_of(law, 100 + seed, 1).instrumented_error);
     }
@@ -231,8 +232,8 @@ TEST_CASE("regressors that stand still or repeat each other leave a finite answe
 }
 
 TEST_CASE("quantiles of Student's t, and too few blocks") {
-  CHECK(interval_factor(9) == doctest::Approx(2.262).epsilon(0.003));
-  CHECK(interval_factor(29) == doctest::Approx(2.045).epsilon(0.001));
-  CHECK(interval_factor(1000000) == doctest::Approx(1.96).epsilon(0.001));
+  CHECK(student_t_975(9) == doctest::Approx(2.262).epsilon(0.003));
+  CHECK(student_t_975(29) == doctest::Approx(2.045).epsilon(0.001));
+  CHECK(student_t_975(1000000) == doctest::Approx(1.96).epsilon(0.001));
   CHECK_THROWS_AS(static_cast<void>(weight_of({}, 7, 1000)), std::invalid_argument);
 }

@@ -29,7 +29,7 @@ namespace programs {
 using LoggedQuadrotor = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, LoggedTorque>;
 
 /// The median of each column that the model asks for, in the first training flight: what the loop holds it at.
-inline std::vector<double> held_columns(const pinnquad::BlockModel& model, const pinnquad::RowSet& training) {
+inline std::vector<double> usual_columns(const pinnquad::BlockModel& model, const pinnquad::RowSet& training) {
   std::vector<double> held;
   for (const pinnquad::ColumnName& column : model.columns()) {
     const pinnquad::Flight& flight = *training.pieces().front().flight;
@@ -158,7 +158,7 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
     return {{"why_not", "the vehicle of the logs is not known well enough: its own formula does not fly it"}};
   }
   using Guard = pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::Fallback<Analytic>>;
-  const auto by_model = with_feed_forward(model, Guard(analytic), 0, held_columns(model, training), fly);
+  const auto by_model = with_feed_forward(model, Guard(analytic), 0, usual_columns(model, training), fly);
   result["model"] = loop_figures(by_model);
   result["model"]["answered_share"] = answered_share(by_model.fallback);
   return result;

@@ -41,13 +41,6 @@ struct InstrumentedWeight {
 /// percent.
 inline constexpr double tolerated_attenuation = 0.05;
 
-/// Half of a 95 % interval over the standard error: quantile of Student's t (Abramowitz, Stegun, 26.7.5, two terms).
-inline double interval_factor(int degrees_of_freedom) {
-  constexpr double z = 1.959963984540054, cube = z * z * z;
-  const double n = degrees_of_freedom;
-  return z + (cube + z) / (4 * n) + (5 * cube * z * z + 16 * cube + 3 * z) / (96 * n * n);
-}
-
 namespace detail {
 
 /// Errors of least squares of all columns by 1 and the inputs `by`: S - S_Z (S_ZZ)^-1 S_Z', sums of products.

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "pinnquad/regression/block_regression.hpp"
 #include "pinnquad/regression/instrumental_variables.hpp"
 #include "pinnquad/training/structured/closed_form.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"
@@ -154,7 +155,7 @@ inline MeasuredSlopes measure_slopes(const MonotoneShape& shape, const std::vect
   slopes.noisy = shape.noisy;
   if (blocks.size() < fewest) return slopes;
   const RegressionSums all = detail::total(blocks);
-  const double half = interval_factor(static_cast<int>(blocks.size()) - 1);
+  const double half = student_t_975(static_cast<double>(blocks.size()) - 1);
   for (int output = 0; output < map.outputs; ++output) {
     const int place = output == 0 ? shape.thrust : shape.places.front() + output - 1;
     if (place < 0 || (pinned && output > 0)) continue;
