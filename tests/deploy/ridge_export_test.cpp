@@ -3,9 +3,12 @@
 // header text, block, guard, self test, Jacobian.
 #include <doctest/doctest.h>
 
+#include <limits>
+#include <memory>
 #include <random>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pinnquad/deploy/golden_features.hpp"
@@ -14,7 +17,9 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/exported/model_view.hpp"
+#include "pinnquad/exported/run_time_model.hpp"
 #include "pinnquad/features/motion_parts.hpp"
+#include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "pinnquad/nn/clip.hpp"
@@ -110,7 +115,7 @@ void check_export(const Fitted& fitted, const Answer& answer, const std::string&
   });
   CHECK(answered == 148);
 
-  // as a loop flies it: warming up, then answers; a voltage that it never saw is refused
+  // as a loop flies it: warming up, then answers; of a voltage that it never saw those of the range's edge
   InputHistory<Features, float> history;
   const FlightInputs<WithColumns<PhysicsFeatures, BatteryVoltage>::Inputs<float>> recorded(fitted.rows.pieces()[0]);
   Commands<float> u{};
@@ -120,9 +125,37 @@ void check_export(const Fitted& fitted, const Answer& answer, const std::string&
     static_cast<void>(history.take(present, 0.02 * double(row)));
     CHECK(inverse.predict(history.inputs(), u) == (row < 2 ? Status::warming_up : Status::ok));
   }
-  auto wrong = history.inputs();
-  wrong.column<BatteryVoltage>() = 25;
-  CHECK(inverse.predict(wrong, u) == Status::outside_envelope);
+  const auto at_voltage = [&](float volts) {
+    auto inputs = history.inputs();
+    inputs.template column<BatteryVoltage>() = volts;
+    std::vector<float> x(std::size_t(Features::size));
+    Features::extract(inputs, x.data());
+    return x;
+  };
+  const std::size_t voltage = PhysicsFeatures::size;
+  for (const auto& [edge, beyond] :
+       {std::pair(model.envelope_lower[voltage], 9.0F), std::pair(model.envelope_upper[voltage], 25.0F)}) {
+    const std::vector<float> x = at_voltage(beyond);
+    Commands<float> at_edge{}, further{}, at_once{}, at_run_time{};
+    REQUIRE(inverse.predict_features(at_voltage(edge).data(), at_edge) == Status::ok);
+    CHECK(at_edge != u);
+    CHECK(inverse.predict_features(x.data(), further) == Status::ok);
+    CHECK(further == at_edge);
+    Status status{};
+    predict_batch(inverse, x.data(), at_once.data(), &status, 1);
+    CHECK(status == Status::ok);
+    for (std::size_t i = 0; i < 4; ++i) CHECK(at_once[i] == doctest::Approx(double(at_edge[i])).epsilon(1e-6));
+    const auto opened = std::make_unique<RunTimeModel<float>>();
+    BlockFault fault{};
+    REQUIRE(RunTimeModel<float>::open(bytes.data(), bytes.size(), *opened, fault) == Status::ok);
+    CHECK(opened->inside_envelope(x.data()));
+    std::vector<float> work(opened->workspace());
+    opened->commands(x.data(), at_run_time.data(), work.data());
+    CHECK(at_run_time == at_edge);
+  }
+  auto none = history.inputs();
+  none.template column<BatteryVoltage>() = std::numeric_limits<float>::quiet_NaN();
+  CHECK(inverse.predict(none, u) == Status::not_finite);
 }
 
 }  // namespace

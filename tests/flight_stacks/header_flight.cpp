@@ -64,7 +64,7 @@ bool fly(const std::vector<char>& block, const std::vector<char>& other, const s
   const auto airframe = pinnquad::airframe_value<typename Stack::Model::Vehicle, double>();
   const Vehicle vehicle(airframe);
   const double volts = trained_voltage();
-  pinnquad::FigureEight<double> eight = programs::eight_for(airframe, 0, {});
+  pinnquad::FigureEight<double> eight = programs::eight_for(airframe, 0, programs::AnyMotion{}).value();
   eight.period_s *= 2;
   pinnquad::VehicleState<double> state{};
   state.body.position_m = eight.sample(0).position_m;

@@ -6,11 +6,14 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <string_view>
 #include <type_traits>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/structured/closed_form.hpp"
 #include "pinnquad/training/training_data.hpp"
 #include "support/batch_norm_networks.hpp"
 #include "support/plain_network.hpp"
@@ -83,6 +86,25 @@ TEST_CASE("the envelope: the range of the training rows, a tenth wider on both s
       CHECK(x[i] < model.envelope_upper[i]);
     }
   }
+}
+
+TEST_CASE("the envelope of an affine model: a motion twice as great, of which squares are four times as great") {
+  using Setting = Context<pinnquad::PhysicsFeatures, PaperQuadrotor>;
+  const Flight flight = random_flight_rows(60, 155);
+  const pinnquad::RowSet rows(flight, {0, 60});
+  const auto context = make_context<Setting>(rows);
+  const auto affine = pinnquad::affine_answer<Setting>(fit_ridge(regression_sums(context, rows), 1e-3));
+  const auto model = make_trained_model(affine, context, rows);
+  const auto columns = pinnquad::detail::feature_statistics<pinnquad::PhysicsFeatures>(rows);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    CAPTURE(pinnquad::PhysicsFeatures::names[i]);
+    const double half = (columns[i].highest - columns[i].lowest) / 2;
+    const std::string_view unit = pinnquad::PhysicsFeatures::units[i];
+    const double reach = unit == "m^2/s^2" || unit == "rad^2/s^2" ? 3 : 1;
+    CHECK(double(model.envelope_lower[i]) == doctest::Approx(columns[i].lowest - reach * half).epsilon(1e-5));
+    CHECK(double(model.envelope_upper[i]) == doctest::Approx(columns[i].highest + reach * half).epsilon(1e-5));
+  }
+  CHECK(pinnquad::detail::affine_reach("m") == 0);  // a height above the ground
 }
 
 TEST_CASE("the envelope of a feature that stands still: about where it stood, by its unit") {

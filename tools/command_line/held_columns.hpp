@@ -14,10 +14,14 @@
 
 namespace programs {
 
-/// The value of each column that a model asks for, in their order; none of one that is not given. `asked`: columns,
-/// each with `name` and `unit`. Throws std::invalid_argument, one line.
-template <class Columns>
-std::vector<std::optional<double>> held_columns(const Columns& asked, const std::vector<std::string>& given) {
+/// A column that a model asks for, and the middle of its training envelope.
+struct AskedColumn {
+  std::string name, unit;
+  double middle = 0;
+};
+
+/// The value of each column, in their order: the middle where none is given. Throws std::invalid_argument, one line.
+inline std::vector<double> held_columns(const std::vector<AskedColumn>& asked, const std::vector<std::string>& given) {
   using pinnquad::printable;
   std::vector<std::optional<double>> values(asked.size());
   for (const std::string& text : given) {
@@ -39,7 +43,9 @@ std::vector<std::optional<double>> held_columns(const Columns& asked, const std:
     }
     values[at] = value;
   }
-  return values;
+  std::vector<double> held;
+  for (std::size_t i = 0; i < asked.size(); ++i) held.push_back(values[i].value_or(asked[i].middle));
+  return held;
 }
 
 }  // namespace programs

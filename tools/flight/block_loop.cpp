@@ -2,11 +2,13 @@
 #include "flight/block_loop.hpp"
 
 #include <functional>
-#include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "flight/block_feed_forward.hpp"
 #include "flight/loop_trajectories.hpp"
+#include "flight/model_range.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
@@ -26,17 +28,31 @@ struct AnyTrajectory {
   TrajectoryPoint<double> sample(double time_s) const noexcept { return point(time_s); }
 };
 
-std::optional<NearGround> near_ground(const BlockModel& model) {
-  if (!model.features().asks_for_altitude()) return {};
-  const std::vector<std::string> names = model.feature_names();
+/// What a trajectory must stay within; of a model that is asked outside of its envelope too, the altitude alone.
+ModelRange range_of(const BlockModel& model, bool keeps_envelope) {
+  const RunTimeFeatures& features = model.features();
   const std::vector<double> lower = model.envelope_lower(), upper = model.envelope_upper();
-  NearGround range;
-  for (std::size_t i = 0; i < names.size(); ++i) range.take(names[i], lower[i], upper[i]);
+  ModelRange range;
+  for (int i = 0; i < features.size(); ++i) {
+    const auto at = std::size_t(i);
+    if (!keeps_envelope && features[i].name != "altitude") continue;
+    range.features.push_back({std::string(features[i].name), std::string(features[i].unit), lower[at], upper[at],
+                              features.is_column(i)});
+  }
+  if (!keeps_envelope) return range;
+  range.of = [&features](const ModelRange::Motion& motion) {
+    RunTimeInputs<double> lasting;
+    static_cast<ModelRange::Motion&>(lasting) = motion;
+    const std::vector<RunTimeInputs<double>> taps(std::size_t(features.window().taps), lasting);
+    std::vector<double> x(std::size_t(features.size()));
+    features.extract(taps.data(), x.data());
+    return x;
+  };
   return range;
 }
 
-AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const std::optional<NearGround>& range,
-                            LoopFlights& flights) {
+AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const ModelRange& range, LoopFlights& flights) {
+  constexpr const char* none = "the model's envelope holds no trajectory of this kind, however slow: --no-envelope";
   const auto take = [&](const auto& trajectory, double half_length_m, double half_height_m) {
     const double middle_m = ground_z_m - trajectory.center_m[2];
     flights.half_length_m = half_length_m;
@@ -46,10 +62,13 @@ AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const std::
     return AnyTrajectory{[trajectory](double time_s) { return trajectory.sample(time_s); }};
   };
   if (plan.trajectory == "circle") {
-    const Circle<double> circle = circle_for(plan.airframe, ground_z_m, range);
-    return take(circle, circle.radius_m, 0);
+    const auto circle = circle_for(plan.airframe, ground_z_m, range);
+    if (!circle) throw std::invalid_argument(none);
+    return take(*circle, circle->radius_m, 0);
   }
-  FigureEight<double> eight = eight_for(plan.airframe, ground_z_m, range);
+  const auto held = eight_for(plan.airframe, ground_z_m, range);
+  if (!held) throw std::invalid_argument(none);
+  FigureEight<double> eight = *held;
   if (plan.trajectory == "yaw_eight") {
     eight.yaw_amplitude_rad = 0.5;
     eight.period_s *= 14.0 / 15.0;
@@ -63,7 +82,7 @@ LoopFlights fly_with(const BlockModel& model, const LoopPlan& plan) {
   const double ground_z_m = vehicle.site().ground_z_m;
   LoopFlights flights;
   flights.near_ground = model.features().asks_for_altitude();
-  const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, near_ground(model), flights);
+  const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, range_of(model, plan.keeps_envelope), flights);
   HoverTrim<double> trim;
   Status status = vehicle.status();
   if (status == Status::ok) status = hover_trim(vehicle, trajectory.sample(0).position_m, trim);

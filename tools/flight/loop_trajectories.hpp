@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Trajectories of a closed loop that an airframe can fly: far above the ground, or near it where a model was trained
-// there.
+// Trajectories of a closed loop that an airframe can fly and a model answers: far above the ground, or near it where a
+// model was trained there. A range of motions has `std::optional<double> speed_m_s(axis)`, the largest along a body
+// axis, `std::optional<std::pair<double, double>> altitude_m()`, and `bool holds(motion)`.
 #pragma once
 
 #include <algorithm>
@@ -8,31 +9,20 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <string_view>
+#include <utility>
 
+#include "pinnquad/control/flatness.hpp"
 #include "pinnquad/control/trajectory.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace programs {
 
-/// Where a model that is shown the altitude was trained.
-struct NearGround {
-  double lowest_m = 0, highest_m = 0;  ///< altitude, its envelope
-  /// Of the body velocity, the largest either way in its envelope; none of a component that it is not shown.
-  std::array<std::optional<double>, 3> reach_m_s{};
-
-  /// Takes a feature's envelope, if it says something of that.
-  void take(std::string_view feature, double lower, double upper) {
-    constexpr std::array<std::string_view, 3> velocity = {"v_bx", "v_by", "v_bz"};
-    if (feature == "altitude") {
-      lowest_m = lower;
-      highest_m = upper;
-    }
-    for (std::size_t axis = 0; axis < velocity.size(); ++axis) {
-      if (feature == velocity[axis]) reach_m_s[axis] = std::min(upper, -lower);
-    }
-  }
+/// Motions of which nothing is known.
+struct AnyMotion {
+  std::optional<double> speed_m_s(std::size_t /*axis*/) const { return {}; }
+  std::optional<std::pair<double, double>> altitude_m() const { return {}; }
+  bool holds(const pinnquad::MotionInputsWithAltitude<double>& /*motion*/) const { return true; }
 };
 
 namespace detail {
@@ -47,53 +37,93 @@ inline double least_period_s(const pinnquad::Airframe<double>& airframe, double 
   return turn / std::sqrt(0.4 * sideways / factor_m);
 }
 
-/// The shortest period, of 4 s or more, in which motions of these amplitudes along each axis stay in half of a model's
-/// envelope: the feedback adds to what is planned.
-inline double least_period_s(const NearGround& range, const std::array<double, 3>& amplitude_m) {
-  constexpr double turn = 6.283185307179586, share = 0.5;
-  double period_s = 4;
-  for (std::size_t axis = 0; axis < amplitude_m.size(); ++axis) {
-    if (!range.reach_m_s[axis]) continue;
-    period_s = std::max(period_s, turn * amplitude_m[axis] / (share * *range.reach_m_s[axis]));
-  }
-  return period_s;
-}
-
 constexpr double far_above_ground_m = 20;
 constexpr double least_altitude_m = 0.1;  ///< the margin of an envelope may reach below the ground
+constexpr double longest_period_s = 60;
+
+/// True where the range holds every motion along the trajectory, to a fiftieth of a period.
+template <class Trajectory, class Range>
+bool is_held(const Trajectory& trajectory, double ground_z_m, const Range& range) {
+  for (double time_s = 0; time_s < trajectory.ramp_s + trajectory.period_s; time_s += 0.02 * trajectory.period_s) {
+    const auto point = trajectory.sample(time_s);
+    pinnquad::FlatMotion<double> flat;
+    if (pinnquad::flat_motion(point, pinnquad::standard_gravity_m_s2<double>, flat) != pinnquad::Status::ok) {
+      return false;
+    }
+    pinnquad::MotionInputsWithAltitude<double> motion;
+    motion.attitude = flat.attitude;
+    motion.body_rates_rad_s = flat.body_rates_rad_s;
+    motion.angular_acceleration_rad_s2 = flat.angular_acceleration_rad_s2;
+    motion.velocity_m_s = pinnquad::world_to_body(flat.attitude, point.velocity_m_s);
+    motion.linear_acceleration_m_s2 = pinnquad::world_to_body(flat.attitude, point.acceleration_m_s2) -
+                                      pinnquad::cross<double>(flat.body_rates_rad_s, motion.velocity_m_s);
+    motion.altitude_m = ground_z_m - point.position_m[2];
+    if (!range.holds(motion)) return false;
+  }
+  return true;
+}
+
+/// The fastest from its period on that the range holds. False if not even a slow one is.
+template <class Trajectory, class Range>
+bool slow_down(Trajectory& trajectory, double ground_z_m, const Range& range) {
+  constexpr double slower = 1.05;
+  for (; trajectory.period_s < longest_period_s; trajectory.period_s *= slower) {
+    if (is_held(trajectory, ground_z_m, range)) return true;
+  }
+  return false;
+}
+
+/// As large beside the usual trajectory as the range's speed along that axis beside 4 m/s.
+template <class Range>
+double size_along(const Range& range, std::size_t axis) {
+  constexpr double usual_m_s = 4;
+  return std::clamp(range.speed_m_s(axis).value_or(usual_m_s) / usual_m_s, 0.05, 1.0);
+}
 
 }  // namespace detail
 
-/// A figure-eight. Near the ground it rises and sinks over most of the heights that the model was trained at, as slowly
-/// as its envelope asks for.
-inline pinnquad::FigureEight<double> eight_for(const pinnquad::Airframe<double>& airframe, double ground_z_m,
-                                               const std::optional<NearGround>& range) {
+/// A figure-eight, the fastest from `shortest_s` on. Near the ground it rises and sinks over most of the heights of the
+/// range. None if the range holds none, however slow.
+template <class Range>
+std::optional<pinnquad::FigureEight<double>> eight_for(const pinnquad::Airframe<double>& airframe, double ground_z_m,
+                                                       const Range& range, std::optional<double> shortest_s = {}) {
   pinnquad::FigureEight<double> eight;
   eight.center_m = {0, 0, -detail::far_above_ground_m};
-  if (range) {
-    const double lowest = std::max(range->lowest_m, detail::least_altitude_m);
-    eight.center_m[2] = ground_z_m - (lowest + 0.45 * (range->highest_m - lowest));
-    eight.half_height_m = 0.35 * (range->highest_m - lowest);
-    eight.half_length_m = 1;
-    eight.half_width_m = 0.5;
-    eight.period_s = detail::least_period_s(*range, {eight.half_length_m, 2 * eight.half_width_m, eight.half_height_m});
+  const double size = detail::size_along(range, 0);
+  eight.half_length_m *= size;
+  eight.half_width_m *= detail::size_along(range, 1);
+  eight.half_height_m *= detail::size_along(range, 2);
+  eight.period_s = shortest_s.value_or(eight.period_s * std::sqrt(size));
+  if (const auto altitude = range.altitude_m()) {
+    const double lowest = std::max(altitude->first, detail::least_altitude_m);
+    eight.center_m[2] = ground_z_m - (lowest + 0.45 * (altitude->second - lowest));
+    eight.half_height_m = 0.35 * (altitude->second - lowest);
+    eight.half_length_m = std::min(eight.half_length_m, 1.0);
+    eight.half_width_m = std::min(eight.half_width_m, 0.5);
+    eight.period_s = 4;
   }
   eight.period_s = std::max(eight.period_s, detail::least_period_s(airframe, 4 * eight.half_width_m));
+  if (!detail::slow_down(eight, ground_z_m, range)) return {};
   return eight;
 }
 
 /// A level circle, near the ground in the middle of the heights.
-inline pinnquad::Circle<double> circle_for(const pinnquad::Airframe<double>& airframe, double ground_z_m,
-                                           const std::optional<NearGround>& range) {
+template <class Range>
+std::optional<pinnquad::Circle<double>> circle_for(const pinnquad::Airframe<double>& airframe, double ground_z_m,
+                                                   const Range& range) {
   pinnquad::Circle<double> circle;
   circle.center_m = {0, 0, -detail::far_above_ground_m};
-  if (range) {
-    const double lowest = std::max(range->lowest_m, detail::least_altitude_m);
-    circle.center_m[2] = ground_z_m - (lowest + 0.45 * (range->highest_m - lowest));
-    circle.radius_m = 1;
-    circle.period_s = detail::least_period_s(*range, {circle.radius_m, circle.radius_m, 0});
+  const double size = std::min(detail::size_along(range, 0), detail::size_along(range, 1));
+  circle.radius_m *= size;
+  circle.period_s *= std::sqrt(size);
+  if (const auto altitude = range.altitude_m()) {
+    const double lowest = std::max(altitude->first, detail::least_altitude_m);
+    circle.center_m[2] = ground_z_m - (lowest + 0.45 * (altitude->second - lowest));
+    circle.radius_m = std::min(circle.radius_m, 1.0);
+    circle.period_s = 4;
   }
   circle.period_s = std::max(circle.period_s, detail::least_period_s(airframe, circle.radius_m));
+  if (!detail::slow_down(circle, ground_z_m, range)) return {};
   return circle;
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
@@ -119,6 +120,9 @@ class RunTimeView {
       input.standard_deviation[at] = model.scales().input_deviation[i];
       envelope_lower[at] = model.scales().lower[i];
       envelope_upper[at] = model.scales().upper[i];
+      if (!model.features().is_column(static_cast<int>(i))) continue;
+      envelope_upper[at] = std::numeric_limits<Scalar>::max() / 4;  // the model moves columns to their range's edge
+      envelope_lower[at] = -envelope_upper[at];
     }
     for (int vector = 0; vector < model.golden_count(); ++vector) {
       FeatureVector x{};
@@ -149,6 +153,7 @@ class RunTimeView {
       x[i] = restored[place(i)];
       scaled[i] = standardised[place(i)];
     }
+    model_->saturate_columns(scaled.data());
     model_->answer(x.data(), scaled.data(), commands, work_.data());
   }
 

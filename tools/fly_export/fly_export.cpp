@@ -10,6 +10,7 @@
 #include <iterator>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "command_line/held_columns.hpp"
 #include "command_line/options.hpp"
 #include "flight/loop_trajectories.hpp"
+#include "flight/model_range.hpp"
 #include "pinnquad/flight.hpp"
 #include "pinnquad/io/text_file.hpp"
 #include "pinnquad/simulation/tracking.hpp"
@@ -55,7 +57,7 @@ using Asked = std::conditional_t<asks_for_motion, Model::Inputs, std::array<Scal
 /// Of a model that asks for it.
 template <class Inputs>
 void set_altitude([[maybe_unused]] Inputs& inputs, [[maybe_unused]] double altitude_m) noexcept {
-  if constexpr (knows_altitude) inputs.altitude_m = Scalar(altitude_m);
+  if constexpr (knows_altitude) inputs.altitude_m = static_cast<decltype(inputs.altitude_m)>(altitude_m);
 }
 
 template <class Numbers>
@@ -203,34 +205,48 @@ struct Measured {
   }
 };
 
-struct Column {
-  std::string name, unit;
-};
-
-/// Values that the columns stand at in the closed loop: where nothing is given, in the middle of the training envelope.
+/// Values that the columns stand at in the closed loop.
 Columns column_values(const std::vector<std::string>& given) {
-  std::vector<Column> asked;
-  for (std::size_t i = 0; i < column_names.size(); ++i) asked.push_back({column_names[i], column_units[i]});
-  const std::vector<std::optional<double>> values = programs::held_columns(asked, given);
-  Columns columns{};
-  for (std::size_t i = 0; i < asked.size(); ++i) {
+  std::vector<programs::AskedColumn> asked;
+  for (std::size_t i = 0; i < column_names.size(); ++i) {
     std::size_t feature = 0;
-    while (asked[i].name != Model::Features::names[feature]) ++feature;
-    const double middle = 0.5 * (static_cast<double>(Model::envelope_lower[feature]) +
-                                 static_cast<double>(Model::envelope_upper[feature]));
-    columns[i] = Scalar(values[i].value_or(middle));
+    while (std::string_view(column_names[i]) != Model::Features::names[feature]) ++feature;
+    asked.push_back({column_names[i], column_units[i],
+                     (static_cast<double>(Model::envelope_lower[feature]) +
+                      static_cast<double>(Model::envelope_upper[feature])) / 2});
   }
+  const std::vector<double> held = programs::held_columns(asked, given);
+  Columns columns{};
+  for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = Scalar(held[i]);
   return columns;
 }
 
-/// Where the model was trained, if it is shown the altitude.
-std::optional<programs::NearGround> near_ground() {
-  if constexpr (!knows_altitude) return {};
-  programs::NearGround range;
-  for (std::size_t i = 0; i < Model::Features::names.size(); ++i) {
-    range.take(Model::Features::names[i], static_cast<double>(Model::envelope_lower[i]),
-               static_cast<double>(Model::envelope_upper[i]));
+/// The present inputs at every tap of a window.
+template <class Inputs>
+void let_last([[maybe_unused]] Inputs& inputs) noexcept {
+  if constexpr (is_windowed<Model::Features>) {
+    inputs.others.fill(inputs);
+    inputs.complete = true;
   }
+}
+
+/// The motions that the model answers.
+programs::ModelRange model_range() {
+  using Features = Model::Features;
+  programs::ModelRange range;
+  for (std::size_t i = 0; i < Features::names.size(); ++i) {
+    range.features.push_back({Features::names[i], Features::units[i], static_cast<double>(Model::envelope_lower[i]),
+                              static_cast<double>(Model::envelope_upper[i]), pinnquad::detail::column_places<Features>[i]});
+  }
+  range.of = [](const programs::ModelRange::Motion& motion) {
+    Features::Inputs<double> inputs{};
+    static_cast<MotionInputs<double>&>(inputs) = motion;
+    set_altitude(inputs, motion.altitude_m);
+    let_last(inputs);
+    std::vector<double> x(std::size_t(Features::size));
+    Features::extract(inputs, x.data());
+    return x;
+  };
   return range;
 }
 
@@ -260,8 +276,12 @@ bool closed_loop(const Flown& model, const Columns& columns) {
                        std::string("this airframe can't be flown near the ground: ") + to_string(vehicle.status()));
     return false;
   }
-  const FigureEight<double> trajectory =
-      programs::eight_for(vehicle.airframe(), vehicle.site().ground_z_m, near_ground());
+  const auto held = programs::eight_for(vehicle.airframe(), vehicle.site().ground_z_m, model_range());
+  if (!held) {
+    programs::complain("fly_export", "the model's envelope holds no figure-eight, however slow");
+    return false;
+  }
+  const FigureEight<double>& trajectory = *held;
   const AnalyticInverse<Vehicle> analytic(vehicle);
   const Measured measured{vehicle.site().ground_z_m, columns};
   HoverTrim<double> trim;

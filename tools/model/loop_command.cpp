@@ -37,20 +37,16 @@ struct LoopOptions {
   bool json = false;
 };
 
-/// The value of each column that the model asks for, in their order. Throws std::invalid_argument, one line.
-std::vector<double> column_values(const BlockModel& model, const std::vector<std::string>& given) {
-  const std::vector<ColumnName> asked = model.columns();
-  const std::vector<std::optional<double>> values = programs::held_columns(asked, given);
-  std::string missing;
-  std::vector<double> result;
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    if (!values[i]) programs::add_to_list(missing, printable(asked[i].name + " [" + asked[i].unit + "]"));
-    result.push_back(values[i].value_or(0));
+std::vector<programs::AskedColumn> asked_columns(const BlockModel& model) {
+  const std::vector<std::string> names = model.feature_names();
+  const std::vector<double> lower = model.envelope_lower(), upper = model.envelope_upper();
+  std::vector<programs::AskedColumn> asked;
+  for (const ColumnName& column : model.columns()) {
+    std::size_t feature = 0;
+    while (feature + 1 < names.size() && names[feature] != column.name) ++feature;
+    asked.push_back({column.name, column.unit, (lower[feature] + upper[feature]) / 2});
   }
-  if (!missing.empty()) {
-    throw std::invalid_argument("--column: the model asks for " + missing + ": say each as --column NAME=VALUE");
-  }
-  return result;
+  return asked;
 }
 
 /// The airframe that flies. Throws std::invalid_argument for one whose motors are not those of the model.
@@ -135,7 +131,7 @@ int loop(const LoopOptions& options) {
   if (model.features().window().latest_s > 0) {
     throw std::invalid_argument(model.path() + ": its window looks ahead of the present, which no loop can");
   }
-  const std::vector<double> columns = column_values(model, options.columns);
+  const std::vector<double> columns = programs::held_columns(asked_columns(model), options.columns);
   const programs::NamedAirframe airframe = chosen_airframe(options, model);
   const programs::LoopFlights flights =
       programs::fly_loop(model, {options.trajectory, airframe.value, options.guard == "envelope", columns});
@@ -163,13 +159,13 @@ programs::Command programs::loop_command(CLI::App& program) {
   const auto options = std::make_shared<LoopOptions>();
   add_model(*line, options->model);
   line->add_option("--trajectory", options->trajectory,
-                   "eight: a figure-eight that the airframe can fly; yaw_eight: a quicker one whose nose swings; "
+                   "eight: a figure-eight that the airframe can fly and the model's envelope holds; yaw_eight: a quicker one whose nose swings; "
                    "circle: a level one")
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>(loop_trajectories.begin(), loop_trajectories.end())));
   line->add_option("--column", options->columns,
-                   "the value at which a column is held, one for each column that the model asks for: --column "
-                   "battery_voltage=15.2")
+                   "the value at which a column that the model asks for is held, in place of the middle of its training "
+                   "envelope: --column battery_voltage=15.2")
       ->type_name("NAME=VALUE");
   line->add_option(
       "--airframe", options->airframe,

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -17,9 +18,8 @@
 #include "airframe/choice.hpp"
 #include "flight/block_feed_forward.hpp"
 #include "flight/loop_figures.hpp"
+#include "flight/loop_trajectories.hpp"
 #include "pinnquad/aero/drag.hpp"
-#include "pinnquad/control/flatness.hpp"
-#include "pinnquad/control/trajectory.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 #include "training/logged_vehicle.hpp"
@@ -41,24 +41,34 @@ inline std::vector<double> usual_columns(const pinnquad::BlockModel& model, cons
   return held;
 }
 
-/// Limits that flights have reached in all but their last hundredths; of body axes each its own.
+/// Limits that flights have reached in all but their last hundredths; of body axes each its own. A range of motions
+/// (flight/loop_trajectories.hpp); speed counts for nothing where it was not logged.
 struct FlownEnvelope {
-  std::array<double, 3> speed_m_s{}, turning_rad_s{}, angular_acceleration_rad_s2{};
+  std::array<double, 3> fastest_m_s{}, turning_rad_s{}, angular_acceleration_rad_s2{};
   double tilt_rad = 0;
+  bool has_velocity = true;
+
+  std::optional<std::pair<double, double>> altitude_m() const { return {}; }
+  std::optional<double> speed_m_s(std::size_t axis) const {
+    constexpr double unknown_m_s = 1;  // a small figure then
+    return has_velocity ? fastest_m_s[axis] : unknown_m_s;
+  }
+  bool holds(const pinnquad::MotionInputs<double>& motion) const {
+    return (!has_velocity || within(motion.velocity_m_s, fastest_m_s)) &&
+           pinnquad::tilt_rad(motion.attitude) <= tilt_rad && within(motion.body_rates_rad_s, turning_rad_s) &&
+           within(motion.angular_acceleration_rad_s2, angular_acceleration_rad_s2);
+  }
+
+ private:
+  static bool within(const pinnquad::Vector3<double>& vector, const std::array<double, 3>& limits) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(std::abs(vector[axis]) <= limits[static_cast<std::size_t>(axis)])) return false;
+    }
+    return true;
+  }
 };
 
-namespace detail {
-
-inline bool within(const pinnquad::Vector3<double>& vector, const std::array<double, 3>& limits) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(std::abs(vector[axis]) <= limits[static_cast<std::size_t>(axis)])) return false;
-  }
-  return true;
-}
-
-}  // namespace detail
-
-inline FlownEnvelope flown_envelope(const pinnquad::RowSet& rows) {
+inline FlownEnvelope flown_envelope(const pinnquad::RowSet& rows, bool has_velocity) {
   constexpr double share = 0.98;
   const auto reached = [&rows](const auto& value_of) {
     std::vector<double> values;
@@ -68,9 +78,10 @@ inline FlownEnvelope flown_envelope(const pinnquad::RowSet& rows) {
     return *place;
   };
   FlownEnvelope envelope;
+  envelope.has_velocity = has_velocity;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<int>(i);
-    envelope.speed_m_s[i] = reached([axis](const auto& sample) { return std::abs(sample.velocity_m_s[axis]); });
+    envelope.fastest_m_s[i] = reached([axis](const auto& sample) { return std::abs(sample.velocity_m_s[axis]); });
     envelope.turning_rad_s[i] = reached([axis](const auto& sample) { return std::abs(sample.body_rates_rad_s[axis]); });
     envelope.angular_acceleration_rad_s2[i] =
         reached([axis](const auto& sample) { return std::abs(sample.angular_acceleration_rad_s2[axis]); });
@@ -79,35 +90,6 @@ inline FlownEnvelope flown_envelope(const pinnquad::RowSet& rows) {
     return std::acos(std::clamp(std::cos(sample.roll_rad) * std::cos(sample.pitch_rad), -1.0, 1.0));
   });
   return envelope;
-}
-
-/// The fastest figure-eight of its size, within the envelope; speed counts for nothing where it was not logged. None if
-/// not even a slow one is.
-inline std::optional<pinnquad::FigureEight<double>> eight_within(const FlownEnvelope& envelope, bool has_velocity) {
-  constexpr double slowest_s = 60, slower = 1.05;
-  pinnquad::FigureEight<double> eight;
-  const auto size = [&](std::size_t axis) {
-    return has_velocity ? std::clamp(envelope.speed_m_s[axis] / 4, 0.05, 1.0) : 0.25;
-  };
-  eight.center_m = {0, 0, -20};
-  eight.half_length_m *= size(0);
-  eight.half_width_m *= size(1);
-  eight.half_height_m *= size(2);
-  for (eight.period_s = 2; eight.period_s < slowest_s; eight.period_s *= slower) {
-    bool inside = true;
-    for (double time_s = 0; inside && time_s < eight.ramp_s + eight.period_s; time_s += 0.02 * eight.period_s) {
-      const auto point = eight.sample(time_s);
-      pinnquad::FlatMotion<double> motion;
-      inside = pinnquad::flat_motion(point, pinnquad::standard_gravity_m_s2<double>, motion) == pinnquad::Status::ok &&
-               (!has_velocity ||
-                detail::within(pinnquad::world_to_body(motion.attitude, point.velocity_m_s), envelope.speed_m_s)) &&
-               pinnquad::tilt_rad(motion.attitude) <= envelope.tilt_rad &&
-               detail::within(motion.body_rates_rad_s, envelope.turning_rad_s) &&
-               detail::within(motion.angular_acceleration_rad_s2, envelope.angular_acceleration_rad_s2);
-    }
-    if (inside) return eight;
-  }
-  return {};
 }
 
 /// Of what fly_logged() found: why the model is not fit to fly; empty if it is, or was not flown.
@@ -135,7 +117,8 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
   const LoggedEffects effects = logged_effects(training, signs);
   const auto made = logged_vehicle(airframe.value, effects);
   if (!made) return {{"why_not", "the commands of the logs do not lift and turn a vehicle as they should"}};
-  const auto eight = eight_within(flown_envelope(training), has_velocity);
+  constexpr double shortest_s = 2;
+  const auto eight = eight_for(*made, 0, flown_envelope(training, has_velocity), shortest_s);
   if (!eight) return {{"why_not", "the flights hold no figure-eight, however slow"}};
   const LoggedQuadrotor vehicle(*made, {}, {}, LoggedTorque{effects.damping_1_s, effects.trim_rad_s2});
   pinnquad::HoverTrim<double> trim;

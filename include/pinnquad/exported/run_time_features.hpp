@@ -106,6 +106,7 @@ class RunTimeFeatures {
   /// Columns that it asks for, in the order of RunTimeInputs::columns.
   int column_count() const noexcept { return column_count_; }
   const Named& column(int index) const noexcept { return columns_[index]; }
+  bool is_column(int feature) const noexcept { return features_[feature].source > altitude; }
   bool asks_for_altitude() const noexcept {
     for (int i = 0; i < size_; ++i) {
       if (features_[i].source == altitude) return true;

@@ -63,6 +63,7 @@ class RunTimeModel {
   void commands(const Scalar* x, Scalar* u, Scalar* work) const noexcept {
     const auto size = std::size_t(features_.size());
     for (std::size_t i = 0; i < size; ++i) work[i] = (x[i] - scales_.input_mean[i]) / scales_.input_deviation[i];
+    saturate_columns(work);
     answer(x, work, u, work + size);
   }
   /// The same of features that the caller has standardised; `work` has network().outputs() and its workspace().
@@ -77,8 +78,22 @@ class RunTimeModel {
     }
     outputs_.commands(x, work, u);
   }
+  /// As the compiled model does: columns outside their range of the training rows are moved to its edge.
+  void saturate_columns(Scalar* standardised) const noexcept {
+    for (int i = 0; i < features_.size(); ++i) {
+      if (!features_.is_column(i)) continue;
+      const Scalar least = (scales_.lower[i] - scales_.input_mean[i]) / scales_.input_deviation[i];
+      const Scalar most = (scales_.upper[i] - scales_.input_mean[i]) / scales_.input_deviation[i];
+      standardised[i] = standardised[i] < least ? least : (most < standardised[i] ? most : standardised[i]);
+    }
+  }
+  /// As InverseDynamics::inside_envelope().
   bool inside_envelope(const Scalar* x) const noexcept {
-    return detail::inside_envelope(scales_.lower, x, scales_.upper, std::size_t(features_.size()));
+    bool inside = true;
+    for (int i = 0; i < features_.size(); ++i) {
+      inside &= features_.is_column(i) ? is_finite(x[i]) : scales_.lower[i] <= x[i] && x[i] <= scales_.upper[i];
+    }
+    return inside;
   }
 
   /// Largest difference of a golden command from what the weights make of its features; NaN where one is none.

@@ -22,7 +22,8 @@ namespace pinnquad {
 /// norm then.
 struct FiniteInputs {};
 
-/// Every feature lies in its range of the training rows, margin included: else `outside_envelope`.
+/// Every feature lies in its range of the training rows, margin included: else `outside_envelope`. A column
+/// (features/extra_columns.hpp) outside its range is no refusal: the network is shown the range's edge.
 /// The envelope is a box, feature by feature. A motion within it may be far from every training row; JointDistance and
 /// Agreement find such motions.
 struct TrainingEnvelope {};

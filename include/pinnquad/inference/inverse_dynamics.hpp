@@ -165,11 +165,12 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
                            PINNQUAD_INLINE_LAMBDA { forward(standardised, made); });
   }
 
-  /// True if every feature lies in the training rows' range, margin included; false for NaN, under -ffast-math too.
+  /// True if every feature but the columns lies in the training rows' range, margin included; false for NaN, under
+  /// -ffast-math too.
   PINNQUAD_ALWAYS_INLINE bool inside_envelope(const Scalar* x) const noexcept {
     const detail::Scales<Scalar> scales = detail::scales_of(model());
     bool inside = all_finite(x, Features::size);
-    for (int i = 0; i < Features::size; ++i) inside &= x[i] >= scales.lower[i] && x[i] <= scales.upper[i];
+    for (int i = 0; i < Features::size; ++i) inside &= within(scales, x, i);
     return inside;
   }
 
@@ -198,6 +199,10 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   }
 
  private:
+  static PINNQUAD_ALWAYS_INLINE bool within(const detail::Scales<Scalar>& scales, const Scalar* x, int i) noexcept {
+    return detail::column_places<Features>[std::size_t(i)] || (x[i] >= scales.lower[i] && x[i] <= scales.upper[i]);
+  }
+
   using Pipeline = detail::Pipeline<Features, typename Model::Outputs, typename Model::Vehicle>;
   template <class ReportType>
   static constexpr bool reports = !std::is_same_v<ReportType, detail::NoReport>;
@@ -351,7 +356,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     for (int i = 0; i < Features::size; ++i) {
       const Scalar beyond = x[i] < scales.lower[i] ? scales.lower[i] - x[i] : x[i] - scales.upper[i];  // NaN stays NaN
       Scalar excess = beyond / ((scales.upper[i] - scales.lower[i]) / Scalar(2));
-      if (is_finite(x[i]) && x[i] >= scales.lower[i] && x[i] <= scales.upper[i]) excess = Scalar(0);
+      if (is_finite(x[i]) && within(scales, x, i)) excess = Scalar(0);
       report.excess[static_cast<std::size_t>(i)] = excess;
       // what is not finite outdoes every number, the first of them all
       if (is_finite(worst) && (!is_finite(excess) || excess > worst)) {

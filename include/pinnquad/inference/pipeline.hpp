@@ -8,6 +8,7 @@
 #include "pinnquad/core/first_of.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/exported/model.hpp"
+#include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/model/predictor.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 
@@ -57,6 +58,24 @@ PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* mean, const Scalar* deviat
   }
 }
 
+/// Standardised columns outside their range of the training rows are moved to its edge: a battery's voltage changes
+/// slowly and asks for no motion, so that the commands at the edge are the best that the model knows.
+template <class Features, int Lanes, class Scalar>
+PINNQUAD_ALWAYS_INLINE void saturate_columns([[maybe_unused]] const Scales<Scalar>& scales,
+                                             [[maybe_unused]] Scalar* standardised) noexcept {
+  if constexpr (extra_column_names<Features>.size() > 0) {
+    for (int i = 0; i < Features::size; ++i) {
+      if (!column_places<Features>[std::size_t(i)]) continue;
+      const Scalar least = (scales.lower[i] - scales.input_mean[i]) / scales.input_deviation[i];
+      const Scalar most = (scales.upper[i] - scales.input_mean[i]) / scales.input_deviation[i];
+      for (int s = 0; s < Lanes; ++s) {
+        Scalar& value = standardised[i * Lanes + s];
+        value = value < least ? least : (most < value ? most : value);
+      }
+    }
+  }
+}
+
 /// That line for models with these features, outputs and airframe. `forward(standardised, outputs)` is the network.
 template <class Features, class Outputs, class Vehicle>
 struct Pipeline {
@@ -87,6 +106,7 @@ struct Pipeline {
     } else {
       const Scalar* const seen = x;
       standardise<Features::size, 1>(scales.input_mean, scales.input_deviation, seen, 1, 1, x);
+      saturate_columns<Features, 1>(scales, x);
       forward(seen, commands);
       if constexpr (Map::rotor_by_rotor) {
         command(scales, seen, 1, static_cast<const Scalar*>(commands), 1, commands, commands);
@@ -103,6 +123,7 @@ struct Pipeline {
                                          Scalar* answers, const Forward& forward) noexcept {
     alignas(Lanes > 1 ? 64 : alignof(Scalar)) Scalar standardised[Features::size * Lanes];
     standardise<Features::size, Lanes>(scales.input_mean, scales.input_deviation, x, x_stride, count, standardised);
+    saturate_columns<Features, Lanes>(scales, static_cast<Scalar*>(standardised));
     forward(static_cast<const Scalar*>(standardised), answers);
   }
 

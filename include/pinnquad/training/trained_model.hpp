@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pinnquad/data/flight_features.hpp"
+#include "pinnquad/exported/model_agreement.hpp"
 #include "pinnquad/inference/pipeline.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/training/folding.hpp"
@@ -50,8 +51,17 @@ struct TrainedModel : detail::ContextAirframe<typename ContextType::Vehicle> {
   }
 };
 
+namespace detail {
+/// An affine map, alone or below a bounded residual.
+template <class Predictor>
+inline constexpr bool affine_predictor = StatedStructure<Predictor>::known;
+template <class Scalar, int Inputs, int Outputs>
+inline constexpr bool affine_predictor<Network<Scalar, InputSize<Inputs>, Dense<Outputs>>> = true;
+}  // namespace detail
+
 /// Joins a network with the scalers of its context and the envelope of its training rows: their range, wider by a tenth
-/// on both sides (detail::ColumnStatistics). Batch norm is folded away: the network that is judged and exported flies.
+/// on both sides (detail::ColumnStatistics), of a model that is affine but for a bounded residual twice as wide and more
+/// (detail::affine_reach). Batch norm is folded away: the network that is judged and exported flies.
 template <class NetworkType, class ContextType>
 TrainedModel<detail::Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network,
                                                                           const ContextType& context,
@@ -77,8 +87,12 @@ TrainedModel<detail::Folded<NetworkType>, ContextType> make_trained_model(const 
   const auto columns = detail::feature_statistics<typename Model::Features>(training);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto& column = columns[i];
-    model.envelope_lower[i] = static_cast<Scalar>(column.lowest - column.margin());
-    model.envelope_upper[i] = static_cast<Scalar>(column.highest + column.margin());
+    double margin = column.margin();
+    if constexpr (detail::affine_predictor<typename Model::Network>) {
+      margin = column.margin(detail::affine_reach(Model::Features::units[i]));
+    }
+    model.envelope_lower[i] = static_cast<Scalar>(column.lowest - margin);
+    model.envelope_upper[i] = static_cast<Scalar>(column.highest + margin);
   }
   return model;
 }

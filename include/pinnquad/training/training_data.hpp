@@ -68,6 +68,14 @@ inline Resolution resolution_of(std::string_view unit, double mean) {
   return {rounding * scale, 0.01 * scale};
 }
 
+/// By how many half-widths of its range a feature of this unit reaches beyond it on both sides, in a model that is
+/// affine but for a bounded residual: a motion twice as great as any that was flown, of which squares and products are
+/// four times as great. A height above the ground reaches nowhere: ground effect is not affine in it.
+constexpr double affine_reach(std::string_view unit) noexcept {
+  if (unit == "m") return 0;
+  return unit == "m^2/s^2" || unit == "rad^2/s^2" ? 3 : 1;
+}
+
 /// Statistics of a column of training rows.
 struct ColumnStatistics {
   double mean = 0;
@@ -81,12 +89,12 @@ struct ColumnStatistics {
   /// Divisor of the column: 1 if it stands still.
   double scale() const noexcept { return still() ? 1.0 : standard_deviation; }
 
-  /// By how much the envelope is wider than the range, on both sides: a tenth of the range, no less than the smallest
-  /// deviation, or than the still margin if the column stands still.
-  double margin() const noexcept {
-    constexpr double envelope_margin = 0.1;
+  /// By how much the envelope is wider than the range, on both sides: a tenth of the range or what the model reaches, in
+  /// half-widths; no less than the smallest deviation, or than the still margin if the column stands still.
+  double margin(double reach = 0) const noexcept {
+    constexpr double least_reach = 0.2;
     const double least = still() ? resolution.still_margin : resolution.smallest_deviation;
-    const double share = envelope_margin * (highest - lowest);
+    const double share = std::max(reach, least_reach) * (highest - lowest) / 2;
     return share > least ? share : least;
   }
 };
