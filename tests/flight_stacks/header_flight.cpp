@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Flies an exported header, whatever it asks for, with its block in both cores: a figure-eight in the simulator, by
-// the header's own airframe, slow enough for the training envelopes of quiet logs. The battery is silent for a while;
+// the header's own airframe, which the model's envelope holds. The battery is silent for a while;
 // another block takes the place of the first. What the cores recorded is for `pinnquad replay`.
 //   header_flight MODEL.block OTHER.block FOLDER
 #include <cstdio>
@@ -10,6 +10,7 @@
 #include <model.hpp>  // the exported one
 
 #include "../../tools/flight/loop_trajectories.hpp"
+#include "../../tools/flight/model_range.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
@@ -64,8 +65,10 @@ bool fly(const std::vector<char>& block, const std::vector<char>& other, const s
   const auto airframe = pinnquad::airframe_value<typename Stack::Model::Vehicle, double>();
   const Vehicle vehicle(airframe);
   const double volts = trained_voltage();
-  pinnquad::FigureEight<double> eight = programs::eight_for(airframe, 0, programs::AnyMotion{}).value();
-  eight.period_s *= 2;
+  const auto range = programs::range_of_header<typename Stack::Model>();
+  const auto held = programs::eight_for(airframe, 0, range);
+  if (!held) return std::printf("%s: the envelope holds no figure-eight\n", Stack::name), false;
+  const pinnquad::FigureEight<double>& eight = *held;
   pinnquad::VehicleState<double> state{};
   state.body.position_m = eight.sample(0).position_m;
   pinnquad::HoverTrim<double> trim;

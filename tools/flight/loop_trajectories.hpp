@@ -18,13 +18,6 @@
 
 namespace programs {
 
-/// Motions of which nothing is known.
-struct AnyMotion {
-  std::optional<double> speed_m_s(std::size_t /*axis*/) const { return {}; }
-  std::optional<std::pair<double, double>> altitude_m() const { return {}; }
-  bool holds(const pinnquad::MotionInputsWithAltitude<double>& /*motion*/) const { return true; }
-};
-
 namespace detail {
 
 /// The shortest period in which the largest sideways acceleration, `factor_m` times the square of the rate, stays

@@ -8,9 +8,11 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/features/features.hpp"
 
 namespace programs {
@@ -63,5 +65,32 @@ struct ModelRange {
     return nullptr;
   }
 };
+
+/// The motions that an exported model answers.
+template <class Model>
+ModelRange range_of_header() {
+  using Features = typename Model::Features;
+  using Inputs = typename Features::template Inputs<double>;
+  constexpr auto size = std::size_t(Features::size);
+  ModelRange range;
+  for (std::size_t i = 0; i < size; ++i) {
+    range.features.push_back({Features::names[i], Features::units[i], static_cast<double>(Model::envelope_lower[i]),
+                              static_cast<double>(Model::envelope_upper[i]),
+                              pinnquad::detail::column_places<Features>[i]});
+  }
+  range.of = [](const ModelRange::Motion& motion) {
+    Inputs inputs{};
+    static_cast<pinnquad::MotionInputs<double>&>(inputs) = motion;
+    if constexpr (std::is_base_of_v<ModelRange::Motion, Inputs>) inputs.altitude_m = motion.altitude_m;
+    if constexpr (pinnquad::is_windowed<Features>) {
+      inputs.others.fill(inputs);
+      inputs.complete = true;
+    }
+    std::vector<double> x(size);
+    Features::extract(inputs, x.data());
+    return x;
+  };
+  return range;
+}
 
 }  // namespace programs

@@ -57,7 +57,7 @@ using Asked = std::conditional_t<asks_for_motion, Model::Inputs, std::array<Scal
 /// Of a model that asks for it.
 template <class Inputs>
 void set_altitude([[maybe_unused]] Inputs& inputs, [[maybe_unused]] double altitude_m) noexcept {
-  if constexpr (knows_altitude) inputs.altitude_m = static_cast<decltype(inputs.altitude_m)>(altitude_m);
+  if constexpr (knows_altitude) inputs.altitude_m = Scalar(altitude_m);
 }
 
 template <class Numbers>
@@ -221,35 +221,6 @@ Columns column_values(const std::vector<std::string>& given) {
   return columns;
 }
 
-/// The present inputs at every tap of a window.
-template <class Inputs>
-void let_last([[maybe_unused]] Inputs& inputs) noexcept {
-  if constexpr (is_windowed<Model::Features>) {
-    inputs.others.fill(inputs);
-    inputs.complete = true;
-  }
-}
-
-/// The motions that the model answers.
-programs::ModelRange model_range() {
-  using Features = Model::Features;
-  programs::ModelRange range;
-  for (std::size_t i = 0; i < Features::names.size(); ++i) {
-    range.features.push_back({Features::names[i], Features::units[i], static_cast<double>(Model::envelope_lower[i]),
-                              static_cast<double>(Model::envelope_upper[i]), pinnquad::detail::column_places<Features>[i]});
-  }
-  range.of = [](const programs::ModelRange::Motion& motion) {
-    Features::Inputs<double> inputs{};
-    static_cast<MotionInputs<double>&>(inputs) = motion;
-    set_altitude(inputs, motion.altitude_m);
-    let_last(inputs);
-    std::vector<double> x(std::size_t(Features::size));
-    Features::extract(inputs, x.data());
-    return x;
-  };
-  return range;
-}
-
 template <class FeedForward>
 TrackingResult<double> fly(const char* label, const Vehicle& vehicle, const FigureEight<double>& trajectory,
                            const FeedForward& feed_forward) {
@@ -276,7 +247,7 @@ bool closed_loop(const Flown& model, const Columns& columns) {
                        std::string("this airframe can't be flown near the ground: ") + to_string(vehicle.status()));
     return false;
   }
-  const auto held = programs::eight_for(vehicle.airframe(), vehicle.site().ground_z_m, model_range());
+  const auto held = programs::eight_for(vehicle.airframe(), vehicle.site().ground_z_m, programs::range_of_header<Model>());
   if (!held) {
     programs::complain("fly_export", "the model's envelope holds no figure-eight, however slow");
     return false;
