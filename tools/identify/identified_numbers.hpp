@@ -3,11 +3,15 @@
 // flight would tell more.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/regression/identification.hpp"
@@ -108,6 +112,29 @@ inline std::vector<IdentifiedNumber> identified_numbers(const pinnquad::Identifi
                        "from a full battery to an empty one", "at a mean of " + text(found.mean_voltage_V) + " V"});
   }
   return numbers;
+}
+
+inline std::string interval_text(const pinnquad::Estimate& estimate) {
+  if (!std::isfinite(estimate.half_width)) return "none";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.4g to %.4g", estimate.low(), estimate.high());
+  return text;
+}
+
+/// By key: value, interval, unit, excitation; null for what is infinite.
+inline nlohmann::json numbers_json(const std::vector<IdentifiedNumber>& numbers) {
+  const auto json_of = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); };
+  nlohmann::json all = nlohmann::json::object();
+  for (const IdentifiedNumber& number : numbers) {
+    nlohmann::json& one = all[number.key];
+    one = {{"value", json_of(number.estimate.value)},
+           {"low", json_of(number.estimate.low())},
+           {"high", json_of(number.estimate.high())},
+           {"unit", number.unit},
+           {"excitation", excitation_words(number)}};
+    if (!is_told(number)) one["fly"] = number.flight;
+  }
+  return all;
 }
 
 }  // namespace programs

@@ -4,7 +4,6 @@
 //   pinnquad identify --log flight.ulg --mapping px4 --mass 1.2 --out vehicle.toml
 #include "identify/identify_command.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -21,16 +20,13 @@
 #include "command_line/file_roles.hpp"
 #include "command_line/progress_line.hpp"
 #include "identify/identified_numbers.hpp"
-#include "identify/sound_flights.hpp"
+#include "identify/identified_vehicle.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
-#include "pinnquad/regression/identified_airframe.hpp"
 
 namespace {
 
 namespace logs = pinnquad::logs;
-
-constexpr double assumed_mass_kg = 1, assumed_arm_m = 0.2, assumed_lag_s = 0.03;
 
 struct IdentifyOptions {
   std::vector<std::string> flights, logs;
@@ -41,27 +37,10 @@ struct IdentifyOptions {
   bool json = false;
 };
 
-/// An X of PX4's motor order: what stands for all that flights do not say.
-pinnquad::Airframe<double> plain_airframe() {
-  pinnquad::Airframe<double> plain{};
-  plain.mass_kg = assumed_mass_kg;
-  plain.rotors = pinnquad::x_rotors(assumed_arm_m, assumed_arm_m);
-  plain.propeller_diameter_m = 0.2;
-  plain.max_rotor_speed_rev_s = 100;
-  plain.thrust_coefficient = 0.1;
-  plain.power_coefficient = 0.05;
-  plain.rotor_time_constant_s = assumed_lag_s;
-  return plain;
-}
-
 /// The vehicle as far as it is said: the airframe that was given, or that of the mapping.
 programs::NamedAirframe like_of(const IdentifyOptions& options, const logs::ImportedDataset& dataset) {
-  programs::NamedAirframe like{"", plain_airframe()};
-  bool known = false;  // a dataset keeps the name alone, of a file too
-  programs::each_airframe([&](auto tag) { known = known || decltype(tag)::type::name == dataset.airframe; });
-  if (!options.airframe.empty() || known) {
-    like = programs::chosen_airframe(options.airframe.empty() ? dataset.airframe : options.airframe);
-  }
+  programs::NamedAirframe like =
+      options.airframe.empty() ? programs::airframe_of(dataset) : programs::chosen_airframe(options.airframe);
   if (options.mass_kg) like.value.mass_kg = *options.mass_kg;
   if (options.arm_m) {
     for (pinnquad::RotorMount<double>& rotor : like.value.rotors) {
@@ -101,60 +80,18 @@ pinnquad::IdentificationSettings settings_of(const IdentifyOptions& options, con
   return settings;
 }
 
-/// "1.2 kg (--mass)" of what the flights do not say and the airframe has.
-std::vector<std::string> assumptions(const IdentifyOptions& options, const programs::NamedAirframe& like,
-                                     const pinnquad::IdentifiedAirframe& made) {
-  std::vector<std::string> told;
-  const auto text = [](double value) { return pinnquad::number_text(value); };
-  const std::string of = like.name.empty() ? "assumed" : "of " + like.name;
-  const pinnquad::RotorMount<double>& corner = like.value.rotors[0];
-  told.push_back("mass " + text(like.value.mass_kg) + " kg (" + (options.mass_kg ? "--mass" : of) + ")");
-  told.push_back("arms " + text(std::abs(corner.x_m)) + " m along x, " + text(std::abs(corner.y_m)) + " m along y (" +
-                 (options.arm_m ? "--arm" : of) + ")");
-  told.push_back("propeller " + text(like.value.propeller_diameter_m) + " m at " +
-                 text(like.value.max_rotor_speed_rev_s) + " rev/s (" + of + ")");
-  for (const std::string& key : made.assumed) {
-    if (key == "inertia_kg_m2[2]") told.push_back("Jz, 0.9 (Jx + Jy): the flights do not tell it");
-    if (key == "power_coefficient") told.push_back("torque of a rotor over its thrust (" + of + ")");
-    if (key == "rotor_time_constant_s") {
-      told.push_back("rotor lag " + text(like.value.rotor_time_constant_s) + " s (" + of + ")");
-    }
-    if (key.rfind("drag_area", 0) == 0) told.push_back(key + " (" + of + ")");
-  }
-  return told;
-}
-
-nlohmann::json json_of(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
-
 void print_json(const pinnquad::Identification& found, const std::vector<programs::IdentifiedNumber>& numbers,
                 const std::vector<std::string>& assumed, const logs::ImportedDataset& dataset, const std::string& out) {
-  nlohmann::json of_numbers = nlohmann::json::object();
-  for (const programs::IdentifiedNumber& number : numbers) {
-    nlohmann::json& one = of_numbers[number.key];
-    one = {{"value", json_of(number.estimate.value)},
-           {"low", json_of(number.estimate.low())},
-           {"high", json_of(number.estimate.high())},
-           {"unit", number.unit},
-           {"excitation", programs::excitation_words(number)}};
-    if (!programs::is_told(number)) one["fly"] = number.flight;
-  }
   const nlohmann::json all = {{"format", 1},
                               {"duration_s", found.duration_s},
                               {"blocks", found.blocks},
                               {"flights", dataset.flights.size()},
                               {"lag_removed_s", dataset.lag_removed_s},
-                              {"numbers", of_numbers},
+                              {"numbers", programs::numbers_json(numbers)},
                               {"assumed", assumed},
                               {"warnings", dataset.warnings},
                               {"airframe", out.empty() ? nlohmann::json() : nlohmann::json(out)}};
   std::printf("%s\n", all.dump(2).c_str());
-}
-
-std::string interval_text(const pinnquad::Estimate& estimate) {
-  if (!std::isfinite(estimate.half_width)) return "none";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.4g to %.4g", estimate.low(), estimate.high());
-  return text;
 }
 
 void print_table(const pinnquad::Identification& found, const std::vector<programs::IdentifiedNumber>& numbers,
@@ -164,7 +101,8 @@ void print_table(const pinnquad::Identification& found, const std::vector<progra
   std::printf("%-38s %10s  %-22s %-8s %s\n", "number", "value", "95 % interval", "unit", "excitation");
   for (const programs::IdentifiedNumber& number : numbers) {
     std::printf("%-38s %10.4g  %-22s %-8s %s\n", number.words.c_str(), number.estimate.value,
-                interval_text(number.estimate).c_str(), number.unit.c_str(), programs::excitation_words(number));
+                programs::interval_text(number.estimate).c_str(), number.unit.c_str(),
+                programs::excitation_words(number));
   }
   for (const programs::IdentifiedNumber& number : numbers) {
     if (programs::is_told(number)) continue;
@@ -172,31 +110,6 @@ void print_table(const pinnquad::Identification& found, const std::vector<progra
   }
   std::printf("ratios alone are of the flights; not of them:\n");
   for (const std::string& one : assumed) std::printf("  %s\n", one.c_str());
-}
-
-/// Why there is no airframe: the number that is missing, with its column and what was seen.
-std::string why_none(const std::vector<programs::IdentifiedNumber>& numbers, const pinnquad::Identification& found) {
-  constexpr std::array<const char*, 4> needed = {"thrust_m_s2", "roll_effectiveness_rad_s2",
-                                                 "pitch_effectiveness_rad_s2", "yaw_effectiveness_rad_s2"};
-  constexpr std::array<const char*, 4> columns = {"vdot_bz", "w_x", "w_y", "w_z"};
-  constexpr double least_s = 10;
-  if (!std::isfinite(found.thrust_m_s2.half_width) && found.duration_s < least_s) {
-    return "expected 10 s or more of flight, in stretches of a second or more without a gap, found " +
-           pinnquad::number_text(std::round(10 * found.duration_s) / 10) + " s";
-  }
-  for (std::size_t i = 0; i < needed.size(); ++i) {
-    for (const programs::IdentifiedNumber& number : numbers) {
-      if (number.key != needed[i]) continue;
-      const bool backwards = number.estimate.high() < 0;
-      if (i == 3 && !backwards) continue;
-      if (pinnquad::is_told(number.estimate, 0.5) && !backwards) continue;
-      return "column " + std::string(columns[i]) + ": " + number.words + " is " +
-             (backwards
-                  ? "negative, " + interval_text(number.estimate) + ": the commands turn it the other way"
-                  : "not told, " + interval_text(number.estimate) + ", as " + number.moved + "; fly: " + number.flight);
-    }
-  }
-  return "no vehicle has these numbers";
 }
 
 int run(const IdentifyOptions& options) {
@@ -211,32 +124,24 @@ int run(const IdentifyOptions& options) {
   }
   const logs::ImportedDataset dataset = read(options);
   const programs::NamedAirframe like = like_of(options, dataset);
-  const std::vector<pinnquad::Flight> flights = programs::sound_flights(dataset, like.value);
-  pinnquad::RowSet rows;
-  for (const pinnquad::Flight& flight : flights) rows.add(flight, {0, flight.size()});
-  std::array<std::array<double, pinnquad::rotor_count>, 3> signs{};
-  for (int axis = 0; axis < 3; ++axis) {
-    signs[static_cast<std::size_t>(axis)] = pinnquad::allocation_signs(like.value, axis);
-  }
-  pinnquad::Identification found = pinnquad::identify(rows, signs, settings_of(options, like.value));
-  found.delay_s.value += dataset.lag_removed_s;
-  found.response_s.value += dataset.lag_removed_s;
+  const programs::IdentifiedVehicle vehicle =
+      programs::identified_vehicle(dataset, like.value, settings_of(options, like.value));
+  const pinnquad::Identification& found = vehicle.found;
   const std::vector<programs::IdentifiedNumber> numbers = programs::identified_numbers(found);
-  const auto made = pinnquad::identified_airframe(found, like.value);
-  const bool backwards = found.effectiveness_rad_s2[2].high() < 0;
-  if (!made || backwards) {
-    programs::complain("identify", dataset.sources.front() + ": " + why_none(numbers, found));
+  if (!vehicle.airframe) {
+    programs::complain("identify", dataset.sources.front() + ": " + vehicle.why_not);
     return programs::exit_failed;
   }
-  const std::vector<std::string> assumed = assumptions(options, like, *made);
+  const std::vector<std::string> assumed =
+      programs::assumptions(like, *vehicle.airframe, options.mass_kg ? "--mass" : "", options.arm_m ? "--arm" : "");
   if (!options.out.empty()) {
     pinnquad::AtomicFile file(options.out);
     for (const std::string& one : assumed) file.stream() << "# not of the flights: " << one << "\n";
     for (const programs::IdentifiedNumber& number : numbers) {
       file.stream() << "# " << number.words << " " << pinnquad::number_text(number.estimate.value) << " " << number.unit
-                    << ", 95 % " << interval_text(number.estimate) << "\n";
+                    << ", 95 % " << programs::interval_text(number.estimate) << "\n";
     }
-    file.stream() << programs::airframe_toml({options.name, made->value});
+    file.stream() << programs::airframe_toml({options.name, vehicle.airframe->value});
     file.commit();
   }
   if (options.json) {

@@ -28,18 +28,20 @@ inline std::string least_share_in_words(const pinnquad::AxisSlopes& slopes, cons
   return text;
 }
 
-/// A line for each slope that is far from the airframe's own.
-inline std::vector<std::string> slope_doubts(const pinnquad::AxisSlopes& slopes, const pinnquad::AxisSlopes& own) {
+inline constexpr const char* unlike_slopes =
+    "trained on quiet or noisy flights, on a log with rotor lag or latency in it, or for another airframe";
+
+/// A line for each slope that is far from the airframe's own, with what may be the cause.
+inline std::vector<std::string> slope_doubts(const pinnquad::AxisSlopes& slopes, const pinnquad::AxisSlopes& own,
+                                             const std::string& cause = unlike_slopes) {
   constexpr double least = least_undoubted, most = most_undoubted;
   std::vector<std::string> doubts;
   for (std::size_t axis = 0; axis < slopes.size(); ++axis) {
     const double ratio = slopes[axis] / own[axis];
     if (ratio >= least && ratio <= most) continue;
-    doubts.push_back(
-        std::string("the ") + axis_names[axis] +
-        " slope is not the airframe's: trained on quiet or noisy flights, on a log with rotor lag or latency "
-        "in it, or for another airframe; where the angular acceleration is not noisy, train --slopes pinned "
-        "takes the airframe's slope in hover instead of learning one");
+    doubts.push_back(std::string("the ") + axis_names[axis] + " slope is not the airframe's: " + cause +
+                     "; where the angular acceleration is not noisy, train --slopes pinned takes the airframe's slope "
+                     "in hover instead of learning one");
   }
   return doubts;
 }
@@ -59,21 +61,21 @@ inline std::optional<std::string> thrust_doubt(const pinnquad::Certificate& cert
   return text;
 }
 
-/// Slopes as the training rows know them, over the airframe's own: "roll 0.99 (0.97 to 1.02)"; by instruments with what
-/// least squares say. Empty where none is known.
+/// Slopes as the training rows know them, over the airframe's own: "roll 0.97 to 1.02"; by instruments with what least
+/// squares say. Empty where none is known.
 inline std::string known_slopes_in_words(const pinnquad::SlopesOfSums& slopes, double own_thrust,
-                                         const pinnquad::AxisSlopes& own) {
+                                         const pinnquad::AxisSlopes& own, int decimals = 2) {
   std::string words;
   for (const std::size_t k : {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{0}}) {
     const pinnquad::MeasuredSlope& slope = slopes[k];
     if (!slope.known) continue;
     const double one = k == 0 ? own_thrust : own[k - 1];
     char text[128];
-    std::snprintf(text, sizeof text, "%s%s %.2f to %.2f", words.empty() ? "" : ", ",
-                  k == 0 ? "thrust" : axis_names[k - 1], slope.lower / one, slope.upper / one);
+    std::snprintf(text, sizeof text, "%s%s %.*f to %.*f", words.empty() ? "" : ", ",
+                  k == 0 ? "thrust" : axis_names[k - 1], decimals, slope.lower / one, decimals, slope.upper / one);
     words += text;
     if (!slope.by_instruments) continue;
-    std::snprintf(text, sizeof text, " (by instruments; least squares %.2f)", slope.least_squares / one);
+    std::snprintf(text, sizeof text, " (by instruments; least squares %.*f)", decimals, slope.least_squares / one);
     words += text;
   }
   return words;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A model of logged flights in a closed loop: the vehicle that the logs show flies a figure-eight inside what they have
-// flown, with the model as feed-forward, beside the analytic inverse and none.
+// A model of logged flights in a closed loop: the vehicle that is identified in them flies a figure-eight inside what
+// they have flown, with the model as feed-forward, beside the analytic inverse and none.
 #pragma once
 
 #include <algorithm>
@@ -22,11 +22,64 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 #include "pinnquad/simulation/tracking.hpp"
-#include "training/logged_vehicle.hpp"
+#include "training/flown_vehicle.hpp"
 
 namespace programs {
 
-using LoggedQuadrotor = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, LoggedTorque>;
+/// What an airframe can't hold of an identification: linear drag, damping, turning by the air, the trim in yaw. What is
+/// not told to within half of it is 0, and so is what would drive the vehicle on.
+struct IdentifiedAir {
+  static constexpr pinnquad::VariesWith varies_with = pinnquad::VariesWith::motion;
+  std::array<double, 3> linear_drag_1_s{}, damping_1_s{}, by_velocity_rad_s_m{};
+  double yaw_trim_rad_s2 = 0;
+
+  IdentifiedAir() = default;
+  explicit IdentifiedAir(const pinnquad::Identification& found) {
+    const auto told = [](const pinnquad::Estimate& estimate) {
+      return pinnquad::is_told(estimate, 0.5) ? estimate.value : 0.0;
+    };
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      linear_drag_1_s[axis] = std::max(told(found.linear_drag_1_s[axis]), 0.0);
+      damping_1_s[axis] = std::max(told(found.damping_1_s[axis]), 0.0);
+      by_velocity_rad_s_m[axis] = told(found.by_velocity_rad_s_m[axis]);
+    }
+    // in hover, where all rotors together bear the vehicle
+    yaw_trim_rad_s2 = told(found.imbalance[2]) * told(found.effectiveness_rad_s2[2]) *
+                      pinnquad::standard_gravity_m_s2<double> / found.thrust_m_s2.value;
+  }
+
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::AeroCondition<Scalar>& condition,
+                                  const pinnquad::Airframe<Scalar>& airframe) const noexcept {
+    pinnquad::Wrench<Scalar> result;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<int>(axis), across = axis == 1 ? 0 : 1;
+      const auto& velocity = condition.air_relative_velocity_m_s;
+      result.force_N[i] = -airframe.mass_kg * Scalar(linear_drag_1_s[axis]) * velocity[i];
+      Scalar turn = Scalar(by_velocity_rad_s_m[axis]) * velocity[across] -
+                    Scalar(damping_1_s[axis]) * condition.body_rates_rad_s[i];
+      if (axis == 2) turn += Scalar(yaw_trim_rad_s2);
+      result.torque_N_m[i] = airframe.inertia_kg_m2[axis] * turn;
+    }
+    return result;
+  }
+};
+
+using IdentifiedQuadrotor = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, IdentifiedAir>;
+
+/// As it was identified. Drag along an axis is linear and quadratic where the flights tell the linear part, else all
+/// quadratic, as the airframe has it.
+inline IdentifiedQuadrotor identified_quadrotor(const IdentifiedVehicle& vehicle) {
+  pinnquad::Airframe<double> airframe = vehicle.airframe->value;
+  const IdentifiedAir air(vehicle.found);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(air.linear_drag_1_s[axis] > 0)) continue;
+    const pinnquad::Estimate& beside = vehicle.found.quadratic_drag_1_m[axis];
+    const double drag_1_m = pinnquad::is_told(beside, 0.5) ? std::max(beside.value, 0.0) : 0.0;
+    airframe.drag_area_m2[axis] = drag_1_m * airframe.mass_kg / pinnquad::rated_air_density_kg_m3<double>;
+  }
+  return IdentifiedQuadrotor(airframe, {}, {}, air);
+}
 
 /// The median of each column that the model asks for, in the first training flight: what the loop holds it at.
 inline std::vector<double> usual_columns(const pinnquad::BlockModel& model, const pinnquad::RowSet& training) {
@@ -111,25 +164,22 @@ inline std::string unfit_to_fly(const nlohmann::json& flown) {
 /// Results of the flight, for report.json and the page; `why_not` alone where there was none. Under the guard of its
 /// export: outside its envelope, and while its window fills, the analytic inverse answers.
 inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnquad::RowSet& training,
-                                 const NamedAirframe& airframe,
-                                 const std::array<std::array<double, pinnquad::rotor_count>, 3>& signs,
-                                 bool has_velocity) {
-  const LoggedEffects effects = logged_effects(training, signs);
-  const auto made = logged_vehicle(airframe.value, effects);
-  if (!made) return {{"why_not", "the commands of the logs do not lift and turn a vehicle as they should"}};
+                                 const IdentifiedVehicle& identified, bool has_velocity) {
+  if (!identified.airframe) return {{"why_not", "the flights do not identify their vehicle"}};
   constexpr double shortest_s = 2;
-  const auto eight = eight_for(*made, 0, flown_envelope(training, has_velocity), shortest_s);
+  const auto eight =
+      eight_for(identified.airframe->value, 0, flown_envelope(training, has_velocity), shortest_s);
   if (!eight) return {{"why_not", "the flights hold no figure-eight, however slow"}};
-  const LoggedQuadrotor vehicle(*made, {}, {}, LoggedTorque{effects.damping_1_s, effects.trim_rad_s2});
+  const IdentifiedQuadrotor vehicle = identified_quadrotor(identified);
   pinnquad::HoverTrim<double> trim;
   if (pinnquad::hover_trim(vehicle, eight->center_m, trim) != pinnquad::Status::ok) {
-    return {{"why_not", "the vehicle of the logs does not hover"}};
+    return {{"why_not", "the vehicle that was identified does not hover"}};
   }
   pinnquad::TrackingPlan<double> plan;
   plan.duration_s = std::max(20.0, eight->ramp_s + 2 * eight->period_s);
   plan.steps_per_control = 4;
-  const pinnquad::FlightController<double> controller({}, pinnquad::flight_limits(*made, 1.0));
-  using Analytic = pinnquad::AnalyticInverse<LoggedQuadrotor>;
+  const pinnquad::FlightController<double> controller({}, pinnquad::flight_limits(vehicle.airframe(), 1.0));
+  using Analytic = pinnquad::AnalyticInverse<IdentifiedQuadrotor>;
   const Analytic analytic(vehicle);
   const auto fly = [&](const auto& feed_forward) {
     return pinnquad::track(vehicle, *eight, controller, feed_forward, plan);
@@ -138,7 +188,7 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
                            {"half_width_m", eight->half_width_m},    {"period_s", eight->period_s},
                            {"formula", loop_figures(fly(analytic))}, {"hover_trim", loop_figures(fly(trim))}};
   if (lost_vehicle(result, "formula") || result["formula"]["rmse_m"] > result["hover_trim"]["rmse_m"]) {
-    return {{"why_not", "the vehicle of the logs is not known well enough: its own formula does not fly it"}};
+    return {{"why_not", "the vehicle that was identified is not known well enough: its own formula does not fly it"}};
   }
   using Guard = pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::Fallback<Analytic>>;
   const auto by_model = with_feed_forward(model, Guard(analytic), 0, usual_columns(model, training), fly);

@@ -25,6 +25,7 @@
 #include "training/closed_loop.hpp"
 #include "training/export_choice.hpp"
 #include "training/fit_store.hpp"
+#include "training/flown_vehicle.hpp"
 #include "training/train_input.hpp"
 #include "training/training_page.hpp"
 #include "training/training_report.hpp"
@@ -68,16 +69,25 @@ void announce(const std::string& step) {
   std::fflush(stdout);
 }
 
+/// Of an airframe that is neither given nor identified a warning tells more.
+void print_vehicle(const programs::FlownVehicle& vehicle) {
+  if (!vehicle.is_known()) return;
+  const programs::IdentifiedVehicle& asked = *vehicle.asked;
+  announce("      vehicle " + (vehicle.identified() ? "identified: " + programs::identified_in_words(asked.found)
+                                                    : "not identified: " + printable(asked.why_not)));
+}
+
 /// Fits, judges, exports: one run of the command.
 class Training {
  public:
   Training(const TrainOptions& options, const programs::Selection& selection,
-           const pinnquad::logs::ImportedDataset& dataset, const programs::NamedAirframe& airframe,
+           const pinnquad::logs::ImportedDataset& dataset, const programs::FlownVehicle& vehicle,
            std::vector<programs::Fold> folds)
       : options_(options),
         recipe_(selection.recipe),
         dataset_(dataset),
-        plan_{airframe,
+        vehicle_(vehicle),
+        plan_{vehicle.airframe,
               selection.name,
               selection.kinds,
               std::move(folds),
@@ -88,9 +98,11 @@ class Training {
               options.epochs > 0 || options.recipe.empty() || options.flights.empty() ? options.epochs
                                                                                       : programs::recipe_epochs,
               options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()),
-              {!programs::is_airframe_file(options.airframe), options.altitude, options.pinned_slopes,
+              {vehicle.given && !programs::is_airframe_file(options.airframe), options.altitude, options.pinned_slopes,
                options.flights.empty()}},
-        report_(options.out + "/report.json", plan_, dataset, facts_of_recipe()) {}
+        report_(options.out + "/report.json", plan_, dataset, facts_of_recipe()) {
+    report_.vehicle(programs::vehicle_json(vehicle));
+  }
 
   int run() {
     warn_of_the_setting();
@@ -175,10 +187,12 @@ class Training {
   bool rotated() const { return !options_.hold_out_each.empty(); }
 
   void warn_of_the_setting() {
-    if (options_.airframe.empty() && options_.flights.empty()) {
-      report_.warn("no --airframe: the linearized model and the nominal slopes are those of " + plan_.airframe.name +
-                   ", which is not what flew");
+    if (!vehicle_.is_known()) {
+      report_.warn("no --airframe, and the flights do not identify their vehicle: " + vehicle_.asked->why_not +
+                   "; in the airframe of the header, " + plan_.airframe.name +
+                   ", these are not the vehicle's: " + programs::listed(vehicle_.unknown));
     }
+    for (const std::string& doubt : vehicle_.doubts) report_.warn("the flights contradict --airframe: " + doubt);
     for (const programs::Fold& fold : plan_.folds) {
       if (fold.part_validates) {
         report_.warn("holding out " + fold.name +
@@ -431,31 +445,41 @@ class Training {
     report_.certified(*signs, structure, airframe, known);
     std::printf(
         "  proven: each signed sum of the commands rises with the angular acceleration about its axis, for every "
-        "input,\n    %s;\n"
-        "    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad: %.2f, %.2f, %.2f of the airframe's own in hover;\n",
-        programs::least_share_in_words(slopes, own).c_str(), slopes[0], slopes[1], slopes[2], slopes[0] / own[0],
-        slopes[1] / own[1], slopes[2] / own[2]);
+        "input%s%s;\n    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad",
+        vehicle_.is_known() ? ",\n    " : "",
+        vehicle_.is_known() ? programs::least_share_in_words(slopes, own).c_str() : "", slopes[0], slopes[1],
+        slopes[2]);
+    if (vehicle_.is_known()) {
+      std::printf(": %.2f, %.2f, %.2f of the airframe's own in hover", slopes[0] / own[0], slopes[1] / own[1],
+                  slopes[2] / own[2]);
+    }
+    std::printf(";\n");
     if (structure) {
       std::printf("    thrust slope %.6f s^2/m: %.2f of the airframe's own in hover;\n", structure->held_thrust_slope,
                   structure->held_thrust_slope / own_thrust);
     }
     std::printf("    %s\n", programs::bound_in_words(structure).c_str());
-    const std::string intervals = programs::known_slopes_in_words(known, own_thrust, own);
+    const std::string intervals = vehicle_.is_known() ? programs::known_slopes_in_words(known, own_thrust, own)
+                                                      : programs::known_slopes_in_words(known, 1, {1, 1, 1}, 4);
     if (!intervals.empty()) {
-      std::printf("  95 %% intervals of the training rows, over the airframe's own: %s\n", intervals.c_str());
+      std::printf("  95 %% intervals of the training rows, %s: %s\n",
+                  vehicle_.is_known() ? "over the airframe's own" : "s^2/rad and s^2/m", intervals.c_str());
     }
     std::fflush(stdout);
-    if (options_.airframe.empty() && options_.flights.empty()) return;  // whose airframe's?
-    for (const std::string& doubt : programs::slope_doubts(slopes, own)) report_.warn(doubt);
+    if (!vehicle_.is_known()) return;
+    const std::string cause = vehicle_.identified() && !vehicle_.given
+                                  ? "trained on quiet or noisy flights, or by the lag of the rotors, " +
+                                        decimals(1e3 * vehicle_.asked->found.lag_s.value, 0) + " ms"
+                                  : programs::unlike_slopes;
+    for (const std::string& doubt : programs::slope_doubts(slopes, own, cause)) report_.warn(doubt);
     if (!structure) return;
     if (const auto doubt = programs::thrust_doubt(*structure, own_thrust)) report_.warn(*doubt);
   }
 
-  /// The model in a closed loop on the vehicle that the logs show; what looks ahead is not flown on measured motion.
+  /// The model in a closed loop on the vehicle of the logs; what looks ahead is not flown on measured motion.
   nlohmann::json fly(const Exported& made, const programs::ModelKind& kind) const {
-    if (kind.reach == programs::TimeReach::centred || !options_.flights.empty()) return {};
-    const RowSet& training = made.fold->split.train;
-    return programs::fly_logged(*made.model->block(), training, plan_.airframe, programs::axis_signs(plan_.airframe),
+    if (kind.reach == programs::TimeReach::centred || !vehicle_.asked) return {};
+    return programs::fly_logged(*made.model->block(), made.fold->split.train, *vehicle_.asked,
                                 !dataset_.lacks("velocity"));
   }
 
@@ -468,7 +492,7 @@ class Training {
     }
     const auto centimetres = [&](const char* who) { return decimals(100 * flown[who]["rmse_m"].get<double>(), 1); };
     std::printf(
-        "  flown on the vehicle that the logs show, figure-eight of %.1f s: %s cm off; by the analytic inverse %s, "
+        "  flown on the vehicle that was identified, figure-eight of %.1f s: %s cm off; by the analytic inverse %s, "
         "without feed-forward %s\n",
         flown["period_s"].get<double>(), centimetres("model").c_str(), centimetres("formula").c_str(),
         centimetres("hover_trim").c_str());
@@ -511,6 +535,7 @@ class Training {
   const TrainOptions& options_;
   std::optional<programs::Recipe> recipe_;
   const pinnquad::logs::ImportedDataset& dataset_;
+  const programs::FlownVehicle& vehicle_;
   programs::FitPlan plan_;
   programs::TrainingReport report_;
   programs::Fits fits_, all_fits_;
@@ -530,7 +555,8 @@ int programs::train(const TrainOptions& options) {
   }
   const Selection selection = selection_of(options);
   if (!options.export_choice.empty()) require_known_export(options.export_choice, selection.kinds);
-  const NamedAirframe airframe = chosen_airframe(options.airframe.empty() ? PaperQuadrotor::name : options.airframe);
+  std::optional<NamedAirframe> airframe;
+  if (!options.airframe.empty()) airframe = chosen_airframe(options.airframe);
   require_separate_files(options);
   announce("[1/5] read");
   const pinnquad::logs::ImportedDataset dataset = dataset_of(options);
@@ -543,5 +569,12 @@ int programs::train(const TrainOptions& options) {
   std::printf("      %zu rows of %zu flight%s\n", dataset.flights.rows(), dataset.flights.size(),
               dataset.flights.size() == 1 ? "" : "s");
   print_folds(folds);
-  return Training(options, selection, dataset, airframe, std::move(folds)).run();
+  FlownVehicle vehicle;
+  if (options.flights.empty()) {
+    vehicle = flown_vehicle(airframe, dataset, places_of(options, dataset), folds);
+    print_vehicle(vehicle);
+  } else {
+    vehicle.airframe = airframe ? *airframe : chosen_airframe(PaperQuadrotor::name);
+  }
+  return Training(options, selection, dataset, vehicle, std::move(folds)).run();
 }

@@ -189,6 +189,7 @@ class TrainingReport {
              {"block", nullptr},
              {"trust", nullptr},
              {"certificate", nullptr},
+             {"vehicle", nullptr},
              {"altitude", nullptr},
              {"closed_loop", nullptr},
              {"warnings", nlohmann::json::array()}};
@@ -308,6 +309,8 @@ class TrainingReport {
     json_["block"] = pinnquad::printable(block);
     write();
   }
+  /// See vehicle_json().
+  void vehicle(nlohmann::json told) { json_["vehicle"] = std::move(told); }
   void flown(nlohmann::json closed_loop) { json_["closed_loop"] = std::move(closed_loop); }
 
   const nlohmann::json& json() const { return json_; }

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// The vehicle of flights as an airframe, or why there is none: what `identify` writes and `train` takes where no
+// airframe is given.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "airframe/choice.hpp"
+#include "identify/identified_numbers.hpp"
+#include "identify/sound_flights.hpp"
+#include "pinnquad/regression/identified_airframe.hpp"
+
+namespace programs {
+
+struct IdentifiedVehicle {
+  pinnquad::Identification found;
+  std::optional<pinnquad::IdentifiedAirframe> airframe;
+  std::string why_not;  ///< without an airframe: the number that is missing, its column and what was seen
+};
+
+/// What stands for all that flights do not say: the airframe of the mapping, or an X of PX4's motor order without a
+/// name.
+inline NamedAirframe airframe_of(const pinnquad::logs::ImportedDataset& dataset) {
+  constexpr double mass_kg = 1, arm_m = 0.2, lag_s = 0.03;
+  NamedAirframe like{"", {}};
+  each_airframe([&](auto tag) {  // a dataset keeps the name alone, of a file too
+    using Vehicle = typename decltype(tag)::type;
+    if (Vehicle::name == dataset.airframe) like = chosen_airframe(dataset.airframe);
+  });
+  if (!like.name.empty()) return like;
+  like.value.mass_kg = mass_kg;
+  like.value.rotors = pinnquad::x_rotors(arm_m, arm_m);
+  like.value.propeller_diameter_m = 0.2;
+  like.value.max_rotor_speed_rev_s = 100;
+  like.value.thrust_coefficient = 0.1;
+  like.value.power_coefficient = 0.05;
+  like.value.rotor_time_constant_s = lag_s;
+  return like;
+}
+
+namespace detail {
+
+inline std::string why_no_airframe(const pinnquad::Identification& found) {
+  constexpr std::array<const char*, 4> needed = {"thrust_m_s2", "roll_effectiveness_rad_s2",
+                                                 "pitch_effectiveness_rad_s2", "yaw_effectiveness_rad_s2"};
+  constexpr std::array<const char*, 4> columns = {"vdot_bz", "w_x", "w_y", "w_z"};
+  constexpr double least_s = 10;
+  if (!std::isfinite(found.thrust_m_s2.half_width) && found.duration_s < least_s) {
+    return "expected 10 s or more of flight, in stretches of a second or more without a gap, found " +
+           pinnquad::number_text(std::round(10 * found.duration_s) / 10) + " s";
+  }
+  const std::vector<IdentifiedNumber> numbers = identified_numbers(found);
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    for (const IdentifiedNumber& number : numbers) {
+      if (number.key != needed[i]) continue;
+      const bool backwards = number.estimate.high() < 0;
+      if (i == 3 && !backwards) continue;
+      if (pinnquad::is_told(number.estimate, 0.5) && !backwards) continue;
+      return "column " + std::string(columns[i]) + ": " + number.words + " is " +
+             (backwards
+                  ? "negative, " + interval_text(number.estimate) + ": the commands turn it the other way"
+                  : "not told, " + interval_text(number.estimate) + ", as " + number.moved + "; fly: " + number.flight);
+    }
+  }
+  return "no vehicle has these numbers";
+}
+
+}  // namespace detail
+
+/// Of a dataset's flights, with the mass, the arms, the spins and the propeller of `like`. A lag that the import removed
+/// is in the delay again. Throws InputError, one line, for flights that no vehicle can be identified from.
+inline IdentifiedVehicle identified_vehicle(const pinnquad::logs::ImportedDataset& dataset,
+                                            const pinnquad::Airframe<double>& like,
+                                            const pinnquad::IdentificationSettings& settings) {
+  const std::vector<pinnquad::Flight> flights = sound_flights(dataset, like);
+  pinnquad::RowSet rows;
+  for (const pinnquad::Flight& flight : flights) rows.add(flight, {0, flight.size()});
+  std::array<std::array<double, pinnquad::rotor_count>, 3> signs{};
+  for (int axis = 0; axis < 3; ++axis) {
+    signs[static_cast<std::size_t>(axis)] = pinnquad::allocation_signs(like, axis);
+  }
+  IdentifiedVehicle vehicle;
+  vehicle.found = pinnquad::identify(rows, signs, settings);
+  vehicle.found.delay_s.value += dataset.lag_removed_s;
+  vehicle.found.response_s.value += dataset.lag_removed_s;
+  const bool backwards = vehicle.found.effectiveness_rad_s2[2].high() < 0;
+  if (!backwards) vehicle.airframe = pinnquad::identified_airframe(vehicle.found, like);
+  if (!vehicle.airframe) vehicle.why_not = detail::why_no_airframe(vehicle.found);
+  return vehicle;
+}
+
+/// "mass 1.2 kg (--mass)": what the flights do not say and the airframe has. `mass_of`, `arms_of`: the option that said
+/// it; empty for none.
+inline std::vector<std::string> assumptions(const NamedAirframe& like, const pinnquad::IdentifiedAirframe& made,
+                                            const std::string& mass_of = {}, const std::string& arms_of = {}) {
+  std::vector<std::string> told;
+  const auto text = [](double value) { return pinnquad::number_text(value); };
+  const std::string of = like.name.empty() ? "assumed" : "of " + like.name;
+  const pinnquad::RotorMount<double>& corner = like.value.rotors[0];
+  told.push_back("mass " + text(like.value.mass_kg) + " kg (" + (mass_of.empty() ? of : mass_of) + ")");
+  told.push_back("arms " + text(std::abs(corner.x_m)) + " m along x, " + text(std::abs(corner.y_m)) + " m along y (" +
+                 (arms_of.empty() ? of : arms_of) + ")");
+  told.push_back("propeller " + text(like.value.propeller_diameter_m) + " m at " +
+                 text(like.value.max_rotor_speed_rev_s) + " rev/s (" + of + ")");
+  for (const std::string& key : made.assumed) {
+    if (key == "inertia_kg_m2[2]") told.push_back("Jz, 0.9 (Jx + Jy): the flights do not tell it");
+    if (key == "power_coefficient") told.push_back("torque of a rotor over its thrust (" + of + ")");
+    if (key == "rotor_time_constant_s") {
+      told.push_back("rotor lag " + text(like.value.rotor_time_constant_s) + " s (" + of + ")");
+    }
+    if (key.rfind("drag_area", 0) == 0) told.push_back(key + " (" + of + ")");
+  }
+  return told;
+}
+
+}  // namespace programs
