@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
 """train on a dataset of logged flights, from folder to header: what is held out, refused, written, interrupted and
-taken up again."""
+taken up again; the vehicle that it is trained for."""
 import json
+import lzma
+import math
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -154,3 +157,72 @@ def test_real_vehicle(pinnquad, recorded, made):
     said = pinnquad(f"train --dataset {nano} --airframe crazyflie_2_1 --hold-out-each trajectory --seeds 1 --out nano "
                     "--models constant,physics,linear,ridge,ridge_centred").out
     assert "looking ahead: for planned trajectories only" in said, "no centred model was ranked apart"
+
+
+def effects_of(header):
+    """Of one rotor at command 1, of the header's airframe: specific force, angular acceleration about each axis."""
+    text = Path(header).read_text()
+    numbers = {key: [float(n) for n in re.findall(r"Scalar\(([^)]+)\)", value)]
+               for key, value in re.findall(r"^    a\.([\w\[\]]+) = (.+);$", text, re.M)}
+    diameter, speed = numbers["propeller_diameter_m"][0], numbers["max_rotor_speed_rev_s"][0]
+    rated = 1.225 * speed ** 2 * diameter ** 4
+    thrust = numbers["thrust_coefficient"][0] * rated
+    torque = numbers["power_coefficient"][0] * rated * diameter / (2 * math.pi)
+    x, y = (sum(abs(numbers[f"rotors[{i}]"][axis]) for i in range(4)) / 4 for axis in (0, 1))
+    roll, pitch, yaw = numbers["inertia_kg_m2"]
+    return thrust / numbers["mass_kg"][0], y * thrust / roll, x * thrust / pitch, torque / yaw
+
+
+def test_vehicle_of_the_flights(pinnquad, dataset, flown):
+    """Without an airframe the one that flew stands in the header, is what slopes are compared with, and flies; one that
+    did not fly is contradicted, and stays."""
+    dataset("logs", {f"flight{seed}": flown(f"d1 --airframe racer_5_inch --seed {seed} --samples 2000")
+                     for seed in (1, 2, 3)})
+    words = "train --dataset logs --hold-out flight2 --models constant,structured --seeds 1"
+    done = pinnquad(f"{words} --out own")
+    report = report_of("own")
+    assert report["vehicle"]["airframe"] == "identified" and report["vehicle"]["flights"] == ["flight1", "flight3"]
+    thinner = 0.985  # the air at 157 m over that of the coefficients
+    pinnquad(f"{words} --airframe racer_5_inch --out given")
+    truth = [effect * thinner for effect in (11.29, 340.0, 304.0, 43.47)]
+    assert effects_of("own/model.hpp") == pytest.approx(truth, rel=0.06)
+    for axis, number in ("roll", truth[1]), ("pitch", truth[2]), ("yaw", truth[3]):
+        slope, own = (report["certificate"][key][axis] for key in ("slope", "airframe_slope"))
+        assert own == pytest.approx(1 / number, rel=0.06) and 0.9 < slope / own < 1.1, axis
+        low, high = (report["vehicle"]["numbers"][f"{axis}_effectiveness_rad_s2"][end] for end in ("low", "high"))
+        assert low < high and low == pytest.approx(number, rel=0.1), axis
+    assert "vehicle identified: thrust of a rotor over mass" in done.out and "slope is not" not in done.err
+    loop = report["closed_loop"]
+    assert loop["model"]["rmse_m"] < 0.5 * loop["hover_trim"]["rmse_m"], loop
+
+    assert not report_of("given")["vehicle"]["contradicted"] and "using Vehicle = pinnquad::" not in Path("own/model.hpp").read_text()
+    said = pinnquad(f"{words} --airframe px4_sih --out other").err
+    assert len(re.findall("contradict --airframe: (the hover|roll|pitch|yaw)", said)) == 4, said
+    assert report_of("other")["vehicle"]["airframe"] == "given"
+
+
+def test_vehicle_that_is_not_told(pinnquad, recorded, made):
+    """Calm flights: a warning names the numbers that are not the vehicle's, the header hovers as they do, no slope is
+    compared with it, nothing is flown."""
+    log = recorded("flight_logs/nanobench_subset_50hz.csv")
+    nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
+    done = pinnquad(f"train --dataset {nano} --hold-out-each trajectory --seeds 1 --models constant,ridge --out nano")
+    report = report_of("nano")
+    assert report["vehicle"]["airframe"] == "assumed" and "w_x" in report["vehicle"]["not_identified_because"]
+    assert "roll effectiveness" in report["vehicle"]["unknown"]
+    assert list(report["closed_loop"]) == ["why_not"] and "not flown" in done.err
+    assert "airframe's own" not in done.out and "slope is not" not in done.err, done
+    assert 'name = "crazyflie_2_1, assumed"' in Path("nano/model.hpp").read_text()
+    assert 9.81 / 4 / effects_of("nano/model.hpp")[0] == pytest.approx(0.8486, rel=0.01)  # the mean of the commands
+
+
+def test_vehicle_of_px4_simulation(pinnquad, recorded):
+    """By what PX4 measures; its truth is known."""
+    for name in ("train_excite", "train_random"):
+        with lzma.open(recorded(f"sih/{name}.ulg.xz")) as packed, open(f"{name}.ulg", "wb") as log:
+            shutil.copyfileobj(packed, log)
+    words = "train --mapping px4 --hold-out train_random --models constant,structured --seeds 1 --out sih"
+    done = pinnquad(words, "--log", "train_excite.ulg", "--log", "train_random.ulg")
+    assert effects_of("sih/model.hpp") == pytest.approx([5, 40, 40, 3.3333], rel=0.03)
+    assert report_of("sih")["vehicle"]["numbers"]["rotor_lag_s"]["value"] == pytest.approx(0.048, abs=0.002)
+    assert report_of("sih")["closed_loop"]["model"]["status"] == "ok", done

@@ -56,16 +56,20 @@ inline double hover_command(double curve, double thrust_m_s2) {
   return pinnquad::command_of_fraction(curve, std::min(fraction, 1.0));
 }
 
-/// The thrust of a rotor over mass that bears the vehicle on the mean of the rows.
-inline double mean_thrust_m_s2(const pinnquad::Dataset& flights, double curve) {
-  double force = 0, fractions = 0;
+/// The thrust of a rotor over mass that bears the vehicle: the median of the rows, of which most are near hover.
+inline double usual_thrust_m_s2(const pinnquad::Dataset& flights, double curve) {
+  std::vector<double> thrusts;
   for (const pinnquad::Flight& flight : flights.flights()) {
     for (const pinnquad::Sample& sample : flight) {
-      force -= pinnquad::logs::specific_force_m_s2(sample)[2];
+      double fractions = 0;
       for (const double u : sample.commands) fractions += pinnquad::thrust_fraction(curve, u);
+      if (fractions > 0) thrusts.push_back(-pinnquad::logs::specific_force_m_s2(sample)[2] / fractions);
     }
   }
-  return fractions > 0 ? force / fractions : 0;
+  if (thrusts.empty()) return 0;
+  const auto middle = thrusts.begin() + static_cast<std::ptrdiff_t>(thrusts.size() / 2);
+  std::nth_element(thrusts.begin(), middle, thrusts.end());
+  return *middle;
 }
 
 inline bool is_told_above_zero(const pinnquad::Estimate& estimate) {
@@ -82,7 +86,7 @@ inline NamedAirframe assumed_airframe(const NamedAirframe& like, pinnquad::Ident
     estimate = {instead, 0};
     return false;
   };
-  complete(found.thrust_m_s2, mean_thrust_m_s2(flights, like.value.rotors[0].thrust_curve));
+  complete(found.thrust_m_s2, usual_thrust_m_s2(flights, like.value.rotors[0].thrust_curve));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (complete(found.effectiveness_rad_s2[axis], own[1 + axis] * found.thrust_m_s2.value / own[0])) continue;
     unknown.push_back(std::string(axis_names[axis]) + " effectiveness");
@@ -176,7 +180,7 @@ inline std::string identified_in_words(const pinnquad::Identification& found) {
                             "yaw_effectiveness_rad_s2", "rotor_lag_s"}) {
       if (number.key != key) continue;
       char value[32];
-      std::snprintf(value, sizeof value, "%.3g", number.estimate.value);
+      std::snprintf(value, sizeof value, "%.4g", number.estimate.value);
       words += (words.empty() ? "" : ", ") + number.words + " " + value + " (" + interval_text(number.estimate) + ") " +
                number.unit;
     }
