@@ -209,7 +209,6 @@ void take_out(LagMoments& moments, std::size_t k, double least) {
 }
 
 CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s) {
-  constexpr double spread_of_doubt_s = 0.03, confidence_of_doubt = 0.25;
   const std::vector<LagSeries> series = lag_series(segments);
   const LagGrid grid(period_s);
   CommandLag best = command_lag_of(series, grid);
@@ -228,9 +227,9 @@ CommandLag estimate_command_lag(const std::vector<Flight>& segments, double peri
   } else if (best.lag_s < -0.5 * grid.step_s()) {
     best.warning = "the motion comes " + milliseconds(-best.lag_s) +
                    " before the commands: the clocks of the two differ, or the commands are those of a later stage";
-  } else if (best.spread_s > spread_of_doubt_s) {
+  } else if (best.spread_s > CommandLag::spread_of_doubt_s) {
     best.warning = "the motions disagree about the lag by " + milliseconds(best.spread_s);
-  } else if (best.confidence < confidence_of_doubt) {
+  } else if (best.confidence < CommandLag::confidence_of_doubt) {
     best.warning =
         "the lag hardly stands out: one that is 50 ms away explains the motion nearly as well; fly more agile "
         "manoeuvres, or state the lag";

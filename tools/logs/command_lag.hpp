@@ -56,6 +56,12 @@ struct CommandLag {
   bool found = false;      ///< otherwise lag_s is 0 and nothing should be removed
   std::string warning;     ///< why it is not found, or not to be trusted; empty for none
   std::size_t rows = 0;
+
+  static constexpr double spread_of_doubt_s = 0.03, confidence_of_doubt = 0.25;
+  /// All motions found tell the same lag, and one 50 ms away explains clearly less.
+  bool stands_out() const noexcept {
+    return found && spread_s <= spread_of_doubt_s && confidence >= confidence_of_doubt;
+  }
 };
 
 /// The lag at which the four commands explain angular accelerations and vertical specific force best: the multiple

@@ -113,6 +113,10 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   app.add_option("--airframe", words.airframe,
                  "what flew: a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
       ->capture_default_str();
+  add_number(app, "--lag", options.lag_s, -1.0, 1.0,
+             "from command to motion, s, removed from the commands of logs and flights (default: estimated; of flights "
+             "the whole rows that are not the rotors')")
+      ->default_str("");
   add_path(app, "--out", options.out, "DIR", "folder for results, report and the exported header")
       ->default_str(options.out);
   add_kinds(app, options, words);
@@ -140,6 +144,8 @@ void require_one_way(const CLI::App& line) {
   if (count == 0) refuse("--flight, --dataset or --log is required");
   if (count > 1) refuse(sources + " can't be given together: expected one of them");
   if (given("--log") != given("--mapping")) refuse("--log and --mapping go together: what its columns mean");
+  if (given("--lag") && given("--dataset"))
+    refuse("--lag goes with --flight or --log: a dataset was imported with one");
   if (given("--hold-out") && given("--hold-out-each")) refuse("--hold-out and --hold-out-each can't be given together");
   for (const char* of_recipes : {"--recipe", "--loss", "--altitude", "--slopes"}) {
     if (!given(of_recipes)) continue;

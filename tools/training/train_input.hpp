@@ -16,6 +16,7 @@
 #include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
 #include "training/export_choice.hpp"
+#include "training/flight_lag.hpp"
 #include "training/hold_out.hpp"
 #include "training/model_kind.hpp"
 #include "training/network_kinds.hpp"
@@ -85,8 +86,9 @@ inline void require_known_export(const std::string& choice, const std::vector<Mo
 /// Fewer rows than this can't train 6,379 weights to anything worth flying: 20 batches of 64 in the 60 % that train.
 inline constexpr std::size_t fewest_flight_rows = 2200;
 
-/// The dataset of the options, read or imported.
-inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options) {
+/// The dataset of the options, read or imported. `airframe`: of the flights.
+inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options,
+                                                  const pinnquad::Airframe<double>& airframe) {
   JobLine progress;
   const auto on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
   if (!options.flights.empty()) {
@@ -96,12 +98,14 @@ inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options) {
     pinnquad::RowSet all;
     for (const pinnquad::Flight& flight : dataset.flights.flights()) all.add(flight, {0, flight.size()});
     dataset.sample_period_s = pinnquad::sample_period_s(all);
+    remove_latency(dataset, airframe, options.lag_s);
     return dataset;
   }
   if (options.logs.empty()) return pinnquad::logs::read_dataset_folder(options.dataset, on_progress);
   pinnquad::logs::LogSettings settings;
   settings.mapping = options.mapping;
   settings.airframe = options.airframe;
+  settings.lag_s = options.lag_s;
   settings.on_progress = on_progress;
   return pinnquad::logs::read_dataset(options.logs, settings);
 }

@@ -555,11 +555,13 @@ int programs::train(const TrainOptions& options) {
   }
   const Selection selection = selection_of(options);
   if (!options.export_choice.empty()) require_known_export(options.export_choice, selection.kinds);
-  std::optional<NamedAirframe> airframe;
-  if (!options.airframe.empty()) airframe = chosen_airframe(options.airframe);
+  std::optional<NamedAirframe> given;
+  if (!options.airframe.empty()) given = chosen_airframe(options.airframe);
+  FlownVehicle vehicle;
+  vehicle.airframe = given ? *given : chosen_airframe(PaperQuadrotor::name);
   require_separate_files(options);
   announce("[1/5] read");
-  const pinnquad::logs::ImportedDataset dataset = dataset_of(options);
+  const pinnquad::logs::ImportedDataset dataset = dataset_of(options, vehicle.airframe.value);
   std::vector<Fold> folds = folds_asked_for(options, dataset.flights);
   require_sound(options, dataset, folds);
   const FolderLock lock(options.out);
@@ -568,13 +570,13 @@ int programs::train(const TrainOptions& options) {
   each_output(options, [](const std::string& path) { AtomicFile probe(path); });
   std::printf("      %zu rows of %zu flight%s\n", dataset.flights.rows(), dataset.flights.size(),
               dataset.flights.size() == 1 ? "" : "s");
+  if (!options.flights.empty() && !dataset.steps.empty() && !options.lag_s) {
+    announce("      " + dataset.steps.back().told + "; --lag 0 leaves the commands as they are");
+  }
   print_folds(folds);
-  FlownVehicle vehicle;
   if (options.flights.empty()) {
-    vehicle = flown_vehicle(airframe, dataset, places_of(options, dataset), folds);
+    vehicle = flown_vehicle(given, dataset, places_of(options, dataset), folds);
     print_vehicle(vehicle);
-  } else {
-    vehicle.airframe = airframe ? *airframe : chosen_airframe(PaperQuadrotor::name);
   }
   return Training(options, selection, dataset, vehicle, std::move(folds)).run();
 }

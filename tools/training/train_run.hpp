@@ -22,7 +22,8 @@ struct TrainOptions {
   std::string export_choice;          ///< empty: what the recipe exports, or "causal"
   std::optional<bool> altitude;       ///< of the recipe structured, as what follows; none: validation says
   bool pinned_slopes = false;
-  std::string airframe;  ///< empty: none was given
+  std::string airframe;         ///< empty: none was given
+  std::optional<double> lag_s;  ///< of flights and logs, from command to motion; none: estimated
   std::string out = "demo_out";
   std::string model_name = "TrainedQuadModel";
   int seeds = 5;
