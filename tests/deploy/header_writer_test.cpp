@@ -286,6 +286,37 @@ TEST_CASE("a model tells how it was judged, and at its head if it is not for fli
   CHECK(header.find("bool worse_than_mean = true;") != std::string::npos);
 }
 
+TEST_CASE("the opening comment has the verdict in words: figures, what is proven, how well slopes are known") {
+  Provenance from;
+  const auto comment = [&from] {
+    const std::string header = written(some_model(1), {Model::FeatureVector{}}, from);
+    return header.substr(0, header.find("#pragma once"));
+  };
+  const auto has = [&](const std::string& words) { return comment().find(words) != std::string::npos; };
+  CHECK_FALSE(has("PROVEN"));
+  CHECK_FALSE(has("R^2"));
+  from.verdict = Verdict{0.75, 0.5, 0.25};
+  from.answered_share = 0.9346;
+  CHECK(has("// On rows that it was not trained on: R^2 0.750, worst motor 0.250, linear regression 0.500.\n"));
+  CHECK(has("// Of those rows its guard let it answer 93.5 %.\n"));
+  from.verdict->linear_regression_r_squared = std::numeric_limits<double>::quiet_NaN();
+  CHECK(has("R^2 0.750, worst motor 0.250.\n"));
+  from.verdict->test_r_squared = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(has("R^2"));
+  const Airframe<double> airframe = some_model(1).airframe<double>();
+  const AxisSlopes own = hover_slopes(airframe);
+  from.proven_slopes = {0.98 * own[0], 1.02 * own[1], 0.5 * own[2]};
+  CHECK(has("// PROVEN: each signed sum"));
+  CHECK(has("Slopes over the airframe's own in hover: roll 0.98, pitch 1.02, yaw 0.50.\n"));
+  from.signs_unproven = true;
+  CHECK(has("// NOT PROVEN: "));
+  CHECK_FALSE(has("// PROVEN"));
+  from.slopes[0] = {true, 0, 0, 0.9 * hover_thrust_slope(airframe), 1.1 * hover_thrust_slope(airframe)};
+  from.slopes[2] = {true, 0, 0, 0.97 * own[1], 1.04 * own[1], true, 0.25 * own[1]};
+  CHECK(has("// Their 95 % intervals by the training rows: pitch 0.97 to 1.04 (by instruments; least squares 0.25), "
+            "thrust 0.90 to 1.10.\n"));
+}
+
 TEST_CASE("names from outside stay inside their quotes, whatever they hold") {
   Provenance from;
   for (const auto& [name, literal] :

@@ -70,8 +70,32 @@ def test_each_flight_in_turn(pinnquad, logs, fly_export):
         assert re.search(text, report), text
     assert not re.search('"worse_than_mean": *true', report)
     assert all(flight in page for flight in FLIGHTS)
+    held_out(report_of("each"), page, Path("each/model.hpp").read_text())
     flown = fly_export("each/model.hpp")("--replay each/replay.txt", code=None)
     assert re.search("self test .*: ok", flown.out) and ": agrees" in flown.out, flown
+
+
+def held_out(report, page, header):
+    """What a control engineer looks for: in report.json, in the page, the verdict in the header's opening comment."""
+    model = report["exported_model"]
+    guard, ceiling, response = report["guard"], report["noise_ceiling"], report["response"]
+    assert guard["model"] == response["model"] == model
+    assert guard["rows"] == 500 * len(FLIGHTS)
+    assert guard["answered_share"] + sum(guard["refused"].values()) == pytest.approx(1)
+    assert sum(guard["furthest_outside"].values()) == pytest.approx(guard["refused"]["outside_envelope"])
+    # the simulator has no noise: a model that is all but exact leaves the ceiling above it, and close to 1
+    assert report["models"][model]["r2"]["mean"] - 0.01 < ceiling["r2"] <= 1 and ceiling["r2"] > 0.97
+    for of in response["sums"].values():
+        assert of["gain"] == pytest.approx(1, abs=0.05) and abs(of["delay_s"]) < 0.02, of
+        assert {len(values) for values in of["bands"].values()} == {len(of["bands"]["frequency_hz"])}
+    for heading in "Flown and predicted, over time", "Gain and phase", "noise or motion", "Under its guard":
+        assert heading in page
+    comment = header.split("#pragma once")[0]
+    assert f"R^2 {report['verdict']['r2']:.3f}" in comment
+    assert f"guard let it answer {100 * guard['answered_share']:.1f} %" in comment
+    slopes = [report["certificate"]["slope"][axis] / report["certificate"]["airframe_slope"][axis]
+              for axis in ("roll", "pitch", "yaw")]
+    assert "PROVEN: each signed sum" in comment and "roll {:.2f}, pitch {:.2f}, yaw {:.2f}.".format(*slopes) in comment
 
 
 def test_one_flight_cannot_decide(pinnquad, logs):
@@ -104,6 +128,7 @@ def test_not_proven(pinnquad, logs):
     assert "model.hpp" not in listing("open")
     pinnquad(f"{words} --export vanilla --allow-poor")
     header = Path("open/model.hpp").read_text()
+    assert "// PROVEN" not in header and "R^2 " in header.split("#pragma once")[0]
     assert header.splitlines()[2].startswith("// NOT PROVEN") or header.splitlines()[3].startswith("// NOT PROVEN")
     assert "lag_removed_s = 0;" in header or "lag_removed_s = 0.0;" in header
     pinnquad(f"{TRAIN} {HELD} --models constant,linear,vanilla --seeds 1 --epochs 20 --out closed")
@@ -135,6 +160,11 @@ def test_recipe(pinnquad, logs):
     assert "proven: each signed sum" in said
     report = report_of("recipe")
     assert report["exported_model"] == "structured" and report["certificate"]["proven"] is True
+    known = [line for line in Path("recipe/model.hpp").read_text().split("#pragma once")[0].split("\n")
+             if line.startswith("// Their 95 % intervals by the training rows: roll ")]
+    lower, upper = report["certificate"]["known"]["roll"]["interval_95"]
+    own = report["certificate"]["airframe_slope"]["roll"]
+    assert f" roll {lower / own:.2f} to {upper / own:.2f}" in known[0]
     assert report["altitude"]["asked"] == "auto" and report["closed_loop"]["model"]["status"] == "ok"
 
 

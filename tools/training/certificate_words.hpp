@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/deploy/opening_comment.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"
@@ -59,26 +60,6 @@ inline std::optional<std::string> thrust_doubt(const pinnquad::Certificate& cert
                 sinks ? "below 0.5 a position loop sinks under a load that it should carry"
                       : "another mass or other rotors flew, or a noisy accelerometer or rotor lag hid it");
   return text;
-}
-
-/// Slopes as the training rows know them, over the airframe's own: "roll 0.97 to 1.02"; by instruments with what least
-/// squares say. Empty where none is known.
-inline std::string known_slopes_in_words(const pinnquad::SlopesOfSums& slopes, double own_thrust,
-                                         const pinnquad::AxisSlopes& own, int decimals = 2) {
-  std::string words;
-  for (const std::size_t k : {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{0}}) {
-    const pinnquad::MeasuredSlope& slope = slopes[k];
-    if (!slope.known) continue;
-    const double one = k == 0 ? own_thrust : own[k - 1];
-    char text[128];
-    std::snprintf(text, sizeof text, "%s%s %.*f to %.*f", words.empty() ? "" : ", ",
-                  k == 0 ? "thrust" : axis_names[k - 1], decimals, slope.lower / one, decimals, slope.upper / one);
-    words += text;
-    if (!slope.by_instruments) continue;
-    std::snprintf(text, sizeof text, " (by instruments; least squares %.*f)", decimals, slope.least_squares / one);
-    words += text;
-  }
-  return words;
 }
 
 inline bool any_by_instruments(const pinnquad::SlopesOfSums& slopes) {

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 #include "command_line/listed.hpp"
 #include "page/chart.hpp"
+#include "training/held_out_dynamics.hpp"
 #include "training/kind_verdict.hpp"
 #include "training/worst_moments.hpp"
 
@@ -139,6 +141,142 @@ inline Chart moment_chart(const WorstMoment& moment, const pinnquad::FlightRows&
           "As flown, and as predicted by " +
               listed(shown, [&judged](std::size_t k) { return judged.kinds[k].kind.title; }) + ".",
           {panel}};
+}
+
+/// Signed sums of a stretch, flown and predicted.
+inline Chart stretch_chart(const HeldOutStretch& stretch, const std::string& model, const Predictions& predictions,
+                           const std::array<MotorFigures, 4>& signs) {
+  Chart chart{"Signed sums of the commands over time, flown and predicted",
+              "Thrust, roll, pitch and yaw sums of a stretch of a held-out flight, as flown and as predicted by " +
+                  model + "."};
+  for (std::size_t sum = 0; sum < signs.size(); ++sum) {
+    Panel panel;
+    panel.title = sum_names[sum];
+    panel.height = 95;
+    panel.x.numbered = sum + 1 == signs.size();
+    if (panel.x.numbered) panel.x.name = "time, s";
+    Series flown{"flown", Shape::line, colour::muted, {}, {}, 3, 0.55},
+        predicted{model, Shape::line, colour_of_shown[0]};
+    for (std::size_t i = 0; i < stretch.size; ++i) {
+      const pinnquad::Sample& sample = (*stretch.flight)[stretch.row + i];
+      flown.x.push_back(sample.time_s);
+      flown.y.push_back(pinnquad::signed_sum(signs[sum], sample.commands));
+      predicted.x.push_back(sample.time_s);
+      predicted.y.push_back(pinnquad::signed_sum(signs[sum], predictions[stretch.held_out + i]));
+    }
+    panel.series = {flown, predicted};
+    chart.panels.push_back(panel);
+  }
+  return chart;
+}
+
+namespace detail {
+
+inline Series level_line(double from, double to, double level, const char* colour = colour::muted) {
+  Series line{"", Shape::line, colour, {from, to}, {level, level}, 1};
+  line.dashed = true;
+  return line;
+}
+
+inline double decibels(double power) { return 10 * std::log10(std::max(power, 1e-30)); }
+
+}  // namespace detail
+
+/// The least of some bounds that holds a value.
+inline double bound_for(double value, std::initializer_list<double> bounds) {
+  for (const double bound : bounds) {
+    if (value <= bound) return bound;
+  }
+  return *(bounds.end() - 1);
+}
+
+/// Gain, phase and coherence of the flown sums by the predicted ones, over the frequency; where the coherence is low
+/// they are faint, and where it is no more than chance they are left out.
+inline Chart response_chart(const HeldOutDynamics& dynamics) {
+  constexpr std::array<const char*, 4> colours = {colour::violet, colour::blue, colour::orange, colour::green};
+  constexpr double faint = 0.3;
+  const auto decibels = [](const SpectralBand& band) { return 20 * std::log10(band.gain()); };
+  const auto degrees = [](const SpectralBand& band) { return pinnquad::degrees_per_radian * band.phase_rad(); };
+  const std::vector<SpectralBand>& any = dynamics.sums[0];
+  const double from = any.front().frequency_hz, to = any.back().frequency_hz;
+  double most_db = 0, most_deg = 0;
+  for (const std::vector<SpectralBand>& bands : dynamics.sums) {
+    for (const SpectralBand& band : bands) {
+      if (band.coherence() < FollowedRange::least_coherence) continue;
+      most_db = std::max(most_db, std::abs(decibels(band)));
+      most_deg = std::max(most_deg, std::abs(degrees(band)));
+    }
+  }
+  const double bound_db = bound_for(most_db, {6, 12, 24}), bound_deg = bound_for(most_deg, {45, 90, 180});
+  std::array<Panel, 3> panels;
+  for (Panel& panel : panels) {
+    panel.x = {"", from, to, true};
+    panel.x.numbered = false;
+    panel.height = 150;
+  }
+  panels[0].y = {"gain, dB", -bound_db, bound_db};
+  panels[1].y = {"phase, °", -bound_deg, bound_deg};
+  panels[2].y = {"coherence", 0, 1};
+  panels[2].x.numbered = true;
+  panels[2].x.name = "frequency, Hz";
+  panels[0].series = {detail::level_line(from, to, 0)};
+  panels[1].series = {detail::level_line(from, to, 0)};
+  panels[2].series = {detail::level_line(from, to, FollowedRange::least_coherence)};
+  for (std::size_t sum = 0; sum < sum_names.size(); ++sum) {
+    for (std::size_t figure = 0; figure < panels.size(); ++figure) {
+      Series clear{figure == 0 ? sum_names[sum] : "", Shape::line, colours[sum]}, weak{"", Shape::line, colours[sum]};
+      weak.opacity = faint;
+      for (const SpectralBand& band : dynamics.sums[sum]) {
+        const double coherence = band.coherence();
+        const double value = figure == 0 ? decibels(band) : figure == 1 ? degrees(band) : coherence;
+        weak.x.push_back(band.frequency_hz);
+        weak.y.push_back(coherence > band.chance_coherence() ? value : pinnquad::not_a_number);
+        clear.x.push_back(band.frequency_hz);
+        clear.y.push_back(figure == 2 || coherence >= FollowedRange::least_coherence ? value : pinnquad::not_a_number);
+      }
+      if (figure < 2) panels[figure].series.push_back(weak);
+      panels[figure].series.push_back(clear);
+    }
+  }
+  return {"Frequency response from predicted to flown command sums",
+          "Gain, phase and coherence of thrust, roll, pitch and yaw sums over the frequency; 0 dB, 0 degrees and a "
+          "coherence of 1 are a perfect model.",
+          {panels.begin(), panels.end()}};
+}
+
+/// Power of each motor's commands and of the model's residual over the frequency, and the level taken for noise.
+inline Chart residual_chart(const HeldOutDynamics& dynamics, const std::string& model) {
+  Chart chart{"Spectra of commands and residuals",
+              "Power density of each motor's flown commands, of the residual of " + model +
+                  ", and the level that is taken for noise.",
+              {},
+              2};
+  for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
+    const std::vector<SpectralBand>& bands = dynamics.motors[motor];
+    Panel panel;
+    panel.title = "u" + std::to_string(motor + 1);
+    panel.x = {"frequency, Hz", bands.front().frequency_hz, bands.back().frequency_hz, true};
+    panel.y.name = "dB of 1/Hz";
+    Series flown{"flown", Shape::line, colour::muted, {}, {}, 3, 0.55},
+        residual{"residual, flown − predicted", Shape::line, colour_of_shown[0]};
+    for (const SpectralBand& band : bands) {
+      flown.x.push_back(band.frequency_hz);
+      flown.y.push_back(detail::decibels(band.output));
+      residual.x.push_back(band.frequency_hz);
+      residual.y.push_back(detail::decibels(band.input));
+    }
+    double lowest = HUGE_VAL;
+    for (const Series* series : {&flown, &residual}) {
+      lowest = std::min(lowest, *std::min_element(series->y.begin(), series->y.end()));
+    }
+    panel.y.least = lowest - 15;  // a level far below is not drawn
+    Series noise = detail::level_line(panel.x.least, panel.x.most,
+                                      detail::decibels(dynamics.ceiling.density[motor]), colour::orange);
+    noise.name = "taken for noise";
+    panel.series = {flown, residual, noise};
+    chart.panels.push_back(panel);
+  }
+  return chart;
 }
 
 }  // namespace programs

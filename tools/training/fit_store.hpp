@@ -43,6 +43,7 @@ class FitStore : public KnownFits {
     for (auto& row : loaded.held_out) {
       if (!read(file, row)) return false;
     }
+    if (!read(file, loaded.guard)) return false;
     loaded.validation_mae = head.validation_mae;
     loaded.fit_s = head.fit_s;
     loaded.derivatives = head.derivatives;
@@ -66,6 +67,7 @@ class FitStore : public KnownFits {
     pinnquad::AtomicFile file(path_of(job));
     write(file.stream(), head);
     for (const auto& row : job.held_out) write(file.stream(), row);
+    write(file.stream(), job.guard);
     file.commit();
   }
 
@@ -81,7 +83,7 @@ class FitStore : public KnownFits {
  private:
   /// As this machine has it in memory: such a file is read by the program that wrote it.
   struct Head {
-    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '3'};
+    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '4'};
     std::uint64_t key = 0, rows = 0;
     double validation_mae = 0, fit_s = 0;
     DerivativeFigures derivatives;
@@ -99,6 +101,33 @@ class FitStore : public KnownFits {
   static void write(std::ostream& to, const Value& value) {
     static_assert(std::is_trivially_copyable_v<Value>);
     to.write(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+
+  static bool read(std::istream& from, GuardCounts& guard) {
+    std::uint64_t features = 0, length = 0;
+    for (std::uint64_t* count : {&guard.rows, &guard.warming_up, &guard.outside_envelope, &guard.output_not_finite,
+                                 &guard.beyond_limits, &features}) {
+      if (!read(from, *count)) return false;
+    }
+    for (; features > 0; --features) {
+      constexpr std::uint64_t longest = 4096;  // of a name: a broken file asks for no more
+      if (!read(from, length) || length > longest) return false;
+      std::string name(length, ' ');
+      if (!from.read(name.data(), static_cast<std::streamsize>(length)) || !read(from, guard.furthest[name]))
+        return false;
+    }
+    return true;
+  }
+  static void write(std::ostream& to, const GuardCounts& guard) {
+    for (const std::uint64_t count : {guard.rows, guard.warming_up, guard.outside_envelope, guard.output_not_finite,
+                                      guard.beyond_limits, std::uint64_t{guard.furthest.size()}}) {
+      write(to, count);
+    }
+    for (const auto& [name, count] : guard.furthest) {
+      write(to, std::uint64_t{name.size()});
+      to.write(name.data(), static_cast<std::streamsize>(name.size()));
+      write(to, count);
+    }
   }
 
   static void absorb(pinnquad::detail::Fnv1a& fnv, double value) { pinnquad::detail::absorb_number(fnv, value); }

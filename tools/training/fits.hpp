@@ -51,6 +51,7 @@ struct FinishedFit {
   double validation_mae = pinnquad::not_a_number;
   double fit_s = 0;
   DerivativeFigures derivatives;  ///< over the rows held out
+  GuardCounts guard;              ///< of the rows held out
   AltitudeChoice altitude;
   bool proven = false;                          ///< TrainedNetwork::is_proven()
   std::shared_ptr<const TrainedNetwork> model;  ///< null: taken from a file of an earlier run
@@ -135,6 +136,7 @@ inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) 
   if (fold.split.test.empty()) return;  // to be exported
   job.held_out = detail::predictions_of(kind, *job.model, fold.split.test);
   job.derivatives = job.model->derivatives(fold.split.test);
+  job.guard = job.model->guard_counts(fold.split.test);
 }
 
 /// A fit that is known from an earlier run, once more: the same rows, seed and altitude give the same model.

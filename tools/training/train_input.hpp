@@ -14,6 +14,7 @@
 #include "command_line/progress_line.hpp"
 #include "logs/nearest_names.hpp"
 #include "pinnquad/data/plausibility.hpp"
+#include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
 #include "training/export_choice.hpp"
 #include "training/flight_lag.hpp"
@@ -153,6 +154,20 @@ inline void require_sound(const TrainOptions& options, const pinnquad::logs::Imp
     require(fold.split.validation, fewest_judging_rows, "validate");
     require(fold.split.test, fewest_judging_rows, "judge");
   }
+}
+
+/// Columns beside the motion that all flights have, and no kind of model takes.
+inline std::vector<pinnquad::ColumnName> unused_columns(const pinnquad::Dataset& flights) {
+  std::vector<pinnquad::ColumnName> unused;
+  for (const pinnquad::ExtraColumn& column : flights[0].columns()) {
+    bool everywhere = column.name != pinnquad::BatteryVoltage::name;
+    for (const pinnquad::Flight& flight : flights.flights()) {
+      const pinnquad::ExtraColumn* other = flight.column(column.name);
+      everywhere = everywhere && other != nullptr && other->unit == column.unit;
+    }
+    if (everywhere) unused.push_back({column.name, column.unit});
+  }
+  return unused;
 }
 
 /// The partings that the options ask for. Flights of which none is named are held out in their order; logs are not.

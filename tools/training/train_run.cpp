@@ -119,7 +119,10 @@ class Training {
       throw programs::Interrupted{kept()};
     }
     announce("[5/5] report");
-    programs::keeping(kept(), [&] { write_page(); });
+    programs::keeping(kept(), [&] {
+      look_at_held_out();
+      write_page();
+    });
     store.clear();
     return code;
   }
@@ -198,6 +201,12 @@ class Training {
         report_.warn("holding out " + fold.name +
                      " leaves one trajectory: its last fifth validates, no flight of its own");
       }
+    }
+    const std::vector<ColumnName> unused = programs::unused_columns(dataset_.flights);
+    if (!unused.empty()) {
+      report_.warn(programs::listed(unused, [](const ColumnName& column) { return printable(column.name); }) +
+                   ": no kind of model takes this column; from C++ one of yours does (docs/log_training.md, 'Columns "
+                   "of your own')");
     }
     if (judges() < programs::fewest_pairs && options_.flights.empty()) {
       report_.warn("paired tests over " + std::to_string(judges()) + " held-out flights can't decide: fewer than " +
@@ -399,7 +408,14 @@ class Training {
   void write(const Exported& made, const programs::ModelKind& kind, const Verdict& verdict) {
     Provenance from = programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
                                               plan_.settings, made.seed, plan_.epochs, verdict);
-    from.signs_unproven = !made.model->is_proven();
+    if (const std::optional<ProvenSigns> signs = made.model->block()->proven_signs()) {
+      from.proven_slopes = signs->held_slope;
+    } else {
+      from.signs_unproven = true;
+    }
+    from.slopes = made.model->slopes();
+    const programs::GuardCounts guard = programs::guard_of_seed(fits_, *chosen_, seed_shown(*chosen_));
+    if (guard.rows > 0) from.answered_share = guard.answered_share();
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
     const pinnquad::Exported written = made.model->export_to({header, block, made.model->has_trust() ? trust : ""},
@@ -459,8 +475,8 @@ class Training {
                   structure->held_thrust_slope / own_thrust);
     }
     std::printf("    %s\n", programs::bound_in_words(structure).c_str());
-    const std::string intervals = vehicle_.is_known() ? programs::known_slopes_in_words(known, own_thrust, own)
-                                                      : programs::known_slopes_in_words(known, 1, {1, 1, 1}, 4);
+    const std::string intervals = vehicle_.is_known() ? known_slopes_in_words(known, own_thrust, own)
+                                                      : known_slopes_in_words(known, 1, {1, 1, 1}, 4);
     if (!intervals.empty()) {
       std::printf("  95 %% intervals of the training rows, %s: %s\n",
                   vehicle_.is_known() ? "over the airframe's own" : "s^2/rad and s^2/m", intervals.c_str());
@@ -511,9 +527,54 @@ class Training {
     }
   }
 
+  /// The seed whose fits stand for a kind: of what is exported as it was judged its own.
+  std::uint64_t seed_shown(std::size_t kind) const {
+    const programs::FinishedFit* best =
+        rotated() ? nullptr
+                  : programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation(plan_.settings));
+    return best != nullptr ? best->seed : judged_.kinds[kind].seeds.front();
+  }
+
+  /// Of what was chosen, else of the best that was judged.
+  void look_at_held_out() {
+    std::optional<std::size_t> kind = chosen_;
+    for (const bool centred : {false, true}) {
+      const std::vector<std::size_t> order = programs::ranking(judged_, centred);
+      if (!kind && !order.empty()) kind = order.front();
+    }
+    if (!kind) return;
+    dynamics_ = programs::held_out_dynamics(plan_, fits_, judged_, *kind, seed_shown(*kind));
+    report_.held_out(*dynamics_, judged_);
+    report_.write();
+    tell_held_out();
+  }
+
+  void tell_held_out() const {
+    const programs::HeldOutDynamics& held_out = *dynamics_;
+    std::printf("  on the rows held out the guard of %s answers %.1f %%\n", judged_.kinds[held_out.kind].kind.title,
+                100 * held_out.guard.answered_share());
+    if (!held_out.has_spectra()) return;
+    std::printf("  noise lets no model have more than R^2 %.3f%s; flown after predicted commands:",
+                programs::mean_over_motors(held_out.ceiling.r2), held_out.ceiling.white ? "" : " (it is not white)");
+    for (std::size_t sum = 0; sum < programs::sum_names.size(); ++sum) {
+      const programs::FollowedRange& followed = held_out.followed[sum];
+      std::printf("%s %s", sum > 0 ? "," : "", programs::sum_names[sum]);
+      if (followed.to_hz > 0) {
+        std::printf(" to %.1f Hz, gain %.2f, %.0f ms", followed.to_hz, followed.gain, 1e3 * followed.delay_s);
+      } else {
+        std::printf(" not at all");
+      }
+    }
+    std::printf("\n");
+  }
+
   /// The page, and one to watch each held-out flight in 3D where that is built.
   void write_page() {
-    programs::TrainingPage input{plan_, dataset_, fits_, judged_, verdicts_, report_.json(), chosen_, told_, {}};
+    programs::TrainingPage input{plan_, dataset_, fits_, judged_, verdicts_, report_.json(),
+                                 chosen_,
+                                 told_,
+                                 {},
+                                 dynamics_ ? &*dynamics_ : nullptr};
     if (programs::WatchPage::available()) {
       programs::ProgressLine progress("flights to watch");
       for (const std::string& name : judged_.flights) {
@@ -543,6 +604,7 @@ class Training {
   programs::JudgedKinds judged_;
   std::vector<programs::KindVerdict> verdicts_;
   std::optional<std::size_t> chosen_;
+  std::optional<programs::HeldOutDynamics> dynamics_;  ///< of it, or of the best that was judged
   std::string told_;  ///< what became of the export
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "training/trained_network.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "pinnquad/io/atomic_file.hpp"
@@ -25,7 +27,35 @@ std::vector<double> motion_numbers(const pinnquad::Sample& sample, bool with_alt
   return numbers;
 }
 
+bool beyond_limits(const pinnquad::Commands<double>& commands) {
+  return std::any_of(commands.begin(), commands.end(), [](double u) { return u < 0 || u > 1; });
+}
+
+bool is_finite(const pinnquad::Commands<double>& commands) {
+  return std::all_of(commands.begin(), commands.end(), [](double u) { return std::isfinite(u); });
+}
+
 }  // namespace
+
+GuardCounts& GuardCounts::operator+=(const GuardCounts& other) {
+  rows += other.rows;
+  warming_up += other.warming_up;
+  outside_envelope += other.outside_envelope;
+  output_not_finite += other.output_not_finite;
+  beyond_limits += other.beyond_limits;
+  for (const auto& [feature, count] : other.furthest) furthest[feature] += count;
+  return *this;
+}
+
+GuardCounts TrainedNetwork::guard_counts(const pinnquad::RowSet& rows) const {
+  GuardCounts counts;
+  for (const pinnquad::Commands<double>& commands : predictions(rows)) {
+    ++counts.rows;
+    if (!is_finite(commands)) ++counts.warming_up;
+    if (is_finite(commands) && beyond_limits(commands)) ++counts.beyond_limits;
+  }
+  return counts;
+}
 
 std::optional<pinnquad::Certificate> TrainedNetwork::certificate() const {
   return block() != nullptr ? block()->certificate() : std::nullopt;
@@ -38,6 +68,36 @@ BlockNetwork::BlockNetwork(const std::vector<unsigned char>& block) : block_("a 
 Predictions BlockNetwork::predictions(const pinnquad::RowSet& rows) const { return answers(rows, false); }
 
 Predictions BlockNetwork::guarded_predictions(const pinnquad::RowSet& rows) const { return answers(rows, true); }
+
+GuardCounts BlockNetwork::guard_counts(const pinnquad::RowSet& rows) const {
+  const std::vector<double> lower = block_.envelope_lower(), upper = block_.envelope_upper();
+  const std::vector<std::string> names = block_.feature_names();
+  GuardCounts counts;
+  counts.rows = rows.size();
+  counts.warming_up = rows.size();
+  const auto take = [&](std::size_t, const pinnquad::AnsweredRow& answer) {
+    --counts.warming_up;
+    if (!answer.inside_envelope) {
+      ++counts.outside_envelope;
+      std::size_t furthest = 0;
+      double most = -1;
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        const double x = answer.features[i], beyond = std::max(lower[i] - x, x - upper[i]);
+        const double half_widths = 2 * beyond / (upper[i] - lower[i]);
+        if (half_widths <= most) continue;
+        most = half_widths;
+        furthest = i;
+      }
+      ++counts.furthest[names[furthest]];
+    } else if (!is_finite(answer.commands)) {
+      ++counts.output_not_finite;
+    } else if (beyond_limits(answer.commands)) {
+      ++counts.beyond_limits;
+    }
+  };
+  block_.answer(rows, take, false);
+  return counts;
+}
 
 DerivativeFigures BlockNetwork::derivatives(const pinnquad::RowSet& rows) const {
   DerivativeSigns signs;

@@ -2,6 +2,8 @@
 // A trained network, its type erased: what judging and exporting ask of it.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -25,6 +27,24 @@ struct AltitudeChoice {
   double error_with = pinnquad::not_a_number, error_without = pinnquad::not_a_number;  ///< mean absolute
 };
 
+/// Rows by what the guard of an export says of them (TrainingGuard).
+struct GuardCounts {
+  std::uint64_t rows = 0;
+  std::uint64_t warming_up = 0;        ///< no whole window of instants
+  std::uint64_t outside_envelope = 0;  ///< of the training rows
+  std::uint64_t output_not_finite = 0;
+  std::uint64_t beyond_limits = 0;                ///< answered, with a command below 0 or above 1
+  std::map<std::string, std::uint64_t> furthest;  ///< of those outside: by the feature that is furthest out
+
+  std::uint64_t answered() const { return rows - warming_up - outside_envelope - output_not_finite; }
+  /// NaN of no rows.
+  double share_of(std::uint64_t count) const {
+    return rows > 0 ? static_cast<double>(count) / static_cast<double>(rows) : pinnquad::not_a_number;
+  }
+  double answered_share() const { return share_of(answered()); }
+  GuardCounts& operator+=(const GuardCounts& other);
+};
+
 class TrainedNetwork {
  public:
   virtual ~TrainedNetwork() = default;
@@ -32,6 +52,8 @@ class TrainedNetwork {
   virtual Predictions predictions(const pinnquad::RowSet& rows) const = 0;
   /// The same, NaN where the guard of its export declines: for a row outside the training envelope.
   virtual Predictions guarded_predictions(const pinnquad::RowSet& rows) const { return predictions(rows); }
+  /// The same, counted; of a model to be compared with alone, which has no guard, by what it predicts.
+  virtual GuardCounts guard_counts(const pinnquad::RowSet& rows) const;
   /// See derivative_figures().
   virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
   virtual AltitudeChoice altitude() const { return {}; }
@@ -90,6 +112,7 @@ class BlockNetwork : public TrainedNetwork {
 
   Predictions predictions(const pinnquad::RowSet& rows) const override;
   Predictions guarded_predictions(const pinnquad::RowSet& rows) const override;
+  GuardCounts guard_counts(const pinnquad::RowSet& rows) const override;
   DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override;
   const pinnquad::BlockModel* block() const override { return &block_; }
 

@@ -29,6 +29,7 @@ struct TrainingPage {
   std::optional<std::size_t> exported;         ///< of judged.kinds: what was exported, or would have been
   std::string export_sentence;                 ///< what became of it
   std::map<std::string, std::string> watched;  ///< flight -> file to watch it in 3D, where there is one
+  const HeldOutDynamics* dynamics = nullptr;   ///< of the kind that is shown first
 };
 
 namespace detail {
@@ -50,6 +51,7 @@ inline std::vector<std::size_t> shown_kinds(const TrainingPage& in) {
   };
   const std::vector<std::size_t> causal = ranking(in.judged, false), centred = ranking(in.judged, true);
   if (in.exported) show(*in.exported);
+  if (in.dynamics != nullptr) show(in.dynamics->kind);
   if (!causal.empty()) show(causal.front());
   if (!shown.empty()) {
     const AgainstSimpler* nearest = nullptr;
@@ -276,6 +278,88 @@ inline nlohmann::json certificate_json(const nlohmann::json& report) {
   return told;
 }
 
+inline std::array<MotorFigures, 4> signs_of_sums(const NamedAirframe& airframe) {
+  const auto about = axis_signs(airframe);
+  return {{{1, 1, 1, 1}, about[0], about[1], about[2]}};
+}
+
+/// Shares of the held-out rows that the guard declines, by reason; false where nothing was judged.
+inline nlohmann::json guard_told(const TrainingPage& in) {
+  if (in.dynamics == nullptr) return false;
+  const GuardCounts& guard = in.dynamics->guard;
+  const auto percent = [&guard](std::uint64_t count) { return shown::number(100 * guard.share_of(count), 1); };
+  nlohmann::json rows = nlohmann::json::array();
+  const auto row = [&](const std::string& reason, std::uint64_t count, const std::string& more = "") {
+    rows.push_back({{"reason", reason}, {"share", percent(count)}, {"more", more}});
+  };
+  std::vector<std::pair<std::string, std::uint64_t>> features(guard.furthest.begin(), guard.furthest.end());
+  std::stable_sort(features.begin(), features.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string furthest;
+  constexpr std::size_t most_told = 5;
+  for (std::size_t i = 0; i < std::min(features.size(), most_told); ++i) {
+    add_to_list(furthest, features[i].first + " " + percent(features[i].second) + " %");
+  }
+  row("answered", guard.answered());
+  row("outside the envelope of the training rows", guard.outside_envelope,
+      furthest.empty() ? "" : "furthest out: " + furthest);
+  row("no whole window of instants yet", guard.warming_up);
+  row("commands that are no numbers", guard.output_not_finite);
+  return {{"rows", rows}, {"beyond", percent(guard.beyond_limits)}, {"count", guard.rows}};
+}
+
+/// Time, frequency response, noise; false where there are none.
+inline nlohmann::json dynamics_told(const TrainingPage& in) {
+  if (in.dynamics == nullptr) return false;
+  const HeldOutDynamics& dynamics = *in.dynamics;
+  const JudgedKind& kind = in.judged.kinds[dynamics.kind];
+  const std::string model = kind.kind.title;
+  nlohmann::json told = {{"name", model}, {"stretch", false}, {"spectra", false}, {"why_not", dynamics.why_not}};
+  if (dynamics.typical.size > 0) {
+    const HeldOutStretch& typical = dynamics.typical;
+    const auto predictions = predictions_of_seed(in.plan, in.fits, dynamics.kind, dynamics.seed);
+    told["stretch"] = {
+        {"flight", typical.flight->name},
+        {"from", shown::number((*typical.flight)[typical.row].time_s, 1)},
+        {"drawing", inline_svg(stretch_chart(typical, model, *predictions[typical.fold],
+                                             signs_of_sums(in.plan.airframe)))}};
+  }
+  if (!dynamics.has_spectra()) return told;
+  nlohmann::json sums = nlohmann::json::array(), motors = nlohmann::json::array();
+  const auto with_error = [](double value, double error, int decimals) {
+    return shown::number(value, decimals) + " ± " + shown::number(error, decimals);
+  };
+  for (std::size_t sum = 0; sum < sum_names.size(); ++sum) {
+    const FollowedRange& followed = dynamics.followed[sum];
+    const bool any = followed.to_hz > 0;
+    sums.push_back(
+        {{"name", sum_names[sum]},
+         {"range", any ? shown::number(followed.from_hz, 2) + " to " + shown::number(followed.to_hz, 1) : "nowhere"},
+         {"gain", any ? with_error(followed.gain, 2 * followed.gain_error, 3) : "–"},
+         {"delay", any ? with_error(1e3 * followed.delay_s, 2e3 * followed.delay_error_s, 1) : "–"}});
+  }
+  const NoiseCeiling& ceiling = dynamics.ceiling;
+  for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
+    const double r2 = pinnquad::summarize(over_seeds(kind, error_figures[0], motor)).mean;
+    motors.push_back(
+        {{"name", "u" + std::to_string(motor + 1)},
+         {"r2", shown::number(r2, 3)},
+         {"ceiling", shown::number(ceiling.r2[motor], 3)},
+         {"noise", shown::number(1e3 * std::sqrt(ceiling.density[motor] * 0.5 / dynamics.period_s), 1)},
+         {"model", in.judged.kinds[ceiling.kind[motor]].kind.title}});
+  }
+  told["spectra"] = {{"response", inline_svg(response_chart(dynamics))},
+                     {"residual", inline_svg(residual_chart(dynamics, model))},
+                     {"sums", sums},
+                     {"motors", motors},
+                     {"ceiling", shown::number(mean_over_motors(ceiling.r2), 3)},
+                     {"white", ceiling.white},
+                     {"from_hz", shown::number(NoiseCeiling::from_share * 0.5 / dynamics.period_s, 1)},
+                     {"to_hz", shown::number(0.5 / dynamics.period_s, 1)},
+                     {"segment", shown::number(dynamics.segment_s, 1)},
+                     {"segments", dynamics.segments}};
+  return told;
+}
+
 /// Its limits of trust: their file, or why there are none; false where nothing was exported.
 inline nlohmann::json trust_json(const nlohmann::json& report) {
   const nlohmann::json& trust = report["trust"];
@@ -324,6 +408,8 @@ inline std::string training_page(const TrainingPage& in) {
       {"closed_loop", false},
       {"certificate", detail::certificate_json(in.report)},
       {"trust", detail::trust_json(in.report)},
+      {"guard", detail::guard_told(in)},
+      {"dynamics", detail::dynamics_told(in)},
       {"moments", nlohmann::json::array()},
       {"shown", false},
       {"watched", !in.watched.empty()}};
@@ -358,7 +444,14 @@ inline std::string training_page(const TrainingPage& in) {
   if (in.exported) {
     const JudgedKind& kind = in.judged.kinds[*in.exported];
     const KindVerdict& verdict = in.verdicts[*in.exported];
-    page["headline"] = {{"title", kind.kind.title},
+    const bool has_ceiling = in.dynamics != nullptr && in.dynamics->has_spectra();
+    page["headline"] = {{"ceiling", has_ceiling
+                                        ? nlohmann::json(shown::number(mean_over_motors(in.dynamics->ceiling.r2), 3))
+                                        : nlohmann::json(false)},
+                        {"answered", in.dynamics != nullptr
+                                         ? nlohmann::json(shown::number(100 * in.dynamics->guard.answered_share(), 1))
+                                         : nlohmann::json(false)},
+                        {"title", kind.kind.title},
                         {"r2", shown::number(detail::r2_of(kind), 3)},
                         {"unbiased", shown::number(pinnquad::summarize(over_seeds(kind, error_figures[1])).mean, 3)},
                         {"rmse", shown::number(1e3 * pinnquad::summarize(over_seeds(kind, error_figures[3])).mean, 1)},

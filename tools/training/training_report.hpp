@@ -20,6 +20,7 @@
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/version.hpp"
 #include "training/certificate_words.hpp"
+#include "training/held_out_dynamics.hpp"
 #include "training/kind_figures.hpp"
 #include "training/kind_verdict.hpp"
 
@@ -192,6 +193,9 @@ class TrainingReport {
              {"vehicle", nullptr},
              {"altitude", nullptr},
              {"closed_loop", nullptr},
+             {"guard", nullptr},
+             {"response", nullptr},
+             {"noise_ceiling", nullptr},
              {"warnings", nlohmann::json::array()}};
     json_["settings"].update(selection);
     for (const std::string& warning : dataset.warnings) {
@@ -311,6 +315,13 @@ class TrainingReport {
   }
   /// See vehicle_json().
   void vehicle(nlohmann::json told) { json_["vehicle"] = std::move(told); }
+  /// How a model does on the flights held out, as a control engineer looks at it.
+  void held_out(const HeldOutDynamics& dynamics, const JudgedKinds& judged) {
+    const std::string model = judged.kinds[dynamics.kind].kind.key;
+    json_["guard"] = guard_json(dynamics.guard, model);
+    json_["response"] = response_json(dynamics, model);
+    json_["noise_ceiling"] = ceiling_json(dynamics, judged);
+  }
   void flown(nlohmann::json closed_loop) { json_["closed_loop"] = std::move(closed_loop); }
 
   const nlohmann::json& json() const { return json_; }

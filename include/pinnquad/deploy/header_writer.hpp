@@ -16,6 +16,7 @@
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
+#include "pinnquad/deploy/opening_comment.hpp"
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/contents_hash.hpp"
@@ -195,12 +196,7 @@ std::uint64_t write_struct(std::ostream& out, const std::string& struct_name, co
   out << "// Inverse-dynamics model, exported by pinnquad " << PINNQUAD_VERSION
       << ". Generated: export again rather than edit.\n"
       << "// SI units, rad. Commands in the order of the airframe's rotors.\n";
-  if (provenance.verdict && provenance.verdict->worse_than_mean()) {
-    out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
-  }
-  if (provenance.signs_unproven) {
-    out << "// NOT PROVEN: it may command less torque where more angular acceleration is asked (pinnquad certify).\n";
-  }
+  write_opening_comment(out, records, model.template airframe<double>());
   out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n";
   std::string vehicle;
   if constexpr (own_airframe) {

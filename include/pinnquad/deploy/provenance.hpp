@@ -19,6 +19,8 @@
 #include "pinnquad/exported/model_block.hpp"
 #include "pinnquad/exported/run_time_outputs.hpp"
 #include "pinnquad/io/file_error.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/training/structured/measured_slope.hpp"
 
 namespace pinnquad {
 
@@ -50,7 +52,14 @@ struct Provenance {
   double command_upper = 1;
   double sample_period_s = 0;   ///< of the flights; 0: not said, or that of the features' window
   double lag_removed_s = 0;     ///< of the rotors, taken out of the commands before the training
-  bool signs_unproven = false;  ///< the header says so in its first lines
+
+  // of the header's first lines (deploy/opening_comment.hpp)
+  bool signs_unproven = false;
+  /// Proven: least slopes of the signed sums, s^2/rad. A model with a certificate has its own.
+  std::optional<AxisSlopes> proven_slopes = std::nullopt;
+  SlopesOfSums slopes{};  ///< as the training rows know them
+  /// Of the rows that `verdict` is of: the share that the guard lets the model answer.
+  std::optional<double> answered_share = std::nullopt;
 
   // what was found out besides, for guards and certificates
   std::optional<detail::TorqueSigns> slope_signs = std::nullopt;  ///< proven signs of du/d(ang. acc.)

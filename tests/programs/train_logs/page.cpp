@@ -38,6 +38,8 @@ std::string page_of(Judged& run, const std::vector<std::string>& absent, bool wi
   imported.steps.push_back({"saturated", 4000, 3200, "a command below 0.005 or above 0.995"});
   programs::TrainingReport report("nowhere.json", run.plan, imported);
   report.judged(run.plan, run.judged, run.verdicts);
+  const auto dynamics = programs::held_out_dynamics(run.plan, run.fits, run.judged, 2, run.plan.first_seed);
+  report.held_out(dynamics, run.judged);
   programs::TrainingPage input{run.plan,
                                imported,
                                run.fits,
@@ -46,7 +48,8 @@ std::string page_of(Judged& run, const std::vector<std::string>& absent, bool wi
                                report.json(),
                                std::size_t{2},
                                "Exported as out/model.hpp.",
-                               {}};
+                               {},
+                               &dynamics};
   for (const std::string& flight : run.judged.flights) {
     if (with_watched) input.watched[flight] = "watch-" + flight + ".html";
   }
@@ -84,7 +87,11 @@ TEST_CASE("the page: figures, verdicts, drawings, worst moments with their links
   CHECK(page.find("nan") == std::string::npos);
   CHECK(page.find("{{") == std::string::npos);
   CHECK(count_of(page, "<svg") == count_of(page, "</svg>"));
-  CHECK(count_of(page, "<svg") == 2 * (3 + 4));  // flights, errors over, ellipses; four moments: for wide, for narrow
+  // over time, gain and phase, residuals; flights, errors over, ellipses; four moments: for wide, for narrow
+  CHECK(count_of(page, "<svg") == 2 * (3 + 3 + 4));
+  CHECK(page.find("<h2>Gain and phase, predicted to flown</h2>") != std::string::npos);
+  CHECK(page.find("noise lets no model have more than ") != std::string::npos);
+  CHECK(page.find("outside the envelope of the training rows") != std::string::npos);
   CHECK(count_of(page, "class=\"moment\"") == 8);
 }
 

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// The first lines of an exported header, for whoever opens it: is it for flight, what is proven of it, how it was
+// judged.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <ostream>
+#include <string>
+
+#include "pinnquad/deploy/provenance.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/training/structured/measured_slope.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+
+/// No locale plays a part.
+inline std::string fixed_text(double value, int decimals) {
+  char text[400];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr};
+}
+
+}  // namespace detail
+
+/// Slopes as the training rows know them, over the airframe's own: "roll 0.97 to 1.02"; by instruments with what least
+/// squares say. Empty where none is known.
+inline std::string known_slopes_in_words(const SlopesOfSums& slopes, double own_thrust, const AxisSlopes& own,
+                                         int decimals = 2) {
+  constexpr std::array<const char*, 4> names = {"thrust", "roll", "pitch", "yaw"};
+  std::string words;
+  for (const std::size_t k : {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{0}}) {
+    const MeasuredSlope& slope = slopes[k];
+    if (!slope.known) continue;
+    const double one = k == 0 ? own_thrust : own[k - 1];
+    const auto share = [&](double value) { return detail::fixed_text(value / one, decimals); };
+    words += std::string(words.empty() ? "" : ", ") + names[k] + " " + share(slope.lower) + " to " + share(slope.upper);
+    if (slope.by_instruments) words += " (by instruments; least squares " + share(slope.least_squares) + ")";
+  }
+  return words;
+}
+
+namespace detail {
+
+/// Lines of a comment. `own`: the airframe that the slopes are compared with.
+inline void write_opening_comment(std::ostream& out, const WrittenRecords& records, const Airframe<double>& own) {
+  const AxisSlopes own_slopes = hover_slopes(own);
+  if (records.verdict && records.verdict->worse_than_mean()) {
+    out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
+  }
+  std::optional<AxisSlopes> slopes = records.proven_slopes;
+  if (records.certificate) {
+    const double* held = records.certificate->held_slope;
+    slopes = {held[0], held[1], held[2]};
+  }
+  if (records.signs_unproven) {
+    out << "// NOT PROVEN: it may command less torque where more angular acceleration is asked (pinnquad certify).\n";
+  } else if (slopes) {
+    const auto share = [&](std::size_t axis) { return fixed_text((*slopes)[axis] / own_slopes[axis], 2); };
+    out << "// PROVEN: each signed sum of the commands rises with the angular acceleration about its axis, for every "
+           "input\n// (pinnquad certify). Slopes over the airframe's own in hover: roll "
+        << share(0) << ", pitch " << share(1) << ", yaw " << share(2) << ".\n";
+  }
+  const std::string known = known_slopes_in_words(records.slopes, hover_thrust_slope(own), own_slopes);
+  if (!known.empty()) out << "// Their 95 % intervals by the training rows: " << known << ".\n";
+  const auto said = [](const char* before, double figure) {
+    return is_finite(figure) ? before + fixed_text(figure, 3) : std::string();
+  };
+  if (records.verdict && is_finite(records.verdict->test_r_squared)) {
+    out << "// On rows that it was not trained on: R^2 " << fixed_text(records.verdict->test_r_squared, 3)
+        << said(", worst motor ", records.verdict->worst_motor_r_squared)
+        << said(", linear regression ", records.verdict->linear_regression_r_squared) << ".\n";
+  }
+  if (records.answered_share) {
+    out << "// Of those rows its guard let it answer " << fixed_text(100 * *records.answered_share, 1) << " %.\n";
+  }
+}
+
+}  // namespace detail
+}  // namespace pinnquad
