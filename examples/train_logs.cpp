@@ -29,15 +29,16 @@ int main(int count, char** arguments) try {
   StructuredSettings settings;
   settings.residual.epochs = 60;
   settings.seeds = 1;
-  const auto fits = fit_structured<Fits>(split, GivenAirframe{Vehicle::name, airframe_value<Vehicle, double>()}, settings);
+  const auto fits =
+      fit_structured<Fits>(split, GivenAirframe{Vehicle::name, airframe_value<Vehicle, double>()}, settings);
   const auto& best = fits.best();
 
   const Judgement judged = judge(best.model, split);
   std::printf("flights held out: R^2 %.4f\n", judged.verdict.test_r_squared);
   if (judged.verdict.worse_than_mean()) throw std::runtime_error("not exported: worse than the mean of the commands");
 
-  Provenance from = provenance_of(imported.flights, split, best.seed, settings.residual.epochs, structured_in_words,
-                                  judged.verdict);
+  Provenance from =
+      provenance_of(imported.flights, split, best.seed, settings.residual.epochs, structured_in_words, judged.verdict);
   from.lag_removed_s = imported.lag_removed_s;
   const Exported exported = export_model(arguments[1], "MyModel", best.model, split, from);
   std::printf("proven: a roll slope of %.6f s^2/rad or more\n", exported.certificate->held_slope[0]);

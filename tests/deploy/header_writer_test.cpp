@@ -313,8 +313,15 @@ TEST_CASE("the opening comment has the verdict in words: figures, what is proven
   CHECK_FALSE(has("// PROVEN"));
   from.slopes[0] = {true, 0, 0, 0.9 * hover_thrust_slope(airframe), 1.1 * hover_thrust_slope(airframe)};
   from.slopes[2] = {true, 0, 0, 0.97 * own[1], 1.04 * own[1], true, 0.25 * own[1]};
-  CHECK(has("// Their 95 % intervals by the training rows: pitch 0.97 to 1.04 (by instruments; least squares 0.25), "
-            "thrust 0.90 to 1.10.\n"));
+  CHECK(
+      has("// Their 95 % intervals by the training rows: pitch 0.97 to 1.04 (by instruments; least squares 0.25), "
+          "thrust 0.90 to 1.10.\n"));
+  from.airframe_known = false;  // then they are slopes
+  from.signs_unproven = false;
+  from.proven_slopes = {0.01234, 0.5, 1};
+  from.slopes[2] = {true, 0, 0, 0.0321, 0.0456};
+  CHECK(has("Slopes in s^2/rad: roll 0.0123, pitch 0.5000, yaw 1.0000.\n"));
+  CHECK(has("rows: pitch 0.0321 to 0.0456, thrust "));
 }
 
 TEST_CASE("names from outside stay inside their quotes, whatever they hold") {

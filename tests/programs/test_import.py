@@ -6,8 +6,10 @@ import math
 import os
 import re
 import shutil
+import struct
 import subprocess
 import sys
+import zlib
 from math import asin, atan2, cos, degrees, sin, sqrt
 from pathlib import Path
 
@@ -301,6 +303,84 @@ def test_refused(pinnquad, work, words, at, keyword):
     words = words.replace("NED", f"--mapping {HERE}/ned.toml").replace("ENU", f"{HERE}/enu.toml")
     pinnquad.refused(f"import {words} --out bad", at=at, keyword=keyword)
     left_nothing(work)
+
+
+def commands_at(t, lag_s=0.04):
+    """As the fixture has them: the motors are that far ahead."""
+    c = -specific_force(t + lag_s)[2] / 20
+    kx, ky, kz = (dot / size for dot, size in zip(slope(rates, t + lag_s, 1e-3), (160, 160, 80)))
+    return c - kx + ky + kz, c + kx - ky + kz, c + kx + ky - kz, c - kx - ky - kz
+
+
+def like_closed_form(flight, rounding):
+    """A flight of the dataset has the closed form's attitude, rates and commands, but for what its log has rounded.
+    Heading counts from anywhere."""
+    rows = numbers(flight, "roll", "pitch", "w_x", "w_y", "w_z")
+    truth = [[n / 100, *angles(n / 100)[:2], *rates(n / 100)] for n in range(2000)]
+    count, found = errors(truth, rows)
+    assert count > 1900 and max(found) < rounding, found
+    u = numbers(flight, "u1", "u2", "u3", "u4")
+    found = errors([[n / 100, *commands_at(n / 100)] for n in range(2000)], u, 0.04)[1]
+    assert max(found) < rounding, found
+    yaw = [row[1] for row in numbers(flight, "yaw")]
+    for (time, *_), now in zip(rows, yaw):
+        turned, expected = now - yaw[0], angles(time)[2] - angles(rows[0][0])[2]
+        assert abs(sin(turned - expected)) < 2 * rounding, time
+
+
+def test_blackbox(pinnquad):
+    """Betaflight's blackbox as blackbox_decode writes it."""
+    with open("LOG00001.01.csv", "w") as log:
+        log.write("loopIteration, time (us), rcCommand[0], vbatLatest (V), gyroADC[0] (deg/s), gyroADC[1] (deg/s), "
+                  "gyroADC[2] (deg/s), accSmooth[0] (m/s/s), accSmooth[1] (m/s/s), accSmooth[2] (m/s/s), debug[0], "
+                  "motor[0], motor[1], motor[2], motor[3], roll, pitch, heading, flightModeFlags (flags)\n")
+        for n in range(2000):
+            t = n / 100
+            (p, q, r), (fx, fy, fz), (roll, pitch, yaw) = rates(t), specific_force(t), angles(t)
+            u1, u2, u3, u4 = commands_at(t)
+            motors = ", ".join(f"{round(48 + 1999 * u):3d}" for u in (u4, u1, u2, u3))
+            log.write(f"{8 * n}, {10000 * n + 5000000}, {-3:3d}, {16.8 - 0.01 * t:.1f}, "
+                      f"{degrees(p):.2f}, {-degrees(q):.2f}, {-degrees(r):.2f}, {fx:.2f}, {-fy:.2f}, {-fz:.2f}, {0:3d}, "
+                      f"{motors}, {degrees(roll):.2f}, {-degrees(pitch):.2f}, {degrees(yaw) % 360:.2f}, "
+                      "ANGLE_MODE|ARM\n")
+    said = imported(pinnquad, "LOG00001.01.csv", "--mapping", "betaflight", "--airframe", "paper_quadrotor", "--lag",
+                    "0.04", out="flown")
+    dataset = facts("flown")
+    assert "velocity" in dataset["absent"] and not [w for w in dataset["warnings"] if "axis" in w or "attitude" in w], said
+    flight = Path("flown", dataset["flights"][0]["file"])
+    assert "battery_voltage [V]" in flight.read_text().split("\n")[0]
+    like_closed_form(flight, 2e-3)
+
+
+def test_usd_log(pinnquad):
+    """A Crazyflie's log of the variables that docs/how_to_log.md names."""
+    document = (SOURCE / "docs/how_to_log.md").read_text()
+    names = re.search(r"on:fixedFrequency\n.*\n.*\n((?:\w+\.\w+\n)+)", document).group(1).split()
+    kinds = {name: "I" if name.startswith("motor.") else "f" for name in names}
+    head = b"\xbc" + struct.pack("<HHH", 2, 1, 0) + b"fixedFrequency\0" + struct.pack("<H", len(names))
+    head += b"".join(f"{name}({kinds[name]})".encode() + b"\0" for name in names)
+    rows = b""
+    for n in range(2000):
+        t, g = n / 100, 9.80665
+        (p, q, r), (fx, fy, fz) = rates(t), specific_force(t)
+        u1, u2, u3, u4 = commands_at(t)
+        values = dict(zip((f"stateEstimate.q{axis}" for axis in "xyzw"), quaternion_enu_flu(t)))
+        values.update(zip(("gyro.x", "gyro.y", "gyro.z"), (degrees(p), -degrees(q), -degrees(r))))
+        values.update(zip(("acc.x", "acc.y", "acc.z"), (fx / g, -fy / g, -fz / g)))
+        values.update(zip(("stateEstimate.vx", "stateEstimate.vy", "stateEstimate.vz"),
+                          (1.5 * cos(0.6 * t), 2 * sin(0.9 * t), -0.5 * sin(0.8 * t) + 1.5 / 4.1 * cos(4.1 * t))))
+        values.update(zip(("stateEstimate.x", "stateEstimate.y", "stateEstimate.z"),
+                          (2.5 * sin(0.6 * t), -2 / 0.9 * cos(0.9 * t), 20 + 0.5 / 0.8 * cos(0.8 * t))))
+        values.update(zip((f"motor.m{i}" for i in (1, 2, 3, 4)), (round(65535 * u) for u in (u1, u4, u2, u3))))
+        values["pm.vbat"] = 4.1 - 0.01 * t
+        rows += struct.pack("<HQ" + "".join(kinds.values()), 0, 10000 * n, *(values[name] for name in names))
+    Path("log00").write_bytes(head + rows + struct.pack("<I", zlib.crc32(head + rows)))
+    said = imported(pinnquad, "log00", "--mapping", "crazyflie", "--lag", "0.04", out="flown")
+    dataset = facts("flown")
+    assert dataset["absent"] == [] and not [w for w in dataset["warnings"] if "attitude" in w], said
+    flight = Path("flown", dataset["flights"][0]["file"])
+    assert "battery_voltage [V]" in flight.read_text().split("\n")[0]
+    like_closed_form(flight, 1e-4)
 
 
 def test_nanobench(pinnquad, recorded):

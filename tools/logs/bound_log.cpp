@@ -23,7 +23,9 @@ void turn_attitude(const Source& source, std::vector<std::vector<double>>& value
   for (std::size_t row = 0; row < rows; ++row) {
     std::array<double, 4> numbers{};
     if (source.euler) {
-      const auto q = from_euler(EulerAngles<double>{values[0][row], values[1][row], values[2][row]});
+      const std::array<double, 3>& signs = source.euler_signs;
+      const auto q = from_euler(
+          EulerAngles<double>{signs[0] * values[0][row], signs[1] * values[1][row], signs[2] * values[2][row]});
       numbers = {q.w, q.x, q.y, q.z};
     } else {
       for (std::size_t i = 0; i < 4; ++i) numbers[i] = values[i][row];

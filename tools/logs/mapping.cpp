@@ -165,7 +165,15 @@ void read_columns(TomlTable& table, Source& source, const QuantityFacts& facts) 
     source.euler = table.optional("euler") != nullptr;
     source.columns = source.euler ? columns_of(table, "euler", 3, "roll, pitch and yaw")
                                   : columns_of(table, "quaternion", 4, "a quaternion");
-    if (source.euler) source.in_si = unit_of(table, "unit", facts.dimension);
+    if (source.euler) {
+      source.in_si = unit_of(table, "unit", facts.dimension);
+      for (std::size_t i = 0; i < source.columns.size(); ++i) {
+        std::string& name = source.columns[i].name;
+        if (name[0] != '-') continue;
+        source.euler_signs[i] = -1;
+        name.erase(0, 1);
+      }
+    }
     if (!source.euler) source.scalar_last = table.choice("order", orders, 0) == 1;
     source.world_to_body = table.choice("direction", directions, 0) == 1;
   } else if (facts.quantity == Quantity::torque_and_thrust) {

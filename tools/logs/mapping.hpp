@@ -97,9 +97,10 @@ struct Source {
   bool held = false;  ///< a value holds until the next one
   MappingPlace place;
 
-  bool euler = false;          ///< of attitude: roll, pitch, yaw instead of a quaternion
-  bool scalar_last = false;    ///< x, y, z, w
-  bool world_to_body = false;  ///< the quaternion's direction
+  bool euler = false;                             ///< of attitude: roll, pitch, yaw instead of a quaternion
+  std::array<double, 3> euler_signs = {1, 1, 1};  ///< "-pitch": the log has it the other way round
+  bool scalar_last = false;                       ///< x, y, z, w
+  bool world_to_body = false;                     ///< the quaternion's direction
   WorldFrame world = WorldFrame::ned;
   BodyFrame body = BodyFrame::frd;
   Axes axes = Axes::body;  ///< of accelerations and velocities

@@ -269,9 +269,9 @@ inline Chart residual_chart(const HeldOutDynamics& dynamics, const std::string& 
     for (const Series* series : {&flown, &residual}) {
       lowest = std::min(lowest, *std::min_element(series->y.begin(), series->y.end()));
     }
-    panel.y.least = lowest - 15;  // a level far below is not drawn
-    Series noise = detail::level_line(panel.x.least, panel.x.most,
-                                      detail::decibels(dynamics.ceiling.density[motor]), colour::orange);
+    panel.y.least = lowest - 6;  // a level far below is not drawn
+    Series noise = detail::level_line(panel.x.least, panel.x.most, detail::decibels(dynamics.ceiling.density[motor]),
+                                      colour::orange);
     noise.name = "taken for noise";
     panel.series = {flown, residual, noise};
     chart.panels.push_back(panel);

@@ -65,7 +65,7 @@ struct NoiseCeiling {
   static constexpr double most_slope = 1.5;   ///< between the halves of that quarter: more is no white noise
 
   MotorFigures r2 = {pinnquad::not_a_number, pinnquad::not_a_number, pinnquad::not_a_number, pinnquad::not_a_number};
-  MotorFigures density{};  ///< of the noise, 1/Hz
+  MotorFigures density{};                                 ///< of the noise, 1/Hz
   std::array<std::size_t, pinnquad::rotor_count> kind{};  ///< whose residual it is
   bool white = true;
 };
@@ -170,8 +170,8 @@ inline HeldOutStretch typical_stretch(const std::vector<HeldOutStretch>& stretch
         double squares = 0;
         for (std::size_t i = 0; i < part.size; ++i) {
           for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
-            const double error = (*predictions[part.fold])[part.held_out + i][motor] -
-                                 (*part.flight)[part.row + i].commands[motor];
+            const double error =
+                (*predictions[part.fold])[part.held_out + i][motor] - (*part.flight)[part.row + i].commands[motor];
             squares += error * error / static_cast<double>(part.size);
           }
         }

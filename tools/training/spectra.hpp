@@ -42,7 +42,11 @@ struct SpectralBand {
 class WelchSpectra {
  public:
   WelchSpectra(std::size_t length, double period_s)
-      : length_(length), period_s_(period_s), window_(length), input_(length / 2), output_(length / 2),
+      : length_(length),
+        period_s_(period_s),
+        window_(length),
+        input_(length / 2),
+        output_(length / 2),
         cross_(length / 2) {
     for (std::size_t i = 0; i < length; ++i) {
       const double angle = 2 * pinnquad::detail::pi * static_cast<double>(i) / static_cast<double>(length);
@@ -137,8 +141,8 @@ struct FollowedRange {
   /// Of the coherence: Tischler & Remple's rule for identification from flight tests.
   static constexpr double least_coherence = 0.6;
 
-  double from_hz = 0, to_hz = 0;     ///< 0: nowhere
-  double gain = 0, gain_error = 0;   ///< mean and standard error
+  double from_hz = 0, to_hz = 0;          ///< 0: nowhere
+  double gain = 0, gain_error = 0;        ///< mean and standard error
   double delay_s = 0, delay_error_s = 0;  ///< of the output behind the input: phase = -2 pi f delay
 };
 

@@ -414,6 +414,7 @@ class Training {
       from.signs_unproven = true;
     }
     from.slopes = made.model->slopes();
+    from.airframe_known = !options_.airframe.empty() || !options_.flights.empty();
     const programs::GuardCounts guard = programs::guard_of_seed(fits_, *chosen_, seed_shown(*chosen_));
     if (guard.rows > 0) from.answered_share = guard.answered_share();
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
@@ -570,11 +571,8 @@ class Training {
 
   /// The page, and one to watch each held-out flight in 3D where that is built.
   void write_page() {
-    programs::TrainingPage input{plan_, dataset_, fits_, judged_, verdicts_, report_.json(),
-                                 chosen_,
-                                 told_,
-                                 {},
-                                 dynamics_ ? &*dynamics_ : nullptr};
+    programs::TrainingPage input{plan_,          dataset_, fits_, judged_, verdicts_,
+                                 report_.json(), chosen_,  told_, {},      dynamics_ ? &*dynamics_ : nullptr};
     if (programs::WatchPage::available()) {
       programs::ProgressLine progress("flights to watch");
       for (const std::string& name : judged_.flights) {
@@ -605,7 +603,7 @@ class Training {
   std::vector<programs::KindVerdict> verdicts_;
   std::optional<std::size_t> chosen_;
   std::optional<programs::HeldOutDynamics> dynamics_;  ///< of it, or of the best that was judged
-  std::string told_;  ///< what became of the export
+  std::string told_;                                   ///< what became of the export
 };
 
 }  // namespace

@@ -88,7 +88,7 @@ GuardCounts BlockNetwork::guard_counts(const pinnquad::RowSet& rows) const {
         most = half_widths;
         furthest = i;
       }
-      ++counts.furthest[names[furthest]];
+      ++counts.furthest[names[furthest].substr(0, names[furthest].find('['))];
     } else if (!is_finite(answer.commands)) {
       ++counts.output_not_finite;
     } else if (beyond_limits(answer.commands)) {

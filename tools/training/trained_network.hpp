@@ -33,8 +33,9 @@ struct GuardCounts {
   std::uint64_t warming_up = 0;        ///< no whole window of instants
   std::uint64_t outside_envelope = 0;  ///< of the training rows
   std::uint64_t output_not_finite = 0;
-  std::uint64_t beyond_limits = 0;                ///< answered, with a command below 0 or above 1
-  std::map<std::string, std::uint64_t> furthest;  ///< of those outside: by the feature that is furthest out
+  std::uint64_t beyond_limits = 0;  ///< answered, with a command below 0 or above 1
+  /// Of those outside, by the feature that is furthest out, of a window whatever its instant.
+  std::map<std::string, std::uint64_t> furthest;
 
   std::uint64_t answered() const { return rows - warming_up - outside_envelope - output_not_finite; }
   /// NaN of no rows.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <string>
@@ -317,11 +318,10 @@ inline nlohmann::json dynamics_told(const TrainingPage& in) {
   if (dynamics.typical.size > 0) {
     const HeldOutStretch& typical = dynamics.typical;
     const auto predictions = predictions_of_seed(in.plan, in.fits, dynamics.kind, dynamics.seed);
-    told["stretch"] = {
-        {"flight", typical.flight->name},
-        {"from", shown::number((*typical.flight)[typical.row].time_s, 1)},
-        {"drawing", inline_svg(stretch_chart(typical, model, *predictions[typical.fold],
-                                             signs_of_sums(in.plan.airframe)))}};
+    told["stretch"] = {{"flight", typical.flight->name},
+                       {"from", shown::number((*typical.flight)[typical.row].time_s, 1)},
+                       {"drawing", inline_svg(stretch_chart(typical, model, *predictions[typical.fold],
+                                                            signs_of_sums(in.plan.airframe)))}};
   }
   if (!dynamics.has_spectra()) return told;
   nlohmann::json sums = nlohmann::json::array(), motors = nlohmann::json::array();
@@ -340,12 +340,11 @@ inline nlohmann::json dynamics_told(const TrainingPage& in) {
   const NoiseCeiling& ceiling = dynamics.ceiling;
   for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
     const double r2 = pinnquad::summarize(over_seeds(kind, error_figures[0], motor)).mean;
-    motors.push_back(
-        {{"name", "u" + std::to_string(motor + 1)},
-         {"r2", shown::number(r2, 3)},
-         {"ceiling", shown::number(ceiling.r2[motor], 3)},
-         {"noise", shown::number(1e3 * std::sqrt(ceiling.density[motor] * 0.5 / dynamics.period_s), 1)},
-         {"model", in.judged.kinds[ceiling.kind[motor]].kind.title}});
+    motors.push_back({{"name", "u" + std::to_string(motor + 1)},
+                      {"r2", shown::number(r2, 3)},
+                      {"ceiling", shown::number(ceiling.r2[motor], 3)},
+                      {"noise", shown::number(1e3 * std::sqrt(ceiling.density[motor] * 0.5 / dynamics.period_s), 1)},
+                      {"model", in.judged.kinds[ceiling.kind[motor]].kind.title}});
   }
   told["spectra"] = {{"response", inline_svg(response_chart(dynamics))},
                      {"residual", inline_svg(residual_chart(dynamics, model))},
@@ -366,6 +365,29 @@ inline nlohmann::json trust_json(const nlohmann::json& report) {
   if (!trust.is_object()) return false;
   const auto text = [&trust](const char* key) { return trust[key].is_string() ? trust[key] : nlohmann::json(false); };
   return {{"file", text("file")}, {"why_not", text("why_not")}};
+}
+
+/// Numbers of the vehicle that the flights identify, with their intervals; false where they were not asked.
+inline nlohmann::json vehicle_told(const nlohmann::json& report) {
+  if (!report.contains("vehicle") || !report["vehicle"].is_object()) return false;
+  const nlohmann::json& vehicle = report["vehicle"];
+  nlohmann::json told = {{"rows", nlohmann::json::array()}, {"contradicted", vehicle["contradicted"]}};
+  told["why_not"] =
+      vehicle["not_identified_because"].is_string() ? vehicle["not_identified_because"] : nlohmann::json(false);
+  const auto text = [](const nlohmann::json& number) {
+    char written[32] = "–";
+    if (number.is_number()) std::snprintf(written, sizeof written, "%.3g", number.get<double>());
+    return std::string(written);
+  };
+  for (const auto& [key, number] : vehicle["numbers"].items()) {
+    told["rows"].push_back({{"name", key},
+                            {"value", text(number["value"])},
+                            {"interval", text(number["low"]) + " to " + text(number["high"])},
+                            {"unit", number["unit"]},
+                            {"excitation", number["excitation"]},
+                            {"fly", number.contains("fly") ? number["fly"] : nlohmann::json("")}});
+  }
+  return told;
 }
 
 inline nlohmann::json or_false(const std::string& text) {
@@ -409,6 +431,7 @@ inline std::string training_page(const TrainingPage& in) {
       {"certificate", detail::certificate_json(in.report)},
       {"trust", detail::trust_json(in.report)},
       {"guard", detail::guard_told(in)},
+      {"vehicle", detail::vehicle_told(in.report)},
       {"dynamics", detail::dynamics_told(in)},
       {"moments", nlohmann::json::array()},
       {"shown", false},
@@ -445,18 +468,18 @@ inline std::string training_page(const TrainingPage& in) {
     const JudgedKind& kind = in.judged.kinds[*in.exported];
     const KindVerdict& verdict = in.verdicts[*in.exported];
     const bool has_ceiling = in.dynamics != nullptr && in.dynamics->has_spectra();
-    page["headline"] = {{"ceiling", has_ceiling
-                                        ? nlohmann::json(shown::number(mean_over_motors(in.dynamics->ceiling.r2), 3))
-                                        : nlohmann::json(false)},
-                        {"answered", in.dynamics != nullptr
-                                         ? nlohmann::json(shown::number(100 * in.dynamics->guard.answered_share(), 1))
-                                         : nlohmann::json(false)},
-                        {"title", kind.kind.title},
-                        {"r2", shown::number(detail::r2_of(kind), 3)},
-                        {"unbiased", shown::number(pinnquad::summarize(over_seeds(kind, error_figures[1])).mean, 3)},
-                        {"rmse", shown::number(1e3 * pinnquad::summarize(over_seeds(kind, error_figures[3])).mean, 1)},
-                        {"standing", word_of(verdict.standing)},
-                        {"sentence", verdict.sentence}};
+    page["headline"] = {
+        {"ceiling", has_ceiling ? nlohmann::json(shown::number(mean_over_motors(in.dynamics->ceiling.r2), 3))
+                                : nlohmann::json(false)},
+        {"answered", in.dynamics != nullptr
+                         ? nlohmann::json(shown::number(100 * in.dynamics->guard.answered_share(), 1))
+                         : nlohmann::json(false)},
+        {"title", kind.kind.title},
+        {"r2", shown::number(detail::r2_of(kind), 3)},
+        {"unbiased", shown::number(pinnquad::summarize(over_seeds(kind, error_figures[1])).mean, 3)},
+        {"rmse", shown::number(1e3 * pinnquad::summarize(over_seeds(kind, error_figures[3])).mean, 1)},
+        {"standing", word_of(verdict.standing)},
+        {"sentence", verdict.sentence}};
   }
   if (!shown.empty()) {
     std::vector<EllipsesOf> ellipses;

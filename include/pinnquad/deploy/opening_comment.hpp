@@ -36,7 +36,7 @@ inline std::string known_slopes_in_words(const SlopesOfSums& slopes, double own_
     const MeasuredSlope& slope = slopes[k];
     if (!slope.known) continue;
     const double one = k == 0 ? own_thrust : own[k - 1];
-    const auto share = [&](double value) { return detail::fixed_text(value / one, decimals); };
+    const auto share = [one, decimals](double value) { return detail::fixed_text(value / one, decimals); };
     words += std::string(words.empty() ? "" : ", ") + names[k] + " " + share(slope.lower) + " to " + share(slope.upper);
     if (slope.by_instruments) words += " (by instruments; least squares " + share(slope.least_squares) + ")";
   }
@@ -47,7 +47,9 @@ namespace detail {
 
 /// Lines of a comment. `own`: the airframe that the slopes are compared with.
 inline void write_opening_comment(std::ostream& out, const WrittenRecords& records, const Airframe<double>& own) {
-  const AxisSlopes own_slopes = hover_slopes(own);
+  const bool over_own = records.airframe_known;
+  const AxisSlopes own_slopes = over_own ? hover_slopes(own) : AxisSlopes{1, 1, 1};
+  const int decimals = over_own ? 2 : 4;
   if (records.verdict && records.verdict->worse_than_mean()) {
     out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
   }
@@ -59,12 +61,14 @@ inline void write_opening_comment(std::ostream& out, const WrittenRecords& recor
   if (records.signs_unproven) {
     out << "// NOT PROVEN: it may command less torque where more angular acceleration is asked (pinnquad certify).\n";
   } else if (slopes) {
-    const auto share = [&](std::size_t axis) { return fixed_text((*slopes)[axis] / own_slopes[axis], 2); };
+    const auto share = [&](std::size_t axis) { return fixed_text((*slopes)[axis] / own_slopes[axis], decimals); };
     out << "// PROVEN: each signed sum of the commands rises with the angular acceleration about its axis, for every "
-           "input\n// (pinnquad certify). Slopes over the airframe's own in hover: roll "
-        << share(0) << ", pitch " << share(1) << ", yaw " << share(2) << ".\n";
+           "input\n// (pinnquad certify). Slopes"
+        << (over_own ? " over the airframe's own in hover" : " in s^2/rad") << ": roll " << share(0) << ", pitch "
+        << share(1) << ", yaw " << share(2) << ".\n";
   }
-  const std::string known = known_slopes_in_words(records.slopes, hover_thrust_slope(own), own_slopes);
+  const std::string known =
+      known_slopes_in_words(records.slopes, over_own ? hover_thrust_slope(own) : 1, own_slopes, decimals);
   if (!known.empty()) out << "// Their 95 % intervals by the training rows: " << known << ".\n";
   const auto said = [](const char* before, double figure) {
     return is_finite(figure) ? before + fixed_text(figure, 3) : std::string();

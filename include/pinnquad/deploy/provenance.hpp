@@ -50,14 +50,15 @@ struct Provenance {
   std::optional<CommandMeaning> command_meaning = std::nullopt;
   double command_lower = 0;  ///< the range that commands were given in
   double command_upper = 1;
-  double sample_period_s = 0;   ///< of the flights; 0: not said, or that of the features' window
-  double lag_removed_s = 0;     ///< of the rotors, taken out of the commands before the training
+  double sample_period_s = 0;  ///< of the flights; 0: not said, or that of the features' window
+  double lag_removed_s = 0;    ///< of the rotors, taken out of the commands before the training
 
   // of the header's first lines (deploy/opening_comment.hpp)
   bool signs_unproven = false;
   /// Proven: least slopes of the signed sums, s^2/rad. A model with a certificate has its own.
   std::optional<AxisSlopes> proven_slopes = std::nullopt;
-  SlopesOfSums slopes{};  ///< as the training rows know them
+  SlopesOfSums slopes{};       ///< as the training rows know them
+  bool airframe_known = true;  ///< false: slopes are not told over those of the airframe, which is another one
   /// Of the rows that `verdict` is of: the share that the guard lets the model answer.
   std::optional<double> answered_share = std::nullopt;
 

@@ -51,8 +51,8 @@ pinnquad::Commands<double> truth_of(const pinnquad::Sample& sample) {
   return {known[0], known[1], known[2], sample.altitude_m};
 }
 
-programs::ModelKind kind_of(const char* key, std::shared_ptr<const programs::TrainedNetwork> (*fit)(
-                                                 const programs::FitTask&)) {
+programs::ModelKind kind_of(const char* key,
+                            std::shared_ptr<const programs::TrainedNetwork> (*fit)(const programs::FitTask&)) {
   return {key, key, programs::TimeReach::present, false, pinnquad_test::always, fit};
 }
 

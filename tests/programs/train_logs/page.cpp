@@ -40,16 +40,25 @@ std::string page_of(Judged& run, const std::vector<std::string>& absent, bool wi
   report.judged(run.plan, run.judged, run.verdicts);
   const auto dynamics = programs::held_out_dynamics(run.plan, run.fits, run.judged, 2, run.plan.first_seed);
   report.held_out(dynamics, run.judged);
-  programs::TrainingPage input{run.plan,
-                               imported,
-                               run.fits,
-                               run.judged,
-                               run.verdicts,
-                               report.json(),
-                               std::size_t{2},
-                               "Exported as out/model.hpp.",
-                               {},
-                               &dynamics};
+  nlohmann::json told = report.json();
+  if (with_watched) {
+    told["vehicle"] = {
+        {"not_identified_because", nullptr},
+        {"contradicted", {"the hover command is 0.3 to 0.32 in the flights, 0.5 of it"}},
+        {"numbers",
+         {{"roll_effectiveness_rad_s2",
+           {{"value", 39.87654}, {"low", 38.2}, {"high", 41.5}, {"unit", "rad/s^2"}, {"excitation", "good"}}},
+          {"delay_s",
+           {{"value", nullptr},
+            {"low", nullptr},
+            {"high", nullptr},
+            {"unit", "s"},
+            {"excitation", "not told"},
+            {"fly", "quick small rolls"}}}}}};
+  }
+  programs::TrainingPage input{run.plan,     imported, run.fits,       run.judged,
+                               run.verdicts, told,     std::size_t{2}, "Exported as out/model.hpp.",
+                               {},           &dynamics};
   for (const std::string& flight : run.judged.flights) {
     if (with_watched) input.watched[flight] = "watch-" + flight + ".html";
   }
@@ -92,6 +101,10 @@ TEST_CASE("the page: figures, verdicts, drawings, worst moments with their links
   CHECK(page.find("<h2>Gain and phase, predicted to flown</h2>") != std::string::npos);
   CHECK(page.find("noise lets no model have more than ") != std::string::npos);
   CHECK(page.find("outside the envelope of the training rows") != std::string::npos);
+  CHECK(page.find("<td class=\"n\">39.9</td><td class=\"n\">38.2 to 41.5</td><td>rad/s^2</td><td>good</td>") !=
+        std::string::npos);
+  CHECK(page.find("– to –") != std::string::npos);
+  CHECK(page.find("given: the hover command is 0.3 to 0.32") != std::string::npos);
   CHECK(count_of(page, "class=\"moment\"") == 8);
 }
 
@@ -107,6 +120,7 @@ TEST_CASE(
   CHECK(page.find("· speed ") == std::string::npos);
   CHECK(page.find("· tilt ") != std::string::npos);
   CHECK(page.find("No flights to watch in 3D") != std::string::npos);
+  CHECK(page.find("id=\"vehicle\"") == std::string::npos);
 }
 
 TEST_CASE("the page draws what the first seed's model predicts") {
