@@ -35,8 +35,8 @@ int main(int count, char** arguments) try {
               judged.verdict.linear_regression_r_squared);
   if (judged.verdict.worse_than_mean()) throw std::runtime_error("not exported: worse than the mean of the commands");
 
-  const auto from =
-      provenance_of(flights, split, best.seed, settings.residual.epochs, structured_in_words, judged.verdict);
+  auto from = provenance_of(flights, split, best.seed, settings.residual.epochs, structured_in_words, judged.verdict);
+  from.slopes = best.slopes.of;  // said in the header's first lines, with the verdict
   const auto exported = export_model(arguments[1], "MyModel", best.model, split, from);
   std::printf("proven: a roll slope of %.6f s^2/rad or more\n", exported.certificate->held_slope[0]);
   if (!exported.no_trust_because.empty()) std::printf("no trust.hpp: %s\n", exported.no_trust_because.c_str());

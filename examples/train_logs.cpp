@@ -40,6 +40,7 @@ int main(int count, char** arguments) try {
   Provenance from =
       provenance_of(imported.flights, split, best.seed, settings.residual.epochs, structured_in_words, judged.verdict);
   from.lag_removed_s = imported.lag_removed_s;
+  from.slopes = best.slopes.of;
   const Exported exported = export_model(arguments[1], "MyModel", best.model, split, from);
   std::printf("proven: a roll slope of %.6f s^2/rad or more\n", exported.certificate->held_slope[0]);
 } catch (const std::exception& error) {  // one line: a flight without the column is named

@@ -296,7 +296,7 @@ TEST_CASE("the opening comment has the verdict in words: figures, what is proven
   CHECK_FALSE(has("PROVEN"));
   CHECK_FALSE(has("R^2"));
   from.verdict = Verdict{0.75, 0.5, 0.25};
-  from.answered_share = 0.9346;
+  from.verdict->answered_share = 0.9346;
   CHECK(has("// On rows that it was not trained on: R^2 0.750, worst motor 0.250, linear regression 0.500.\n"));
   CHECK(has("// Of those rows its guard let it answer 93.5 %.\n"));
   from.verdict->linear_regression_r_squared = std::numeric_limits<double>::quiet_NaN();

@@ -280,7 +280,9 @@ class Training {
       if (best == nullptr) return {not_a_number, not_a_number, not_a_number};
       seed = best->seed;
     }
-    return programs::exported_verdict(plan_, judged_, kind, seed);
+    Verdict verdict = programs::exported_verdict(plan_, judged_, kind, seed);
+    verdict.answered_share = programs::guard_of_seed(fits_, kind, seed_shown(kind)).answered_share();
+    return verdict;
   }
 
   int export_best() {
@@ -415,8 +417,6 @@ class Training {
     }
     from.slopes = made.model->slopes();
     from.airframe_known = !options_.airframe.empty() || !options_.flights.empty();
-    const programs::GuardCounts guard = programs::guard_of_seed(fits_, *chosen_, seed_shown(*chosen_));
-    if (guard.rows > 0) from.answered_share = guard.answered_share();
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
     const pinnquad::Exported written = made.model->export_to({header, block, made.model->has_trust() ? trust : ""},

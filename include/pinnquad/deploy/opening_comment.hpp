@@ -78,8 +78,9 @@ inline void write_opening_comment(std::ostream& out, const WrittenRecords& recor
         << said(", worst motor ", records.verdict->worst_motor_r_squared)
         << said(", linear regression ", records.verdict->linear_regression_r_squared) << ".\n";
   }
-  if (records.answered_share) {
-    out << "// Of those rows its guard let it answer " << fixed_text(100 * *records.answered_share, 1) << " %.\n";
+  if (records.verdict && is_finite(records.verdict->answered_share)) {
+    out << "// Of those rows its guard let it answer " << fixed_text(100 * records.verdict->answered_share, 1)
+        << " %.\n";
   }
 }
 

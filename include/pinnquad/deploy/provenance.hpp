@@ -59,8 +59,6 @@ struct Provenance {
   std::optional<AxisSlopes> proven_slopes = std::nullopt;
   SlopesOfSums slopes{};       ///< as the training rows know them
   bool airframe_known = true;  ///< false: slopes are not told over those of the airframe, which is another one
-  /// Of the rows that `verdict` is of: the share that the guard lets the model answer.
-  std::optional<double> answered_share = std::nullopt;
 
   // what was found out besides, for guards and certificates
   std::optional<detail::TorqueSigns> slope_signs = std::nullopt;  ///< proven signs of du/d(ang. acc.)

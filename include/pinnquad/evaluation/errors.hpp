@@ -175,6 +175,8 @@ struct Verdict {
   double linear_regression_r_squared = 0;  ///< of evaluation/errors.hpp, fitted on the model's training rows
   /// Of the model, the least of the motors; NaN if one is, or if nothing is said of it.
   double worst_motor_r_squared = std::numeric_limits<double>::quiet_NaN();
+  /// Of the test rows, those that the guard of its export lets it answer; NaN: not said.
+  double answered_share = std::numeric_limits<double>::quiet_NaN();
 
   /// Answering always with the mean command would have been better; so too if R^2 is NaN. Such a model is not for
   /// flight.

@@ -158,6 +158,14 @@ std::vector<Commands<double>> predicted_commands(const Model& model, const RowSe
   return result;
 }
 
+/// The share of rows that the guard of a TrainedModel's export lets it answer.
+template <class Model>
+double answered_share(const Model& model, const RowSet& rows) {
+  std::size_t answered = 0;
+  for (const Commands<double>& u : predicted_commands(model, rows, true)) answered += all_finite(u) ? 1 : 0;
+  return static_cast<double>(answered) / static_cast<double>(rows.size());
+}
+
 /// Judges a TrainedModel on the test rows; its verdict is beside linear regression on the paper's features. Figures of
 /// a model of a window are NaN: its first rows have no features (model_errors() leaves them out). Throws
 /// std::invalid_argument for a split with an empty part.
@@ -167,6 +175,7 @@ Judgement judge(const Model& model, const RowSplit& split) {
   result.validation_error = model_errors(model, split.validation).mean.mean_absolute;
   result.verdict =
       verdict_on(result.errors, linear_regression_errors<PaperFeatures>(split.train, split.test).mean.r_squared);
+  result.verdict.answered_share = answered_share(model, split.test);
   return result;
 }
 

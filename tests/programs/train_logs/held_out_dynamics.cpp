@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is said of a model on held-out flights, where the truth is known: noise of a known variance, gains and lags that
+// The figures of a model on held-out flights, where the truth is known: noise of a known variance, gains and lags that
 // the models were given, rows that were moved out of the envelope.
 #include "training/held_out_dynamics.hpp"
 
