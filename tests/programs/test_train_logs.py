@@ -85,8 +85,9 @@ def held_out(report, page, header):
     assert sum(guard["furthest_outside"].values()) == pytest.approx(guard["refused"]["outside_envelope"])
     # the simulator has no noise: a model that is all but exact leaves the ceiling above it, and close to 1
     assert report["models"][model]["r2"]["mean"] - 0.01 < ceiling["r2"] <= 1 and ceiling["r2"] > 0.97
-    for of in response["sums"].values():
-        assert of["gain"] == pytest.approx(1, abs=0.05) and abs(of["delay_s"]) < 0.02, of
+    for axis, of in response["sums"].items():
+        # linear regression on the paper's features knows no thrust of a vehicle that tilts
+        assert axis == "thrust" or (of["gain"] == pytest.approx(1, abs=0.05) and abs(of["delay_s"]) < 0.02), of
         assert {len(values) for values in of["bands"].values()} == {len(of["bands"]["frequency_hz"])}
     for heading in "Flown and predicted, over time", "Gain and phase", "noise or motion", "Under its guard":
         assert heading in page
