@@ -124,6 +124,32 @@ def test_slopes_under_noise(pinnquad, flown):
     assert errors["instruments"] < 2 * errors["least squares"] < 0.02, "on a flight without noise"
 
 
+def test_latency(pinnquad, flown):
+    """Commands that stand a row beside the motion are aligned with it, said by console, report and header; those of slow
+    rotors stay, and so do all by --lag 0."""
+    words = "train --models linear,structured --export structured --seeds 1 --epochs 3"
+    late, prompt = (flown(f"--seed 3 --samples 5000 {latency}") for latency in ("--latency 50", ""))
+    rows = Path(prompt).read_text().splitlines()  # a sensor that is late by a row
+    ahead = [",".join(row.split(",")[:-4] + after.split(",")[-4:]) for row, after in zip(rows[1:], rows[2:])]
+    Path("ahead.csv").write_text("\n".join([rows[0], *ahead, ""]))
+    error = {}
+    slow = "--airframe crazyflie_2_1"
+    for flight, options, lag in ((late, "", -0.05), (late, "--lag 0", 0), ("ahead.csv", "", 0.05), (prompt, "", 0),
+                                 (flown(f"--seed 3 --samples 5000 {slow}"), slow, 0)):
+        said = pinnquad(f"{words} {options} --out aligned", "--flight", flight).out
+        report = report_of("aligned")
+        assert report["settings"]["lag_removed_s"] == pytest.approx(lag), (flight, options)
+        assert ("--lag 0 leaves the commands" in said) == (lag != 0)
+        assert ("from command to motion removed" in Path("aligned/report.html").read_text()) == (lag != 0)
+        stated = re.search("lag_removed_s = ([0-9.]+)", Path("aligned/model.hpp").read_text()).group(1)
+        assert float(stated) == pytest.approx(max(lag, 0)), "below 0 it is none of the rotors"
+        error[str(flight), options] = report["models"]["structured"]["rmse"]["mean"]
+    assert error[str(late), ""] < 0.5 * error[str(late), "--lag 0"]
+    assert error[str(late), ""] < 1.8 * error[str(prompt), ""]
+    for options, keyword in ("--lag soon --flight ahead.csv", "--lag"), ("--lag 0 --dataset none", "a dataset"):
+        pinnquad.refused(f"{words} {options} --out aligned", keyword=keyword)
+
+
 def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
     """The altitude is not shown far from the ground, shown where the commands depend on it, or as asked; pinned slopes
     are the airframe's."""

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -34,6 +35,17 @@ bool parse_decimal(const std::string& text, Number least, Number most, Number& v
   if (!(read >= least && read <= most)) return false;
   value = read;
   return true;
+}
+
+/// The value of --lag: none for auto. Throws std::invalid_argument, one line.
+inline std::optional<double> lag_of(const std::string& text) {
+  constexpr double longest_s = 1;
+  if (text == "auto") return {};
+  double lag_s = 0;
+  if (!parse_decimal(text, -longest_s, longest_s, lag_s)) {
+    throw std::invalid_argument("--lag: expected auto, or seconds from -1 to 1, found '" + text + "'");
+  }
+  return lag_s;
 }
 
 /// An option that takes a number from `least` to `most`; whatever else it is given is refused in one line.

@@ -75,14 +75,7 @@ logs::LogSettings settings_of(const ImportOptions& options) {
   settings.airframe = options.airframe;
   settings.rate_hz = options.rate_hz;
   settings.hold_commands = options.hold;
-  if (options.lag != "auto") {
-    constexpr double longest_s = 1;
-    double lag_s = 0;
-    if (!programs::parse_decimal(options.lag, -longest_s, longest_s, lag_s)) {
-      throw std::invalid_argument("--lag: expected auto, or seconds from -1 to 1, found '" + options.lag + "'");
-    }
-    settings.lag_s = lag_s;
-  }
+  settings.lag_s = programs::lag_of(options.lag);
   return settings;
 }
 

@@ -28,7 +28,7 @@ struct GivenWords {
   std::string airframe = pinnquad::PaperQuadrotor::name;
   std::string recipe = programs::recipes.front()().name;
   std::vector<std::string> losses = {programs::loss_names[0], programs::loss_names[1]};
-  std::string altitude = "auto", slopes = "learned";
+  std::string altitude = "auto", slopes = "learned", lag = "auto";
   int epochs = programs::recipe_epochs;
 };
 
@@ -113,10 +113,12 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   app.add_option("--airframe", words.airframe,
                  "what flew: a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
       ->capture_default_str();
-  add_number(app, "--lag", options.lag_s, -1.0, 1.0,
-             "from command to motion, s, removed from the commands of logs and flights (default: estimated; of flights "
-             "the whole rows that are not the rotors')")
-      ->default_str("");
+  app.add_option(
+         "--lag", words.lag,
+         "from command to motion, removed from the commands of logs and flights: estimated, of flights as whole "
+         "rows that are not the rotors', or as given")
+      ->type_name("auto|SECONDS")
+      ->capture_default_str();
   add_path(app, "--out", options.out, "DIR", "folder for results, report and the exported header")
       ->default_str(options.out);
   add_kinds(app, options, words);
@@ -173,6 +175,7 @@ programs::Command programs::train_command(CLI::App& program) {
             if (given("--recipe") || (given("--flight") && !given("--models"))) options.recipe = words.recipe;
             options.losses = words.losses;
             if (words.altitude != "auto") options.altitude = words.altitude == "yes";
+            options.lag_s = programs::lag_of(words.lag);
             options.pinned_slopes = words.slopes == "pinned";
             if (given("--airframe")) options.airframe = words.airframe;
             if (given("--epochs")) options.epochs = words.epochs;
