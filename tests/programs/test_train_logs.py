@@ -226,7 +226,8 @@ def test_vehicle_of_the_flights(pinnquad, dataset, flown):
     loop = report["closed_loop"]
     assert loop["model"]["rmse_m"] < 0.5 * loop["hover_trim"]["rmse_m"], loop
 
-    assert not report_of("given")["vehicle"]["contradicted"] and "using Vehicle = pinnquad::" not in Path("own/model.hpp").read_text()
+    assert "using Vehicle = TrainedQuadModelAirframe" in Path("own/model.hpp").read_text()
+    assert not report_of("given")["vehicle"]["contradicted"]
     said = pinnquad(f"{words} --airframe px4_sih --out other").err
     assert len(re.findall("contradict --airframe: (the hover|roll|pitch|yaw)", said)) == 4, said
     assert report_of("other")["vehicle"]["airframe"] == "given"

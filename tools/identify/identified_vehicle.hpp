@@ -23,8 +23,7 @@ struct IdentifiedVehicle {
   std::string why_not;  ///< without an airframe: the number that is missing, its column and what was seen
 };
 
-/// What stands for all that flights do not say: the airframe of the mapping, or an X of PX4's motor order without a
-/// name.
+/// Stands for all that flights do not say: the airframe of the mapping, or an X of PX4's motor order without a name.
 inline NamedAirframe airframe_of(const pinnquad::logs::ImportedDataset& dataset) {
   constexpr double mass_kg = 1, arm_m = 0.2, lag_s = 0.03;
   NamedAirframe like{"", {}};
@@ -72,8 +71,8 @@ inline std::string why_no_airframe(const pinnquad::Identification& found) {
 
 }  // namespace detail
 
-/// Of a dataset's flights, with the mass, the arms, the spins and the propeller of `like`. A lag that the import removed
-/// is in the delay again. Throws InputError, one line, for flights that no vehicle can be identified from.
+/// Of a dataset's flights, with the mass, the arms, the spins and the propeller of `like`. A lag that the import
+/// removed is in the delay again. Throws InputError, one line, for flights that no vehicle can be identified from.
 inline IdentifiedVehicle identified_vehicle(const pinnquad::logs::ImportedDataset& dataset,
                                             const pinnquad::Airframe<double>& like,
                                             const pinnquad::IdentificationSettings& settings) {

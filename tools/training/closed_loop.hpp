@@ -26,8 +26,8 @@
 
 namespace programs {
 
-/// What an airframe can't hold of an identification: linear drag, damping, turning by the air, the trim in yaw. What is
-/// not told to within half of it is 0, and so is what would drive the vehicle on.
+/// Of an identification the part that an airframe can't hold: linear drag, damping, turning by the air, the trim in
+/// yaw. A number that is not told to within half of it is 0, and so is one that would drive the vehicle on.
 struct IdentifiedAir {
   static constexpr pinnquad::VariesWith varies_with = pinnquad::VariesWith::motion;
   std::array<double, 3> linear_drag_1_s{}, damping_1_s{}, by_velocity_rad_s_m{};

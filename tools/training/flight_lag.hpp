@@ -29,7 +29,7 @@ inline double slowest_rotor_s(const pinnquad::Airframe<double>& airframe) {
   return slowest;
 }
 
-/// What of a lag no rotor explains: all below 0, and what is above the slowest one's.
+/// The part of a lag that no rotor explains: all below 0, and what is above the slowest one's.
 inline double latency_s(double lag_s, double rotor_s) { return lag_s < 0 ? lag_s : std::max(lag_s - rotor_s, 0.0); }
 
 inline std::string milliseconds(double seconds) {

@@ -76,8 +76,8 @@ inline bool is_told_above_zero(const pinnquad::Estimate& estimate) {
   return pinnquad::is_told(estimate, 0.5) && estimate.value > 0;
 }
 
-/// What flights do tell of a vehicle that they do not identify; the rest is that of `like`, and named. Turning that is
-/// not told is that of its rotors with the thrust that the flights show, on its moments of inertia.
+/// A vehicle that its flights do not identify, by the numbers that they do tell; the rest is that of `like`, and named.
+/// Turning that is not told is that of its rotors with the thrust that the flights show, on its moments of inertia.
 inline NamedAirframe assumed_airframe(const NamedAirframe& like, pinnquad::Identification found,
                                       const pinnquad::Dataset& flights, std::vector<std::string>& unknown) {
   const std::array<double, 4> own = rotor_effects(like.value);

@@ -460,35 +460,38 @@ class Training {
     const AxisSlopes &slopes = signs->held_slope, own = hover_slopes(airframe);
     const double own_thrust = hover_thrust_slope(airframe);
     report_.certified(*signs, structure, airframe, known);
+    const bool known_vehicle = vehicle_.is_known();
+    std::string least, ratios;
+    if (known_vehicle) {
+      least = ",\n    " + programs::least_share_in_words(slopes, own);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        ratios += (axis == 0 ? ": " : ", ") + decimals(slopes[axis] / own[axis], 2);
+      }
+      ratios += " of the airframe's own in hover";
+    }
     std::printf(
         "  proven: each signed sum of the commands rises with the angular acceleration about its axis, for every "
-        "input%s%s;\n    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad",
-        vehicle_.is_known() ? ",\n    " : "",
-        vehicle_.is_known() ? programs::least_share_in_words(slopes, own).c_str() : "", slopes[0], slopes[1],
-        slopes[2]);
-    if (vehicle_.is_known()) {
-      std::printf(": %.2f, %.2f, %.2f of the airframe's own in hover", slopes[0] / own[0], slopes[1] / own[1],
-                  slopes[2] / own[2]);
-    }
-    std::printf(";\n");
+        "input%s;\n    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad%s;\n",
+        least.c_str(), slopes[0], slopes[1], slopes[2], ratios.c_str());
     if (structure) {
       std::printf("    thrust slope %.6f s^2/m: %.2f of the airframe's own in hover;\n", structure->held_thrust_slope,
                   structure->held_thrust_slope / own_thrust);
     }
     std::printf("    %s\n", programs::bound_in_words(structure).c_str());
-    const std::string intervals = vehicle_.is_known() ? known_slopes_in_words(known, own_thrust, own)
-                                                      : known_slopes_in_words(known, 1, {1, 1, 1}, 4);
+    const std::string intervals =
+        known_vehicle ? known_slopes_in_words(known, own_thrust, own) : known_slopes_in_words(known, 1, {1, 1, 1}, 4);
     if (!intervals.empty()) {
       std::printf("  95 %% intervals of the training rows, %s: %s\n",
-                  vehicle_.is_known() ? "over the airframe's own" : "s^2/rad and s^2/m", intervals.c_str());
+                  known_vehicle ? "over the airframe's own" : "s^2/rad and s^2/m", intervals.c_str());
     }
     std::fflush(stdout);
-    if (!vehicle_.is_known()) return;
-    const std::string cause = vehicle_.identified() && !vehicle_.given
-                                  ? "trained on quiet or noisy flights, or by the lag of the rotors, " +
-                                        decimals(1e3 * vehicle_.asked->found.lag_s.value, 0) + " ms"
-                                  : programs::unlike_slopes;
-    for (const std::string& doubt : programs::slope_doubts(slopes, own, cause)) report_.warn(doubt);
+    if (known_vehicle) {
+      const std::string cause = vehicle_.identified() && !vehicle_.given
+                                    ? "trained on quiet or noisy flights, or by the lag of the rotors, " +
+                                          decimals(1e3 * vehicle_.asked->found.lag_s.value, 0) + " ms"
+                                    : programs::unlike_slopes;
+      for (const std::string& doubt : programs::slope_doubts(slopes, own, cause)) report_.warn(doubt);
+    }
     if (!structure) return;
     if (const auto doubt = programs::thrust_doubt(*structure, own_thrust)) report_.warn(*doubt);
   }
