@@ -110,8 +110,9 @@ int main() {
   if (inverse.predict(in, warm) != pinnquad::Status::ok) return 2;
   in.column<PackTemperature>() = lower + (upper - lower) / 8;
   if (inverse.predict(in, cold) != pinnquad::Status::ok) return 3;
-  in.column<PackTemperature>() = upper + (upper - lower);
-  if (inverse.predict(in, cold) != pinnquad::Status::outside_envelope) return 4;
+  in.column<PackTemperature>() = std::numeric_limits<float>::quiet_NaN();
+  pinnquad::Commands<MyModel::Scalar> none{};
+  if (inverse.predict(in, none) != pinnquad::Status::not_finite) return 4;
   return MyModel::column_names[0] == std::string_view("pack_temperature") && cold[0] > warm[0] + 0.02f ? 0 : 1;
 }
 """)

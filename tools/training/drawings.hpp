@@ -224,11 +224,19 @@ inline Chart response_chart(const HeldOutDynamics& dynamics) {
   panels[2].series = {detail::level_line(from, to, FollowedRange::least_coherence)};
   for (std::size_t sum = 0; sum < sum_names.size(); ++sum) {
     for (std::size_t figure = 0; figure < panels.size(); ++figure) {
+      double before = pinnquad::not_a_number;
       Series clear{figure == 0 ? sum_names[sum] : "", Shape::line, colours[sum]}, weak{"", Shape::line, colours[sum]};
       weak.opacity = faint;
       for (const SpectralBand& band : dynamics.sums[sum]) {
         const double coherence = band.coherence();
         const double value = figure == 0 ? decibels(band) : figure == 1 ? degrees(band) : coherence;
+        if (figure == 1 && std::abs(value - before) > 180) {  // once round: no line across
+          for (Series* line : {&weak, &clear}) {
+            line->x.push_back(band.frequency_hz);
+            line->y.push_back(pinnquad::not_a_number);
+          }
+        }
+        before = value;
         weak.x.push_back(band.frequency_hz);
         weak.y.push_back(coherence > band.chance_coherence() ? value : pinnquad::not_a_number);
         clear.x.push_back(band.frequency_hz);

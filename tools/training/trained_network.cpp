@@ -83,6 +83,7 @@ GuardCounts BlockNetwork::guard_counts(const pinnquad::RowSet& rows) const {
       double most = -1;
       for (std::size_t i = 0; i < names.size(); ++i) {
         const double x = answer.features[i], beyond = std::max(lower[i] - x, x - upper[i]);
+        if (block_.features().is_column(static_cast<int>(i)) && std::isfinite(x)) continue;  // it saturates
         const double half_widths = 2 * beyond / (upper[i] - lower[i]);
         if (half_widths <= most) continue;
         most = half_widths;
