@@ -22,6 +22,7 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 #include "pinnquad/simulation/tracking.hpp"
+#include "training/command_comparison.hpp"
 #include "training/flown_vehicle.hpp"
 
 namespace programs {
@@ -157,6 +158,8 @@ inline std::string unfit_to_fly(const nlohmann::json& flown) {
   } else if (model["answered_share"] < least_answered) {
     std::snprintf(text, sizeof text, "answers %.1f %% of a figure-eight that the logs' own limits hold",
                   100 * model["answered_share"].get<double>());
+  } else {
+    return turned_round(flown.value("against_formula", nlohmann::json::object()));
   }
   return text;
 }
@@ -191,8 +194,13 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
     return {{"why_not", "the vehicle that was identified is not known well enough: its own formula does not fly it"}};
   }
   using Guard = pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::Fallback<Analytic>>;
-  const auto by_model = with_feed_forward(model, Guard(analytic), 0, usual_columns(model, training), fly);
+  ComparedCommands compared;
+  const auto by_model =
+      with_feed_forward(model, Guard(analytic), 0, usual_columns(model, training), [&](const auto& feed_forward) {
+        return fly(ComparedPolicy{feed_forward, analytic, vehicle.airframe(), &compared});
+      });
   result["model"] = loop_figures(by_model);
+  result["against_formula"] = comparison_json(compared);
   result["model"]["answered_share"] = answered_share(by_model.fallback);
   return result;
 }

@@ -516,6 +516,8 @@ class Training {
         "without feed-forward %s\n",
         flown["period_s"].get<double>(), centimetres("model").c_str(), centimetres("formula").c_str(),
         centimetres("hover_trim").c_str());
+    std::printf("    its sums of commands beside the formula's there, slope (rms difference): %s\n",
+                programs::comparison_in_words(flown["against_formula"]).c_str());
     const double answered = flown["model"]["answered_share"];
     if (answered < 0.99 && programs::unfit_to_fly(flown).empty()) {
       report_.warn("under its guard the model answered " + decimals(100 * answered, 1) +

@@ -451,7 +451,14 @@ inline std::string training_page(const TrainingPage& in) {
     const nlohmann::json& flown = in.report["closed_loop"];
     page["closed_loop"] = {{"period", shown::number(flown["period_s"], 1)},
                            {"answered", shown::number(100 * flown["model"]["answered_share"].get<double>(), 1)},
-                           {"flown", nlohmann::json::array()}};
+                           {"flown", nlohmann::json::array()},
+                           {"sums", nlohmann::json::array()}};
+    for (const auto& [sum, figures] : flown["against_formula"].items()) {
+      page["closed_loop"]["sums"].push_back({{"name", sum},
+                                             {"slope", shown::number(figures["slope"], 2)},
+                                             {"difference", shown::number(figures["rms_difference"], 3)},
+                                             {"spread", shown::number(figures["spread"], 3)}});
+    }
     const std::pair<const char*, const char*> policies[] = {{"model", "the exported model"},
                                                             {"formula", "the vehicle's analytic inverse"},
                                                             {"hover_trim", "none, hover trim"}};

@@ -172,3 +172,51 @@ TEST_CASE("a vehicle that leaves its path by more than the figure, or falls, is 
   CHECK_FALSE(programs::lost_vehicle({}));
   CHECK_FALSE(programs::lost_vehicle({{"why_not", "no vehicle"}}));
 }
+
+TEST_CASE("beside the formula's, commands of motors that were swapped move the wrong way, whatever the feedback makes good") {
+  using namespace pinnquad;
+  const auto airframe = PaperQuadrotor::value<double>();
+  const Quadrotor<double, QuadraticDrag> vehicle(airframe);
+  const AnalyticInverse<Quadrotor<double, QuadraticDrag>> formula(vehicle);
+  struct Swapped {
+    AnalyticInverse<Quadrotor<double, QuadraticDrag>> formula;
+    std::array<std::size_t, 4> order;
+    double scale;
+    Status operator()(const State<double>& state, const Accelerations<double>& desired, std::uint64_t time_us,
+                      Commands<double>& commands) const noexcept {
+      Commands<double> own{};
+      const Status status = formula(state, desired, time_us, own);
+      for (std::size_t i = 0; i < 4; ++i) commands[i] = scale * own[order[i]];
+      return status;
+    }
+  };
+  const auto compared = [&](const std::array<std::size_t, 4>& order, double scale) {
+    programs::ComparedCommands sums;
+    programs::ComparedPolicy<Swapped, decltype(formula)> policy{{formula, order, scale}, formula, airframe, &sums};
+    std::mt19937_64 random(3);
+    State<double> state;
+    state.velocity_m_s = {1, 0.5, 0};
+    for (int tick = 0; tick < 200; ++tick) {
+      Accelerations<double> desired;
+      for (int axis = 0; axis < 3; ++axis) desired.angular_rad_s2[axis] = uniform(random, -3, 3);
+      desired.linear_m_s2[2] = uniform(random, -1, 1);
+      Commands<double> commands{};
+      CHECK(policy(state, desired, 0, commands) == Status::ok);
+    }
+    return programs::comparison_json(sums);
+  };
+  const auto same = compared({0, 1, 2, 3}, 1);
+  CHECK(programs::turned_round(same).empty());
+  for (const char* sum : programs::command_sums) {
+    CHECK(same[sum]["slope"].get<double>() == doctest::Approx(1));
+    CHECK(same[sum]["rms_difference"].get<double>() < 1e-9);
+  }
+  CHECK(compared({0, 1, 2, 3}, 0.8)["yaw"]["slope"].get<double>() == doctest::Approx(0.8));
+  const auto swapped = compared({1, 0, 3, 2}, 1);
+  CHECK(swapped["thrust"]["slope"].get<double>() == doctest::Approx(1));
+  CHECK(programs::turned_round(swapped).find("against the formula's") != std::string::npos);
+  CHECK(programs::unfit_to_fly({{"model", {{"answered_share", 1}, {"status", "ok"}, {"largest_error_m", 0.1}}},
+                                {"hover_trim", {{"largest_error_m", 0.1}}},
+                                {"half_length_m", 1},
+                                {"against_formula", swapped}}) == programs::turned_round(swapped));
+}

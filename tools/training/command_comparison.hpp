@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// The commands of a model beside those of the vehicle's own formula, tick by tick, for the motions that a feedback loop
+// asks of both: a loop's error hides what its feedback makes good, the signed sums of the commands hide nothing.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "pinnquad/control/feed_forward.hpp"
+#include "pinnquad/dynamics/allocation.hpp"
+#include "pinnquad/evaluation/summary.hpp"
+
+namespace programs {
+
+/// Thrust and the turns about x, y, z: sums of the commands by what each rotor adds to them.
+inline constexpr std::array<const char*, 4> command_sums = {"thrust", "roll", "pitch", "yaw"};
+
+struct ComparedCommands {
+  std::array<std::vector<double>, 4> model, formula;  ///< of each sum, tick by tick
+
+  void take(const pinnquad::Airframe<double>& airframe, const pinnquad::Commands<double>& by_model,
+            const pinnquad::Commands<double>& by_formula) {
+    const auto signs = pinnquad::motor_torque_signs(airframe);
+    for (std::size_t sum = 0; sum < 4; ++sum) {
+      double own = 0, other = 0;
+      for (std::size_t rotor = 0; rotor < by_model.size(); ++rotor) {
+        const double sign = sum == 0 ? 1.0 : double(signs[rotor][sum - 1]);
+        own += sign * by_model[rotor];
+        other += sign * by_formula[rotor];
+      }
+      model[sum].push_back(own);
+      formula[sum].push_back(other);
+    }
+  }
+};
+
+/// A feed-forward policy whose answers are compared with another's; both are asked for the same motion. What its
+/// fallback answers is left out.
+template <class Policy, class Formula>
+struct ComparedPolicy {
+  Policy policy;
+  Formula formula;
+  pinnquad::Airframe<double> airframe;
+  ComparedCommands* compared;  ///< outlives the flight
+
+  pinnquad::Status operator()(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired,
+                              std::uint64_t time_us, pinnquad::Commands<double>& commands) noexcept {
+    const pinnquad::Status status = policy(state, desired, time_us, commands);
+    pinnquad::Commands<double> other{};
+    const bool own = status == pinnquad::Status::ok || status == pinnquad::Status::limited;
+    if (own && has_output(formula(state, desired, time_us, other))) compared->take(airframe, commands, other);
+    return status;
+  }
+  auto count() const noexcept { return policy.count(); }
+};
+template <class Policy, class Formula>
+ComparedPolicy(Policy, Formula, pinnquad::Airframe<double>, ComparedCommands*) -> ComparedPolicy<Policy, Formula>;
+
+/// By sum: root mean square of the difference but for a constant one, the formula's own spread, and the slope of the
+/// model's over the formula's, whose sign is that of their correlation.
+inline nlohmann::json comparison_json(const ComparedCommands& compared) {
+  nlohmann::json result = nlohmann::json::object();
+  for (std::size_t sum = 0; sum < 4; ++sum) {
+    if (compared.model[sum].size() < 2) continue;
+    const auto moments = pinnquad::joint_moments(compared.formula[sum], compared.model[sum]);
+    if (!(moments.variance_x > 0)) continue;
+    const double apart = moments.variance_x + moments.variance_y - 2 * moments.covariance;
+    result[command_sums[sum]] = {{"rms_difference", std::sqrt(std::max(apart, 0.0))},
+                                 {"spread", std::sqrt(moments.variance_x)},
+                                 {"slope", moments.covariance / moments.variance_x}};
+  }
+  return result;
+}
+
+/// "thrust 0.98 (0.011), roll 1.02 (0.004)": slopes, and differences.
+inline std::string comparison_in_words(const nlohmann::json& comparison) {
+  std::string words;
+  for (const char* const sum : command_sums) {
+    if (!comparison.contains(sum)) continue;
+    char text[80];
+    std::snprintf(text, sizeof text, "%s%s %.2f (%.3f)", words.empty() ? "" : ", ", sum,
+                  comparison[sum]["slope"].get<double>(), comparison[sum]["rms_difference"].get<double>());
+    words += text;
+  }
+  return words;
+}
+
+/// "moves the roll sum of its commands against the formula's, slope -0.83"; empty where all move with it.
+inline std::string turned_round(const nlohmann::json& comparison) {
+  for (const char* const sum : command_sums) {
+    if (!comparison.contains(sum) || comparison[sum]["slope"] > 0) continue;
+    char text[120];
+    std::snprintf(text, sizeof text, "moves the %s sum of its commands against the formula's, slope %.2f", sum,
+                  comparison[sum]["slope"].get<double>());
+    return text;
+  }
+  return "";
+}
+
+}  // namespace programs
