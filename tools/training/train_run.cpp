@@ -416,7 +416,7 @@ class Training {
       from.signs_unproven = true;
     }
     from.slopes = made.model->slopes();
-    from.airframe_known = !options_.airframe.empty() || !options_.flights.empty();
+    from.airframe_known = vehicle_.is_known();
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
     const pinnquad::Exported written = made.model->export_to({header, block, made.model->has_trust() ? trust : ""},
