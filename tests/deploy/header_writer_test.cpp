@@ -321,6 +321,7 @@ TEST_CASE("the opening comment has the verdict in words: figures, what is proven
   from.proven_slopes = {0.01234, 0.5, 1};
   from.slopes[2] = {true, 0, 0, 0.0321, 0.0456};
   CHECK(has("Slopes in s^2/rad: roll 0.0123, pitch 0.5000, yaw 1.0000.\n"));
+  CHECK(has("// AIRFRAME ASSUMED: "));
   CHECK(has("rows: pitch 0.0321 to 0.0456, thrust "));
 }
 

@@ -226,7 +226,9 @@ def test_vehicle_of_the_flights(pinnquad, dataset, flown):
     loop = report["closed_loop"]
     assert loop["model"]["rmse_m"] < 0.5 * loop["hover_trim"]["rmse_m"], loop
 
-    assert "using Vehicle = TrainedQuadModelAirframe" in Path("own/model.hpp").read_text()
+    header = Path("own/model.hpp").read_text()
+    assert "using Vehicle = TrainedQuadModelAirframe" in header and "Slopes over the airframe's own in hover" in header
+    assert "ASSUMED" not in header
     assert not report_of("given")["vehicle"]["contradicted"]
     said = pinnquad(f"{words} --airframe px4_sih --out other").err
     assert len(re.findall("contradict --airframe: (the hover|roll|pitch|yaw)", said)) == 4, said
@@ -244,7 +246,8 @@ def test_vehicle_that_is_not_told(pinnquad, recorded, made):
     assert "roll effectiveness" in report["vehicle"]["unknown"]
     assert list(report["closed_loop"]) == ["why_not"] and "not flown" in done.err
     assert "airframe's own" not in done.out and "slope is not" not in done.err, done
-    assert 'name = "crazyflie_2_1, assumed"' in Path("nano/model.hpp").read_text()
+    header = Path("nano/model.hpp").read_text()
+    assert 'name = "crazyflie_2_1, assumed"' in header and header.splitlines()[2].startswith("// AIRFRAME ASSUMED")
     assert 9.81 / 4 / effects_of("nano/model.hpp")[0] == pytest.approx(0.8486, rel=0.01)  # the mean of the commands
 
 

@@ -53,6 +53,9 @@ inline void write_opening_comment(std::ostream& out, const WrittenRecords& recor
   if (records.verdict && records.verdict->worse_than_mean()) {
     out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
   }
+  if (!over_own) {
+    out << "// AIRFRAME ASSUMED: the flights do not tell the vehicle wholly; the analytic inverse is another one's.\n";
+  }
   std::optional<AxisSlopes> slopes = records.proven_slopes;
   if (records.certificate) {
     const double* held = records.certificate->held_slope;
