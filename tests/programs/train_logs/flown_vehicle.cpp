@@ -173,7 +173,8 @@ TEST_CASE("a vehicle that leaves its path by more than the figure, or falls, is 
   CHECK_FALSE(programs::lost_vehicle({{"why_not", "no vehicle"}}));
 }
 
-TEST_CASE("beside the formula's, commands of motors that were swapped move the wrong way, whatever the feedback makes good") {
+TEST_CASE(
+    "beside the formula's, commands of motors that were swapped move the wrong way, whatever the feedback makes good") {
   using namespace pinnquad;
   const auto airframe = PaperQuadrotor::value<double>();
   const Quadrotor<double, QuadraticDrag> vehicle(airframe);
