@@ -109,16 +109,17 @@ def test_window_and_battery(two_models, fly_cores, fly_export, pinnquad, dataset
     assert 15 < middle < 15.8, said
     fallbacks, asked = map(int, re.search(r"^  export .* (\d+) of (\d+) ", said, re.M).groups())
     assert fallbacks < 0.5 * asked, said
-    said = program("--replay one/replay.txt --column battery_voltage=30", code=1).out
-    assert "battery_voltage held at 30 V" in said and re.search(r"^  export .* 15000 of 15000 ", said, re.M), said
+    said = program("--replay one/replay.txt --column battery_voltage=30", code=None).out  # flown at its range's edge
+    assert "battery_voltage held at 30 V" in said, said
+    assert int(re.search(r"^  export .* (\d+) of 15000 ", said, re.M).group(1)) < 7500, said
     program.refused("--replay one/replay.txt --column battery=12", keyword="battery_voltage")
     program.refused("--replay one/replay.txt --column battery_voltage=full", keyword="NUMBER in V")
 
 
 LOGS = {
-    "sih": ("structured_causal", "train_figure8", "train_random", 0.9),
-    "nanobench": ("ridge_causal", "B7_oval_fast_rep1", "B2_circle_fast_rep1", 0.01),
-    "arpl": ("structured_causal", "arpl_cf_log15_12s", "arpl_cf_log10_30s", 0.1),
+    "sih": ("structured_causal", "train_figure8", "train_random", 0.99),
+    "nanobench": ("ridge_causal", "B7_oval_fast_rep1", "B2_circle_fast_rep1", 0.2),  # of an airframe that is assumed, the loop leaves its path
+    "arpl": ("structured_causal", "arpl_cf_log15_12s", "arpl_cf_log10_30s", 0.99),
 }
 
 
@@ -132,15 +133,16 @@ def test_real_logs(logs, two_models, fly_cores, fly_export, recorded):
             packed = recorded(f"sih/{name}.ulg.xz")
             with lzma.open(packed) as log, open(f"logs/{name}.ulg", "wb") as out:
                 shutil.copyfileobj(log, out)
-        source = "--log logs --mapping px4 --airframe px4_sih"
+        source = "--log logs --mapping px4"
     else:
         table = recorded("flight_logs/nanobench_subset_50hz.csv" if logs == "nanobench" else "flight_logs/arpl_crazyflie.csv")
-        source = f"--log {table} --mapping {logs} --airframe crazyflie_2_1"
+        source = f"--log {table} --mapping {logs}"
     two_models(kind, source, *held_out)
     assert "PartlyWindowed<" in Path("one/model.hpp").read_text()
     for (_, phase), ticks in fly_cores().items():
         if phase == "flight":
-            assert ticks["model"] > share * ticks["ticks"], ticks
+            asked = ticks["ticks"] - ticks["warming_up"] - ticks["not_finite"]
+            assert ticks["model"] >= share * asked > 0.8 * share * ticks["ticks"], ticks
     if logs != "sih":
         return
     said = fly_export("one/model.hpp", optimised="-O1 -DNDEBUG")("--replay one/replay.txt", code=None).out
