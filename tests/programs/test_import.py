@@ -206,7 +206,7 @@ def test_what_looks_wrong(pinnquad):
             cells[16], cells[17], cells[19] = cells[19], cells[16], cells[17]
 
     edited("ned.csv", "order.csv", other_order)
-    assert "warning: motors" in imported(pinnquad, "order.csv", *NED_LAG)
+    assert re.search("warning: .*motors 1 to 4 are the log's u2, u4, u3, u1", imported(pinnquad, "order.csv", *NED_LAG))
     replaced(HERE / "enu.toml", "order.toml", ('^order = "xyzw"', 'order = "wxyz"'))
     pinnquad.refused("import enu.csv --mapping order.toml --lag 0.04 --out wrong", keyword="x, y, z, w")
     assert not Path("wrong").exists()

@@ -10,10 +10,10 @@
 
 #include "logs/clock.hpp"
 #include "logs/command_lag.hpp"
-#include "logs/log_checks.hpp"
 #include "logs/motor_order_check.hpp"
 #include "logs/row_checks.hpp"
 #include "logs/savitzky_golay.hpp"
+#include "pinnquad/data/motion_checks.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "programs/logs/finite_segments.hpp"
 #include "reference/reference_rows.hpp"
@@ -56,10 +56,10 @@ std::vector<Flight> logged_flights(const std::string& name, double period_s) {
 }
 
 void check_nothing_found(const std::vector<Flight>& flights, double period_s, double lag_s) {
-  CHECK_FALSE(check_rate_frame(flights).has_value());
   std::vector<Flight> aligned;
   std::size_t grounded = 0;
   for (const Flight& flight : flights) {
+    CHECK_FALSE(find_turning_mistake(flight).has_value());
     const RowMask out = grounded_rows(flight, period_s);
     grounded += static_cast<std::size_t>(std::count(out.begin(), out.end(), true));
     aligned.push_back(remove_lag(flight, period_s, lag_s));

@@ -76,7 +76,7 @@ inline std::string why_no_airframe(const pinnquad::Identification& found) {
 inline IdentifiedVehicle identified_vehicle(const pinnquad::logs::ImportedDataset& dataset,
                                             const pinnquad::Airframe<double>& like,
                                             const pinnquad::IdentificationSettings& settings) {
-  const std::vector<pinnquad::Flight> flights = sound_flights(dataset, like);
+  const std::vector<pinnquad::Flight> flights = sound_flights(dataset);
   pinnquad::RowSet rows;
   for (const pinnquad::Flight& flight : flights) rows.add(flight, {0, flight.size()});
   std::array<std::array<double, pinnquad::rotor_count>, 3> signs{};

@@ -21,6 +21,7 @@
 #include "command_line/progress_line.hpp"
 #include "identify/identified_numbers.hpp"
 #include "identify/identified_vehicle.hpp"
+#include "logs/vehicle_check.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
 
@@ -122,14 +123,20 @@ int run(const IdentifyOptions& options) {
   if (!options.out.empty() && !programs::is_airframe_file(options.out)) {
     throw std::invalid_argument("--out " + options.out + ": a name that ends in .toml was expected");
   }
-  const logs::ImportedDataset dataset = read(options);
+  logs::ImportedDataset dataset = read(options);
   const programs::NamedAirframe like = like_of(options, dataset);
   const programs::IdentifiedVehicle vehicle =
       programs::identified_vehicle(dataset, like.value, settings_of(options, like.value));
+  if (options.logs.empty()) logs::check_vehicle(dataset, like.value, false);
+  logs::require_one_vehicle(dataset);
   const pinnquad::Identification& found = vehicle.found;
   const std::vector<programs::IdentifiedNumber> numbers = programs::identified_numbers(found);
   if (!vehicle.airframe) {
-    programs::complain("identify", dataset.sources.front() + ": " + vehicle.why_not);
+    std::string why = dataset.sources.front() + ": " + vehicle.why_not;
+    for (const std::string& warning : dataset.warnings) {
+      if (warning.find(": columns u1 to u4: ") != std::string::npos) why += "; " + warning;
+    }
+    programs::complain("identify", why);
     return programs::exit_failed;
   }
   const std::vector<std::string> assumed =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flights that a vehicle can be identified from: in the air, in motion, commands within their limits and in the order
-// of the airframe's motors. What is not is refused with file, column and evidence.
+// Flights that a vehicle can be identified from: in the air, in motion, commands within their limits. What is not is
+// refused with file, column and evidence.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "logs/command_lag.hpp"
 #include "logs/log_checks.hpp"
-#include "logs/motor_order_check.hpp"
 #include "logs/row_checks.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/io/file_error.hpp"
@@ -76,10 +74,9 @@ inline void require_free_commands(const std::string& file, const pinnquad::Fligh
 }  // namespace detail
 
 /// The flights of a dataset without their rows on the ground. Throws InputError, one line.
-inline std::vector<pinnquad::Flight> sound_flights(const pinnquad::logs::ImportedDataset& dataset,
-                                                   const pinnquad::Airframe<double>& airframe) {
+inline std::vector<pinnquad::Flight> sound_flights(const pinnquad::logs::ImportedDataset& dataset) {
   constexpr double most_grounded = 0.5;
-  std::vector<pinnquad::Flight> flights, aligned;
+  std::vector<pinnquad::Flight> flights;
   pinnquad::RowSet all;
   for (const pinnquad::Flight& flight : dataset.flights.flights()) all.add(flight, {0, flight.size()});
   const double period_s = pinnquad::sample_period_s(all);
@@ -100,21 +97,6 @@ inline std::vector<pinnquad::Flight> sound_flights(const pinnquad::logs::Importe
           "something else than the rotors bears it in " + pinnquad::logs::percent(share) + " of the rows");
     }
     flights.push_back(pinnquad::logs::without(flight, grounded));
-  }
-  std::vector<pinnquad::Flight> segments;
-  for (const pinnquad::Flight& flight : flights) {
-    for (pinnquad::Flight& part : pinnquad::logs::split_at_gaps(flight, 1.5 * period_s)) {
-      segments.push_back(std::move(part));
-    }
-  }
-  const pinnquad::logs::CommandLag lag = pinnquad::logs::estimate_command_lag(segments, period_s);
-  for (pinnquad::Flight& segment : segments) {
-    segment = pinnquad::logs::remove_lag(std::move(segment), period_s, lag.found ? lag.lag_s : 0);
-  }
-  const pinnquad::logs::MotorOrderCheck order = pinnquad::logs::check_motor_order(segments, airframe);
-  if (order.finding) {
-    detail::refuse_flight(dataset.sources.front(), "commands u1 to u4 in the order of the airframe's motors",
-                          *order.finding);
   }
   return flights;
 }

@@ -205,6 +205,21 @@ void require_unit(const Signal& signal) {
   }
 }
 
+/// Pitch beyond 90 degrees in more than a few rows is in degrees: turned into a quaternion it would wrap round.
+void require_radians(const Signal& signal) {
+  constexpr double most_rad = 1.6, few = 0.01;
+  const std::vector<double>& pitch = signal.values[1];
+  std::size_t beyond = 0, worst = 0;
+  for (std::size_t row = 0; row < pitch.size(); ++row) {
+    if (!(std::abs(pitch[row]) > most_rad)) continue;
+    if (beyond++ == 0 || std::abs(pitch[row]) > std::abs(pitch[worst])) worst = row;
+  }
+  if (static_cast<double>(beyond) <= few * static_cast<double>(pitch.size())) return;
+  throw wrong_cell(*signal.topic, worst, signal.source->columns[1].name,
+                   "a pitch of at most 90 degrees (degrees? Then the mapping needs unit = \"deg\")",
+                   number_text(pitch[worst]) + " rad, beyond in " + std::to_string(beyond) + " rows");
+}
+
 /// Commands beyond 0..1 in more than a few rows are another unit than the mapping says.
 void require_commands(const Signal& signal) {
   constexpr double spare = 0.02;
@@ -292,6 +307,7 @@ Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& s
   }
   signal.clock = std::make_shared<const CleanClock>(clean_clock(time_s));
   if (source.quantity == Quantity::attitude && !source.euler) require_unit(signal);
+  if (source.quantity == Quantity::attitude && source.euler) require_radians(signal);
   to_our_frames(source, signal.values);
   if (source.quantity == Quantity::motors) {
     require_four_motors(signal, mapping);

@@ -51,14 +51,11 @@ Explained explained_beyond_rates(LagMoments moments) {
 struct LagGrid {
   int first = 0, last = 0, stride = 1;
   double period_s = 0;
-  explicit LagGrid(double period) : period_s(period) {
+  LagGrid(double period, const LagRange& range) : period_s(period) {
     constexpr double step_s = 0.004;
-    constexpr double longest_s = 0.2;  // motors and links are faster
-    constexpr double shortest_s =
-        -0.06;  // motion before its command: what a clock that is wrong or feedback looks like
     stride = std::max(1, static_cast<int>(step_s / period));
-    first = stride * static_cast<int>(std::floor(shortest_s / (period * stride)));
-    last = stride * static_cast<int>(std::ceil(longest_s / (period * stride)));
+    first = stride * static_cast<int>(std::floor(range.shortest_s / (period * stride)));
+    last = stride * static_cast<int>(std::ceil(range.longest_s / (period * stride)));
   }
   double lag_s(double index) const noexcept { return (first + index * stride) * period_s; }
   double step_s() const noexcept { return stride * period_s; }
@@ -208,9 +205,9 @@ void take_out(LagMoments& moments, std::size_t k, double least) {
   }
 }
 
-CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s) {
+CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s, const LagRange& range) {
   const std::vector<LagSeries> series = lag_series(segments);
-  const LagGrid grid(period_s);
+  const LagGrid grid(period_s, range);
   CommandLag best = command_lag_of(series, grid);
   for (const double corner_Hz : {15.0, 8.0}) {
     if (corner_Hz * period_s > 0.4) continue;

@@ -64,6 +64,12 @@ struct CommandLag {
   }
 };
 
+/// The lags that are tried: motors and links are faster, and motion before its command is what a clock that is wrong or
+/// feedback looks like.
+struct LagRange {
+  double shortest_s = -0.06, longest_s = 0.2;
+};
+
 /// The lag at which the four commands explain angular accelerations and vertical specific force best: the multiple
 /// correlation, so that neither the order of the motors nor the battery has to be known; a constant and the body rates
 /// (damping) explain what they can first. Both sides are compared as they are, up to 15 Hz and up to 8 Hz, without
@@ -72,7 +78,7 @@ struct CommandLag {
 /// Segments of one log, each on a uniform clock of `period_s`, commands as they were logged, idle and ground left out.
 /// Limits: a motor behaves like a first-order lag, of which the best pure delay depends on how fast the commands
 /// change: 36 to 40 ms for a time constant of 50 ms. A filter's delay in what was measured counts as lag.
-CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s);
+CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s, const LagRange& range = {});
 
 /// A series on a uniform clock, each row with the value of `lag_s` earlier, by lines between rows; NaN where there is
 /// none.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Checks of a log, each an observation and its remedy in a sentence for the pilot, or nothing: time that jumps, a
 // recording that starts again, a logger that was too slow or lost rows, a signal that stands still while its last value
-// is still written, body rates in other axes than FRD.
+// is still written.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "logs/clock.hpp"
-#include "pinnquad/data/dataset.hpp"
 
 namespace pinnquad::logs {
 
@@ -33,12 +32,5 @@ std::optional<std::string> check_log_rate(const std::string& topic, double perio
 /// copied at a higher rate) does so only from `longest_s` on.
 std::optional<std::string> check_frozen(const std::string& name, const std::vector<double>& time_s,
                                         const std::vector<double>& values, double longest_s = 0.3);
-
-/// Compares, over steps of 0.2 s, what the logged rates would be in each frame with what they are: per axis the share
-/// of the rates' squares that is left unexplained, mean of the three. A finding where body rates leave 0.3 or more, and
-/// another frame less than a third of that. number: the share that body rates leave.
-/// Limits: where the vehicle stays near level and at one heading near north the frames agree, and nothing is found; an
-/// attitude that is wrong by itself shows here, see check_attitude().
-std::optional<std::string> check_rate_frame(const std::vector<Flight>& segments);
 
 }  // namespace pinnquad::logs

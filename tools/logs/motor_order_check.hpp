@@ -31,7 +31,7 @@ struct MotorOrderCheck {
 /// back as commands hides the order in calm flights. A finding where that order is not the one that stands, which
 /// explains less than three quarters of it (R^2, mean of both axes). Segments on one uniform clock, lag-aligned
 /// (remove_lag()). Limits: body axes that are x forward, y left, z up look like motors exchanged front for rear, for
-/// the commands cannot tell the two apart: check_rate_frame() can, and is to be asked first.
+/// the commands cannot tell the two apart: find_turning_mistake() can, and is to be asked first.
 MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const Airframe<double>& airframe);
 
 }  // namespace pinnquad::logs

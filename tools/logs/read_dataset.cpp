@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -20,9 +21,9 @@
 #include "logs/log_parts.hpp"
 #include "logs/mapping.hpp"
 #include "logs/mapping_texts.hpp"
-#include "logs/motor_order_check.hpp"
 #include "logs/row_checks.hpp"
 #include "logs/specific_force.hpp"
+#include "logs/vehicle_check.hpp"
 #include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/logs/read_log.hpp"
@@ -117,9 +118,11 @@ class Import {
     }
     settle_absent();
     remove_lag();
-    check_motors();
     drop_rows();
     make_flights();
+    report("comparing the flights", 0);
+    check_vehicle(dataset_, airframe_ ? airframe_->value : airframe_value<PaperQuadrotor, double>(),
+                  !settings_.airframe.empty());
     return std::move(dataset_);
   }
 
@@ -249,14 +252,15 @@ class Import {
       const auto& w = rows.body_rates;
       const auto& f = rows.specific_force;
       warn(name, check_thrust_direction(f[2]));
-      warn(name, check_attitude(rows.period_s, convention_of(*bound.of(Quantity::attitude).source),
-                                {&q[0], &q[1], &q[2], &q[3]}, {&w[0], &w[1], &w[2]}, {&f[0], &f[1], &f[2]}));
+      const auto misread = check_attitude(rows.period_s, convention_of(*bound.of(Quantity::attitude).source),
+                                          {&q[0], &q[1], &q[2], &q[3]}, {&w[0], &w[1], &w[2]}, {&f[0], &f[1], &f[2]});
+      warn(name, misread);
+      if (misread) causes_[name] = *misread;
     }
   }
 
   /// Of what is in the air, before the commands are moved.
   void check_motion(const Passage& passage) {
-    warn(passage.name, check_rate_frame(passage.segments));
     constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
     const auto series = [&passage](const auto& value_of) {
       std::vector<double> values;
@@ -271,12 +275,6 @@ class Import {
       const std::vector<double> rate = series([axis](const Sample& sample) { return sample.body_rates_rad_s[axis]; });
       warn(passage.name, check_frozen(std::string("body rate ") + axes[static_cast<std::size_t>(axis)], time_s, rate));
     }
-  }
-
-  void check_motors() {
-    const Airframe<double> airframe = airframe_ ? airframe_->value : airframe_value<PaperQuadrotor, double>();
-    with_all_segments(
-        [&](const std::vector<Flight>& segments) { warn("motors", check_motor_order(segments, airframe).finding); });
   }
 
   void settle_absent() {
@@ -396,16 +394,15 @@ class Import {
     throw InputError(logs_.front(), 0, 0, "a flight of at least " + std::to_string(fewest_rows) + " rows", found);
   }
 
-  /// With the warnings, which may name the cause: an attitude in another order makes accelerations that fit no
+  /// With its cause: an attitude in another order makes rates that do not turn it, and accelerations that fit no
   /// velocity.
   void require_plausible_flight(const Flight& flight, const std::string& source) const {
     const auto found = find_implausible(flight);
     if (!found) return;
-    std::string causes;
-    for (const std::string& warning : dataset_.warnings) causes += "; " + warning;
-    throw InputError(
-        source, 0, 0, found->expected,
-        found->found + " at " + number_text(flight[found->row].time_s) + " s of flight " + flight.name + causes);
+    const auto cause = causes_.find(flight.name);
+    throw InputError(source, 0, 0, found->expected,
+                     (cause == causes_.end() ? "" : cause->second + "; ") + found->found + " at " +
+                         number_text(flight[found->row].time_s) + " s of flight " + flight.name);
   }
 
   const std::vector<std::string>& logs_;
@@ -416,6 +413,7 @@ class Import {
   Steps steps_;
   std::optional<double> period_s_;
   std::vector<Passage> passages_;
+  std::map<std::string, std::string> causes_;  ///< of a flight that will be refused, by its name
   std::vector<bool> has_velocity_, has_altitude_;
 };
 

@@ -21,6 +21,7 @@
 #include "command_line/folder_lock.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/listed.hpp"
+#include "logs/vehicle_check.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "training/closed_loop.hpp"
 #include "training/export_choice.hpp"
@@ -626,9 +627,11 @@ int programs::train(const TrainOptions& options) {
   vehicle.airframe = given ? *given : chosen_airframe(PaperQuadrotor::name);
   require_separate_files(options);
   announce("[1/5] read");
-  const pinnquad::logs::ImportedDataset dataset = dataset_of(options, vehicle.airframe.value);
+  pinnquad::logs::ImportedDataset dataset = dataset_of(options, vehicle.airframe.value);
   std::vector<Fold> folds = folds_asked_for(options, dataset.flights);
   require_sound(options, dataset, folds);
+  if (!options.dataset.empty()) check_vehicle(dataset, vehicle.airframe.value, given.has_value());
+  require_one_vehicle(dataset);
   const FolderLock lock(options.out);
   if (!options.logs.empty()) write_dataset_folder(options.dataset_folder(), dataset);
   // what can't be written is found before the training

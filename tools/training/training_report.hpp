@@ -198,9 +198,7 @@ class TrainingReport {
              {"noise_ceiling", nullptr},
              {"warnings", nlohmann::json::array()}};
     json_["settings"].update(selection);
-    for (const std::string& warning : dataset.warnings) {
-      json_["warnings"].push_back("import: " + pinnquad::printable(warning));
-    }
+    for (const std::string& warning : dataset.warnings) warn("import: " + warning);
   }
 
   /// A warning: no reason to stop; printed on stderr too.

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Two checks of a flight by its motion, not by the range of its columns. Degrees: from row to row the attitude turns by
-// the body rates; in radians throughout the slope between the two is 1, with one of them in degrees 57.3 or 1 / 57.3.
-// Accelerations: w and v change by the integral of wdot and vdot; a column that is negated, or that of another axis,
-// integrates to something else.
+// Checks of a flight by its motion, not by the range of its columns: the attitude turns by the body rates, the velocity
+// changes by the acceleration, the altitude by the velocity, rates by their derivative (motion_pair.hpp). In radians
+// throughout the turning over the integral of the rates is 1, with one of them in degrees 57.3 or 1 / 57.3; a column
+// that is negated, exchanged with another or late goes against it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/data/dataset.hpp"
+#include "pinnquad/data/motion_pair.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/io/decimal.hpp"
 
@@ -28,180 +32,222 @@ struct Implausible {
   std::string found;      ///< "that of w_y negated"
 };
 
-/// Columns in degrees.
-struct DegreesFound {
-  std::array<bool, 3> angle{};  ///< roll, pitch, yaw
-  bool body_rates = false;      ///< all three
-};
+/// Steps of the checks: over 0.2 s a measured attitude turns, from row to row it jitters.
+inline constexpr double turning_step_s = 0.2, acceleration_step_s = 0.04;
+/// Another reading of columns is asked where as they stand they agree less than this, and believed where it leaves a
+/// third of what they leave, and agrees by half.
+inline constexpr double agrees = 0.85, related = 0.5, far_better = 1.0 / 3;
 
-/// Body rates, mean over a step of `dt_s`, that turn the attitude (roll, pitch, yaw, rad) of its begin into that of its
-/// end.
-inline Vector3<double> turning_rate(const std::array<double, 3>& begin, const std::array<double, 3>& end, double dt_s) {
-  const auto quaternion = [](const std::array<double, 3>& angles) {
-    return from_euler(EulerAngles<double>{angles[0], angles[1], angles[2]});
-  };
-  const Quaternion<double> q = conjugate(quaternion(begin)) * quaternion(end);
+inline constexpr std::size_t linear_field = 1, angular_field = 4, velocity_field = 7, rates_field = 10,
+                             angles_field = 13, altitude_field = 16;
+inline std::string field_name(std::size_t first, Eigen::Index axis) {
+  return std::string(sample_field_names[first + static_cast<std::size_t>(axis)]);
+}
+
+inline std::string hundredths(double value) { return number_text(std::round(100 * value) / 100); }
+
+/// "3.6 times"
+inline std::string times_text(double factor) {
+  return number_text(factor < 1 ? std::round(factor * 1e4) / 1e4 : std::round(factor * 100) / 100) + " times";
+}
+inline std::string late_text(double late_s) { return number_text(std::round(std::abs(late_s) * 1e3)) + " ms late"; }
+
+/// Units and axes that a log may have in place of a flight's: which of roll, pitch and yaw are in degrees, the unit of
+/// the rates, and what these are.
+struct TurningReading {
+  enum Rates { of_body, of_world, of_enu_world, of_flu_body, of_angles, reversed };
+  std::array<bool, 3> degrees{};
+  double rates_unit = 1;
+  Rates rates = of_body;
+};
+inline constexpr std::array<const char*, 6> turning_rate_texts = {
+    "",
+    "rates in the world's axes (turn them by the attitude into the body, R^T w, or log the gyro)",
+    "rates in the world's axes east, north, up (turn them into the body)",
+    "rates in x forward, y left, z up (w_y and w_z are negated, or pitch and yaw)",
+    "derivatives of roll, pitch and yaw (turn them into p, q, r)",
+    "rates that the attitude turns against: it is that of the world in the body (conjugate the quaternion), or all "
+    "rates are negated"};
+
+inline EulerAngles<double> angles_of(const Sample& sample) {
+  return {sample.roll_rad, sample.pitch_rad, sample.yaw_rad};
+}
+
+/// Rotation vector of a turn, the shorter way.
+inline Vector3<double> turn_vector(const Quaternion<double>& q) {
   const double shorter_way = q.w < 0 ? -1 : 1;
-  const double w = shorter_way * q.w;
   const Vector3<double> v = shorter_way * Vector3<double>(q.x, q.y, q.z);
   const double sine = v.norm();
-  const double turn = sine > 1e-12 ? 2 * std::atan2(sine, w) / sine : 2.0;
-  return v * (turn / dt_s);
+  return v * (sine > 1e-12 ? 2 * std::atan2(sine, shorter_way * q.w) / sine : 2.0);
 }
 
-/// Steps of at least `step_s`, without gaps, one after the other: visit(first row, last row).
-template <class Visit>
-void for_each_step(const Flight& flight, double step_s, Visit&& visit) {
-  constexpr double longest_step_s = 0.5;
-  for (std::size_t first = 0, last = 0; first < flight.size(); first = last) {
-    bool usable = true;
-    const double begin_s = flight[first].time_s;
-    for (last = first; usable && last + 1 < flight.size() && flight[last].time_s - begin_s < step_s; ++last) {
-      const Sample& next = flight[last + 1];
-      usable = next.time_s - flight[last].time_s > 0 && next.time_s - begin_s <= longest_step_s;
-    }
-    if (last == first) break;
-    if (usable) visit(first, last);
-  }
-}
-
-/// Steps of 0.2 s: visit(first sample, last sample, mean body rates over it, its length in s).
-/// A measured attitude jitters from row to row; over a step it turns.
-template <class Visit>
-void for_each_turning_step(const Flight& flight, Visit&& visit) {
-  constexpr double step_s = 0.2, largest = 1e4;  // beyond is no angle and no rate, whatever the unit
-  for_each_step(flight, step_s, [&](std::size_t first, std::size_t last) {
-    // rates by the trapezium rule from row to row, the attitude by its ends
-    Vector3<double> turned = Vector3<double>::Zero();
-    for (std::size_t row = first; row < last; ++row) {
-      const Sample& a = flight[row];
-      const Sample& b = flight[row + 1];
-      turned += (a.body_rates_rad_s + b.body_rates_rad_s) * ((b.time_s - a.time_s) / 2);
-    }
-    const double dt_s = flight[last].time_s - flight[first].time_s;
-    const Vector3<double> rate = turned / dt_s;
-    bool usable = rate.norm() <= largest;
-    for (const Sample* end : {&flight[first], &flight[last]}) {
-      for (const double angle : {end->roll_rad, end->pitch_rad, end->yaw_rad}) {
-        usable = usable && std::abs(angle) <= largest;
+/// The turning of the attitude from row to row, as logged rates would integrate to it if a log is to be read so.
+inline MotionPair turning_pair(const Flight& flight, const TurningReading& reading) {
+  const auto read = [&](std::size_t row) {
+    EulerAngles<double> angles = angles_of(flight[row]);
+    if (reading.degrees[0]) angles.roll_rad /= degrees_per_radian;
+    if (reading.degrees[1]) angles.pitch_rad /= degrees_per_radian;
+    if (reading.degrees[2]) angles.yaw_rad /= degrees_per_radian;
+    return angles;
+  };
+  const auto change = [&](std::size_t row) -> Vector3<double> {
+    const EulerAngles<double> begin = read(row), end = read(row + 1);
+    const Quaternion<double> q = from_euler(begin);
+    const Vector3<double> turn = turn_vector(conjugate(q) * from_euler(end)) * reading.rates_unit;
+    const double sr = std::sin(begin.roll_rad), cr = std::cos(begin.roll_rad);
+    switch (reading.rates) {
+      case TurningReading::of_world: return body_to_world(q, turn);
+      case TurningReading::of_enu_world: return swap_enu_ned(body_to_world(q, turn));
+      case TurningReading::of_angles: {
+        const double across = sr * turn[1] + cr * turn[2];
+        return {turn[0] + std::tan(begin.pitch_rad) * across, cr * turn[1] - sr * turn[2],
+                across / std::cos(begin.pitch_rad)};
       }
+      case TurningReading::of_flu_body: return swap_flu_frd(turn);
+      case TurningReading::reversed: return -turn;
+      case TurningReading::of_body: break;
     }
-    if (usable) visit(flight[first], flight[last], rate, dt_s);
+    return turn;
+  };
+  return {flight.size(), [&](std::size_t row) { return flight[row].time_s; }, change,
+          [&](std::size_t row) -> const Vector3<double>& { return flight[row].body_rates_rad_s; }};
+}
+
+/// The sentence of a reading that is not the flight's: angles and rates share the blame for a factor of 57.
+inline Implausible misread_turning(const TurningReading& reading, const std::string& evidence) {
+  for (std::size_t angle = 0; angle < 3; ++angle) {
+    if (!reading.degrees[angle]) continue;
+    const std::string name = field_name(angles_field, static_cast<Eigen::Index>(angle));
+    return {0, angles_field + angle, "radians in column " + name,
+            "degrees, by how they change with the body rates w_x, w_y, w_z (multiply by pi / 180), or these 57 times "
+            "too small" +
+                evidence};
+  }
+  if (reading.rates_unit > 1) {
+    return {0, rates_field, "radians per second in columns w_x, w_y, w_z",
+            "degrees per second, by how roll, pitch and yaw change (multiply by pi / 180), or these 57 times too "
+            "small" +
+                evidence};
+  }
+  return {0, rates_field, "rates in the body's axes in columns w_x, w_y, w_z",
+          turning_rate_texts[reading.rates] + evidence};
+}
+
+/// True where this body rate stands still: a sensor that has stopped fits no attitude, whatever its unit.
+inline bool is_frozen_rate(const Flight& flight, Eigen::Index axis) {
+  const double first = flight.front().body_rates_rad_s[axis];
+  return std::all_of(flight.begin(), flight.end(), [&](const Sample& sample) {
+    return !(sample.body_rates_rad_s[axis] < first) && !(sample.body_rates_rad_s[axis] > first);
   });
+}
+
+/// Rates that have stopped, if one of them should not have.
+inline std::optional<Implausible> find_stopped_rate(const Flight& flight, const MotionSums& sums) {
+  constexpr double turns = 0.5, least = 1e-3;  // rad over a step
+  std::string stopped;
+  std::size_t first = 0;
+  bool contradicted = false;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (!is_frozen_rate(flight, axis)) continue;
+    const double both = sums.changes[axis] + sums.integrals[axis];
+    // roll and pitch alone turn less about another axis: a heading that a file holds at 0 is no gyro's fault
+    const bool moves = both > least * least * sums.steps && sums.changes[axis] > sums.changes.maxCoeff() / 16;
+    contradicted = contradicted || (moves && 2 * sums.products(axis, axis) < turns * both);
+    if (stopped.empty()) first = rates_field + static_cast<std::size_t>(axis);
+    stopped += (stopped.empty() ? "" : ", ") + field_name(rates_field, axis);
+  }
+  if (!contradicted) return std::nullopt;
+  return Implausible{0, first, "body rates that change, as the attitude does, in columns " + stopped,
+                     "the same in all " + std::to_string(flight.size()) + " rows"};
+}
+
+/// A rate that turns the attitude about another axis, or the other way.
+inline Implausible wrong_rate(const MotionSums& sums, const AxisMistake& mistake) {
+  const std::size_t field = rates_field + static_cast<std::size_t>(mistake.column);
+  const std::string rate = field_name(rates_field, mistake.column), angle = field_name(angles_field, mistake.column);
+  const std::string evidence = ", correlation " + hundredths(sums.correlation(mistake.axis, mistake.column));
+  const std::string expected =
+      "the turning of roll, pitch and yaw about " + std::string(1, "xyz"[mistake.column]) + " in column " + rate;
+  if (mistake.axis == mistake.column) {
+    return {0, field, expected, "that negated" + evidence + " (" + rate + " or " + angle + " is negated)"};
+  }
+  return {0, field, expected,
+          std::string("that about ") + "xyz"[mistake.axis] + (mistake.negated ? " negated" : "") + evidence + " (" +
+              angle + " and " + field_name(angles_field, mistake.axis) + ", or " + rate + " and " +
+              field_name(rates_field, mistake.axis) + ", are exchanged)"};
 }
 
 }  // namespace detail
 
-/// Tries every choice of angles in degrees with rates in rad/s and in deg/s: the share of the rates' squares that the
-/// turning of the attitude leaves unexplained, both over steps of 0.2 s, for a measured attitude jitters from row to
-/// row. Degrees are found only where radians explain next to nothing (0.8 is left or more) and degrees more than half:
-/// a flight that hardly turns, noise and gaps in time decide nothing.
-inline detail::DegreesFound find_degrees_by_motion(const Flight& flight) {
-  constexpr double unexplained = 0.8, explained = 0.5;
-  constexpr double smallest_rates = 1e-6;  // mean square
-  constexpr std::size_t choices = 8;
-  std::array<std::array<double, 2>, choices> residual{};  // [angles in degrees, a bit each][rates in degrees]
-  double rates = 0, steps = 0;
-  const auto judge = [&](const Sample& a, const Sample& b, const Vector3<double>& rate, double dt_s) {
-    const std::array<double, 3> begin = {a.roll_rad, a.pitch_rad, a.yaw_rad},
-                                end = {b.roll_rad, b.pitch_rad, b.yaw_rad};
-    rates += rate.squaredNorm();
-    steps += 1;
-    for (std::size_t choice = 0; choice < choices; ++choice) {
-      std::array<double, 3> from = begin, to = end;
-      for (std::size_t i = 0; i < 3; ++i) {
-        if ((choice >> i & 1u) == 0) continue;
-        from[i] /= degrees_per_radian;
-        to[i] /= degrees_per_radian;
-      }
-      const Vector3<double> turning = detail::turning_rate(from, to, dt_s);
-      residual[choice][0] += (rate - turning).squaredNorm();
-      residual[choice][1] += (rate - turning * degrees_per_radian).squaredNorm();
+/// Compares, over steps of 0.2 s, the turning of the attitude with the integral of the body rates. A mistake where a
+/// rate stands still that should not; where the two agree far better with some of them in degrees, or with rates of
+/// other axes; where a rate follows another axis, or its own negated; where one of the two is late by 0.1 s or more.
+/// Limits: a flight that hardly turns, noise and gaps in time decide nothing; angles and rates share the blame.
+inline std::optional<detail::Implausible> find_turning_mistake(const Flight& flight) {
+  using namespace detail;
+  constexpr double follows = 0.6, clearly = 0.4;
+  const MotionPair pair = turning_pair(flight, {});
+  const MotionSums sums = pair.sums(turning_step_s);
+  if (sums.steps < fewest_motion_steps) return std::nullopt;
+  const std::array<bool, 3> moving = sums.moving();
+  const double as_it_stands = sums.agreement(moving);
+  if (as_it_stands < agrees) {
+    if (auto stopped = find_stopped_rate(flight, sums)) return stopped;
+    double most = as_it_stands;
+    TurningReading best;
+    const auto judge = [&](const TurningReading& reading) {
+      const double agreement = turning_pair(flight, reading).sums(turning_step_s).agreement(moving);
+      if (!(agreement > most)) return;
+      most = agreement;
+      best = reading;
+    };
+    for (unsigned choice = 1; choice < 16; ++choice) {
+      judge(
+          {{(choice & 1u) != 0, (choice & 2u) != 0, (choice & 4u) != 0}, (choice & 8u) != 0 ? degrees_per_radian : 1});
     }
-  };
-  detail::for_each_turning_step(flight, judge);
-  detail::DegreesFound found;
-  if (!(rates > smallest_rates * steps) || !(residual[0][0] > unexplained * rates)) return found;
-  std::size_t best = 0, best_rates = 0;
-  for (std::size_t choice = 0; choice < choices; ++choice) {
-    for (std::size_t unit = 0; unit < 2; ++unit) {
-      if (residual[choice][unit] < residual[best][best_rates]) {
-        best = choice;
-        best_rates = unit;
-      }
+    for (const auto rates : {TurningReading::of_world, TurningReading::of_enu_world, TurningReading::of_flu_body,
+                             TurningReading::of_angles, TurningReading::reversed}) {
+      judge({{}, 1, rates});
+    }
+    if (most > related && 1 - most < far_better * (1 - as_it_stands))
+      return misread_turning(best,
+                             "; agreement " + hundredths(as_it_stands) + " as it stands, " + hundredths(most) + " so");
+    if (const auto mistake = find_axis_mistake(sums, follows, clearly)) {
+      if (mistake->axis != mistake->column || mistake->negated) return wrong_rate(sums, *mistake);
+      constexpr double about = 1.5;
+      TurningReading reading;
+      if (mistake->factor > degrees_per_radian / about) reading.rates_unit = degrees_per_radian;
+      if (mistake->factor < about / degrees_per_radian) reading.degrees[0] = true;
+      if (reading.rates_unit > 1 || reading.degrees[0])
+        return misread_turning(reading, "; the rates are " + times_text(mistake->factor) + " the turning");
     }
   }
-  if (!(residual[best][best_rates] < explained * rates)) return found;
-  found.angle = {(best & 1u) != 0, (best & 2u) != 0, (best & 4u) != 0};
-  found.body_rates = best_rates == 1;
-  return found;
+  if (const auto late_s = pair.lateness_s(turning_step_s)) {
+    const bool angles = *late_s > 0;
+    return Implausible{0, angles ? angles_field : rates_field, "roll, pitch and yaw at the times of w_x, w_y and w_z",
+                       (angles ? "roll, pitch and yaw " : "w_x, w_y and w_z ") + late_text(*late_s) +
+                           ", by how the one turns with the other"};
+  }
+  return std::nullopt;
 }
 
 namespace detail {
 
-inline constexpr double acceleration_step_s = 0.04;
-inline constexpr std::size_t fewest_acceleration_steps = 20;
-
-/// Sums over the steps of a flight: changes of three columns against the integrals of three accelerations.
-struct AccelerationSums {
-  Matrix<double, 3, 3> products = Matrix<double, 3, 3>::Zero();  ///< row: axis that changes; column: acceleration
-  Vector3<double> changes = Vector3<double>::Zero();             ///< squares
-  Vector3<double> integrals = Vector3<double>::Zero();
-  double steps = 0;
-
-  void add(const Vector3<double>& change, const Vector3<double>& integral) {
-    products += change * integral.transpose();
-    changes += change.cwiseAbs2();
-    integrals += integral.cwiseAbs2();
-    steps += 1;
-  }
-  /// 0 where one of the two stands still.
-  double correlation(Eigen::Index axis, Eigen::Index column) const {
-    constexpr double smallest_change = 1e-3;  // rad/s, m/s: root mean square over a step
-    const double still = smallest_change * smallest_change * steps;
-    if (!(changes[axis] > still) || !(integrals[column] > still)) return 0;
-    return products(axis, column) / std::sqrt(changes[axis] * integrals[column]);
-  }
-};
-
-/// The integral of `acceleration(sample)` over the rows first to last, by the trapezium rule.
-template <class Acceleration>
-Vector3<double> integral(const Flight& flight, std::size_t first, std::size_t last, const Acceleration& acceleration) {
-  Vector3<double> sum = Vector3<double>::Zero();
-  for (std::size_t row = first; row < last; ++row) {
-    const double half_s = (flight[row + 1].time_s - flight[row].time_s) / 2;
-    sum += (acceleration(flight[row]) + acceleration(flight[row + 1])) * half_s;
-  }
-  return sum;
-}
-
-/// The first of three columns that follows another axis, or its own against the sign, or in another unit.
-inline std::optional<Implausible> wrong_axis(const AccelerationSums& sums, std::size_t first_field,
+/// The first of three accelerations that follows another axis, or its own against the sign, or in another unit.
+inline std::optional<Implausible> wrong_axis(const MotionSums& sums, std::size_t first_field,
                                              std::size_t first_integrated_field) {
-  constexpr double follows = 0.35, better = 0.25;      // correlations
-  constexpr double straight = 0.9, most_factor = 4.0;  // of a column that is its axis's but for a factor
-  const auto axis_name = [&](Eigen::Index axis) {
-    return std::string(sample_field_names[first_integrated_field + static_cast<std::size_t>(axis)]);
-  };
-  for (Eigen::Index column = 0; column < 3; ++column) {
-    const double own = sums.correlation(column, column);
-    Eigen::Index best = column;
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      if (std::abs(sums.correlation(axis, column)) > std::abs(sums.correlation(best, column))) best = axis;
-    }
-    const double fits = sums.correlation(best, column);
-    const std::size_t field = first_field + static_cast<std::size_t>(column);
-    const std::string expected = "the derivative of " + axis_name(column);
-    if (std::abs(fits) > follows && std::abs(fits) > own + better) {
-      return Implausible{0, field, expected, "that of " + axis_name(best) + (fits < 0 ? " negated" : "")};
-    }
-    const double factor = own > straight ? sums.integrals[column] / sums.products(column, column) : 1;
-    if (factor > most_factor || factor < 1 / most_factor) {
-      return Implausible{0, field, expected,
-                         "about " + number_text(std::round(factor * 100) / 100) + " times that (its unit?)"};
-    }
-  }
-  return std::nullopt;
+  constexpr double follows = 0.35, better = 0.25;  // correlations
+  const auto mistake = find_axis_mistake(sums, follows, better);
+  if (!mistake) return std::nullopt;
+  const std::size_t field = first_field + static_cast<std::size_t>(mistake->column);
+  const bool of_unit = mistake->axis == mistake->column && !mistake->negated;
+  const std::string found =
+      of_unit ? "about " + times_text(mistake->factor) + " that (its unit?)"
+              : "that of " + field_name(first_integrated_field, mistake->axis) + (mistake->negated ? " negated" : "");
+  return Implausible{0, field,
+                     "the derivative of " + field_name(first_integrated_field, mistake->column) + " " + "in column " +
+                         field_name(first_field, mistake->column),
+                     found + ", by how rates and velocity change from row to row"};
 }
 
 /// Accelerations that logs hold in the place of the derivative of the body-frame velocity, turned into that.
@@ -213,9 +259,89 @@ inline constexpr std::array<const char*, acceleration_kinds> acceleration_kind_t
 inline std::array<Vector3<double>, acceleration_kinds> as_body_derivative(const Sample& sample) {
   const Vector3<double> given = sample.linear_acceleration_m_s2;
   const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
-  const Quaternion<double> q = from_euler(EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
+  const Quaternion<double> q = from_euler(angles_of(sample));
   const Vector3<double> gravity = world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>));
   return {given, given - turning, given + gravity - turning, world_to_body(q, given) - turning};
+}
+
+/// Changes of the velocity in the world against the world's acceleration, both of the body's columns, which are to be
+/// turned so often: once, unless a log's were taken for the other's.
+inline MotionPair world_velocity_pair(const Flight& flight, int turns = 1) {
+  const auto velocity = [&](std::size_t row) {
+    const Quaternion<double> q = from_euler(angles_of(flight[row]));
+    Vector3<double> result = flight[row].velocity_m_s;
+    for (int turn = 0; turn < turns; ++turn) result = body_to_world(q, result);
+    return result;
+  };
+  return {flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+          [&](std::size_t row) -> Vector3<double> { return velocity(row + 1) - velocity(row); },
+          [&](std::size_t row) {
+            const Sample& sample = flight[row];
+            const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
+            return body_to_world(from_euler(angles_of(sample)),
+                                 Vector3<double>(sample.linear_acceleration_m_s2 + turning));
+          }};
+}
+
+/// Velocities that are negated along one axis of the world, of another unit, or late.
+inline std::optional<Implausible> find_velocity_mistake(const Flight& flight) {
+  constexpr double follows = 0.8, better = 0.25, straight = 0.9, alike = 1.3;
+  constexpr std::array<const char*, 3> along = {"north", "east", "down"};
+  const MotionPair pair = world_velocity_pair(flight);
+  const MotionSums sums = pair.sums(turning_step_s);
+  if (sums.steps < fewest_motion_steps) return std::nullopt;
+  const std::string expected =
+      "a velocity that changes by the accelerations vdot_bx to vdot_bz in columns v_bx, v_by, v_bz";
+  if (const auto mistake = find_axis_mistake(sums, follows, better)) {
+    const Eigen::Index axis = mistake->column;
+    const auto own = [&](Eigen::Index of) { return sums.correlation(of, of); };
+    const Eigen::Index other = (axis + 1) % 3, third = (axis + 2) % 3;
+    if (mistake->negated && mistake->axis == axis && own(other) > follows && own(third) > follows) {
+      return Implausible{0, velocity_field, expected,
+                         std::string("one that is negated along ") + along[static_cast<std::size_t>(axis)] +
+                             ", correlation " + hundredths(own(axis))};
+    }
+    const auto factor = [&](Eigen::Index of) { return sums.changes[of] / sums.products(of, of); };
+    const double factors[] = {factor(0), factor(1), factor(2)};
+    const auto [least, most] = std::minmax_element(std::begin(factors), std::end(factors));
+    const bool one_unit = own(0) > straight && own(1) > straight && own(2) > straight && *most < alike * *least;
+    if (one_unit)
+      return Implausible{0, velocity_field, expected, times_text(factors[0]) + " that (km/h is 3.6 times m/s)"};
+  }
+  const std::array<bool, 3> moving = sums.moving();
+  const double as_it_stands = sums.agreement(moving);
+  for (const auto& [turns, text] : {std::pair{0, "velocities in the world's axes (turn them into the body)"},
+                                    {2, "velocities in the body's axes that were turned into them once more"}}) {
+    const double so = world_velocity_pair(flight, turns).sums(turning_step_s).agreement(moving);
+    if (!(as_it_stands < agrees && so > related && 1 - so < far_better * (1 - as_it_stands))) continue;
+    return Implausible{0, velocity_field, expected,
+                       text + ("; agreement " + hundredths(as_it_stands)) + " as it stands, " + hundredths(so) + " so"};
+  }
+  if (const auto late_s = pair.lateness_s(turning_step_s)) {
+    return Implausible{0, *late_s > 0 ? velocity_field : linear_field, expected,
+                       (*late_s > 0 ? "velocities " : "accelerations ") + late_text(*late_s) + " against the other"};
+  }
+  return std::nullopt;
+}
+
+/// An altitude that falls where the velocity rises, or rises by another unit.
+inline std::optional<Implausible> find_altitude_mistake(const Flight& flight) {
+  constexpr double follows = 0.8;
+  const MotionPair pair(
+      flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+      [&](std::size_t row) { return Vector3<double>(flight[row + 1].altitude_m - flight[row].altitude_m, 0, 0); },
+      [&](std::size_t row) {
+        return Vector3<double>(-body_to_world(from_euler(angles_of(flight[row])), flight[row].velocity_m_s)[2], 0, 0);
+      });
+  const MotionSums sums = pair.sums(turning_step_s);
+  if (sums.steps < fewest_motion_steps) return std::nullopt;
+  const auto mistake = find_axis_mistake(sums, follows, follows);
+  if (!mistake) return std::nullopt;
+  return Implausible{0, altitude_field, "a height that rises with the velocity v_bx to v_bz in column altitude",
+                     mistake->negated
+                         ? "one that falls with it, correlation " + hundredths(sums.correlation(0, 0)) +
+                               " (altitude or the velocity along down is negated)"
+                         : "a velocity of " + times_text(mistake->factor) + " its slope (km/h is 3.6 times m/s)"};
 }
 
 }  // namespace detail
@@ -223,40 +349,42 @@ inline std::array<Vector3<double>, acceleration_kinds> as_body_derivative(const 
 /// Correlates, over steps of 0.04 s or of a row, the change of each body rate and velocity with the integral of each
 /// acceleration. A mistake where a column follows another axis, or its own negated, by 0.25 better than its own; where
 /// it follows its own in another unit; where vdot leaves 0.3 or more of the change of v unexplained, and another
-/// meaning of it less than a quarter of that.
+/// meaning of it less than a quarter of that. Over steps of 0.2 s, in the world's axes: a velocity that is negated
+/// along one of them, in another unit or late; an altitude that goes against the velocity.
 /// Measured, correlation of a column with its own axis, and most with another: the paper's flights above 0.88 and 0.17,
 /// the independent simulator's above 0.97 and 0.12, real logs above 0.73 and 0.45 (or 1.00 and 0.8); under gyro noise
 /// that drowns the motion 0 and 0.03.
 /// Limits: a column that noise drowns, an axis that hardly moves and a flight of few rows decide nothing.
 inline std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
-  constexpr std::size_t linear_field = 1, angular_field = 4, velocity_field = 7, rates_field = 10;
+  using namespace detail;
   constexpr double unexplained = 0.3, better = 0.25;
-  detail::AccelerationSums angular, linear;
-  std::array<double, detail::acceleration_kinds> left{};
-  detail::for_each_step(flight, detail::acceleration_step_s, [&](std::size_t first, std::size_t last) {
-    const Vector3<double> rates = flight[last].body_rates_rad_s - flight[first].body_rates_rad_s;
-    const Vector3<double> velocity = flight[last].velocity_m_s - flight[first].velocity_m_s;
-    angular.add(rates, detail::integral(flight, first, last, [](const Sample& sample) -> const Vector3<double>& {
-                  return sample.angular_acceleration_rad_s2;
-                }));
-    for (std::size_t kind = 0; kind < left.size(); ++kind) {
-      const Vector3<double> change = detail::integral(
-          flight, first, last, [kind](const Sample& sample) { return detail::as_body_derivative(sample)[kind]; });
-      if (kind == 0) linear.add(velocity, change);
-      left[kind] += (velocity - change).squaredNorm();
-    }
-  });
-  if (angular.steps < static_cast<double>(detail::fewest_acceleration_steps)) return std::nullopt;
-  std::size_t best = 0;
-  for (std::size_t kind = 1; kind < left.size(); ++kind) {
-    if (left[kind] < left[best]) best = kind;
+  const auto sums = [&](const auto& value, const auto& rate) {
+    return MotionPair(
+               flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+               [&](std::size_t row) { return Vector3<double>(value(flight[row + 1]) - value(flight[row])); },
+               [&](std::size_t row) { return Vector3<double>(rate(flight[row])); })
+        .sums(acceleration_step_s);
+  };
+  const MotionSums angular = sums([](const Sample& sample) { return sample.body_rates_rad_s; },
+                                  [](const Sample& sample) { return sample.angular_acceleration_rad_s2; });
+  if (angular.steps < fewest_motion_steps) return std::nullopt;
+  if (auto mistake = wrong_axis(angular, angular_field, rates_field)) return mistake;
+  if (auto mistake = find_velocity_mistake(flight)) return mistake;
+  if (auto mistake = find_altitude_mistake(flight)) return mistake;
+  std::array<MotionSums, acceleration_kinds> linear;
+  std::array<double, acceleration_kinds> left{};
+  for (std::size_t kind = 0; kind < linear.size(); ++kind) {
+    linear[kind] = sums([](const Sample& sample) { return sample.velocity_m_s; },
+                        [kind](const Sample& sample) { return as_body_derivative(sample)[kind]; });
+    left[kind] = linear[kind].changes.sum() + linear[kind].integrals.sum() - 2 * linear[kind].products.trace();
   }
-  if (auto mistake = detail::wrong_axis(angular, angular_field, rates_field)) return mistake;
-  if (left[0] > unexplained * linear.changes.sum() && left[best] < better * left[0]) {
-    return detail::Implausible{0, linear_field, "the derivative of the velocity in the body's axes",
-                               detail::acceleration_kind_texts[best]};
+  const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
+  if (left[0] > unexplained * linear[0].changes.sum() && left[best] < better * left[0]) {
+    return Implausible{
+        0, linear_field, "the derivative of the velocity in the body's axes in column " + field_name(linear_field, 0),
+        std::string(acceleration_kind_texts[best]) + ", by how rates and velocity change from row to row"};
   }
-  return detail::wrong_axis(linear, linear_field, velocity_field);
+  return wrong_axis(linear[0], linear_field, velocity_field);
 }
 
 }  // namespace pinnquad

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Checks that a flight can be one: per column its unit and physical range, a robust search for cells that fit no
-// neighbour, and the mistakes of unit that logs have: commands as pulse widths or percent, angles in degrees. A network
-// trains on nonsense without complaint, and then flies it.
+// neighbour, and the mistakes that logs have: commands as pulse widths or percent, columns that the motion contradicts.
+// A network trains on nonsense without complaint, and then flies it.
 #pragma once
 
 #include <algorithm>
@@ -162,35 +162,6 @@ inline std::optional<Implausible> find_other_clock(const Flight& flight) {
                      number_text(period_s) + " (milliseconds? Then write t / 1000)"};
 }
 
-/// True where all three body rates stand still: a sensor that has stopped fits no attitude, whatever its unit.
-inline bool has_frozen_rates(const Flight& flight) {
-  return std::all_of(flight.begin(), flight.end(), [&flight](const Sample& sample) {
-    return sample.body_rates_rad_s == flight.front().body_rates_rad_s;
-  });
-}
-
-/// Angles or rates that fit each other only in degrees.
-inline std::optional<Implausible> find_degrees(const Flight& flight) {
-  constexpr std::array<std::size_t, 3> angle_fields = {13, 14, 15};
-  constexpr std::size_t first_rate_field = 10;
-  const DegreesFound found = find_degrees_by_motion(flight);
-  const bool any = found.body_rates || found.angle[0] || found.angle[1] || found.angle[2];
-  if (any && has_frozen_rates(flight)) {
-    return Implausible{0, first_rate_field, "body rates that change, as the attitude does, in columns w_x, w_y, w_z",
-                       "the same in all " + std::to_string(flight.size()) + " rows"};
-  }
-  for (std::size_t angle = 0; angle < angle_fields.size(); ++angle) {
-    if (!found.angle[angle]) continue;
-    return Implausible{0, angle_fields[angle], "radians " + column_text(angle_fields[angle]),
-                       "degrees, by how they change with the body rates w_x, w_y, w_z (multiply by pi / 180)"};
-  }
-  if (found.body_rates) {
-    return Implausible{0, first_rate_field, "radians per second in columns w_x, w_y, w_z",
-                       "degrees per second, by how roll, pitch and yaw change (multiply by pi / 180)"};
-  }
-  return std::nullopt;
-}
-
 /// InputError at the value of a flight that was read from `path`; without the file, at its place in one of ours.
 inline InputError implausible_in_file(const std::string& path, const Implausible& found) {
   constexpr std::size_t lines_before_rows = 1;
@@ -209,22 +180,18 @@ inline InputError implausible_in_file(const std::string& path, const Implausible
 }  // namespace detail
 
 /// The first reason, in this order, why a network must not learn from these rows: commands outside 0..1, a clock of
-/// another unit, body rates that have stopped, degrees, a cell outside its column's range or like none of its
-/// neighbours, accelerations that are not the derivatives of rates and velocity. None for a flight.
+/// another unit, an attitude that does not turn by the body rates, a cell outside its column's range or like none of
+/// its neighbours, accelerations that are not the derivatives of rates and velocity, an altitude that goes against it.
+/// None for a flight.
 inline std::optional<detail::Implausible> find_implausible(const Flight& flight) {
   if (auto found = detail::find_implausible_command(flight)) return found;
   if (auto found = detail::find_other_clock(flight)) return found;
-  if (auto found = detail::find_degrees(flight)) return found;
+  if (auto found = find_turning_mistake(flight)) return found;
   if (auto found = detail::find_out_of_range(flight)) return found;
   for (std::size_t field = 0; field < sample_value_count; ++field) {
     if (auto found = detail::find_outlier(flight, field)) return found;
   }
-  auto mistake = find_acceleration_mistake(flight);
-  if (mistake) {
-    mistake->expected += " " + detail::column_text(mistake->field);
-    mistake->found += ", by how rates and velocity change from row to row";
-  }
-  return mistake;
+  return find_acceleration_mistake(flight);
 }
 
 /// Throws InputError where find_implausible() finds something in a flight that was read from `path`:

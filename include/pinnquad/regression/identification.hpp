@@ -33,6 +33,7 @@ struct IdentificationSettings {
 /// An interval is infinite where the flights do not tell.
 struct Identification {
   Estimate thrust_m_s2;                          ///< A: specific force of one rotor at command 1
+  Estimate thrust_slope_m_s2;                    ///< A beside a constant: another one where commands have another zero
   Estimate thrust_curve;                         ///< k of thrust_fraction(), where it was to be found
   Estimate battery;                              ///< E: relative change of the thrust over that of the voltage
   std::array<Estimate, 3> effectiveness_rad_s2;  ///< B: angular acceleration of one rotor at command 1
@@ -225,6 +226,11 @@ class Identifier {
       result.drag_1_m[axis] = alone.estimate(first);
       if (axis < 2) continue;
       result.thrust_m_s2 = both.estimate(0);
+      result.thrust_slope_m_s2 = force_regression(axis, first + 2, [&](std::size_t i, double* x) {
+                                   const std::size_t from = before_drag(i, x);
+                                   x[from] = 1;
+                                   x[from + 1] = -v[i];
+                                 }).estimate(0);
       if (has_voltage && both.told(0) && both.told(1)) {
         result.battery = both.estimate_of([](const std::vector<double>& values) { return values[1] / values[0]; });
       }

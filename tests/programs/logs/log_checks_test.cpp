@@ -10,6 +10,7 @@
 #include "logs/log_checks.hpp"
 #include "logs/motor_order_check.hpp"
 #include "logs/specific_force.hpp"
+#include "pinnquad/data/motion_checks.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "programs/logs/synthetic_flight.hpp"
 
@@ -36,13 +37,16 @@ bool says(const std::optional<std::string>& finding, const std::string& words) {
 }  // namespace
 
 TEST_CASE("rates in another frame are named, the body's are not") {
-  using pinnquad::logs::check_rate_frame;
-  CHECK_FALSE(check_rate_frame({good_flight()}).has_value());
-  const auto with = [&](auto&& change) { return check_rate_frame({changed(good_flight(), change)}); };
+  const auto with = [](auto&& change) -> std::optional<std::string> {
+    const auto found = pinnquad::find_turning_mistake(changed(good_flight(), change));
+    if (!found) return std::nullopt;
+    return found->expected + ", found " + found->found;
+  };
+  CHECK_FALSE(with([](Sample&) {}).has_value());
   CHECK(says(with([](Sample& s) {
                s.body_rates_rad_s = pinnquad::body_to_world(pinnquad::logs::attitude(s), s.body_rates_rad_s);
              }),
-             "rates in the world's axes: turn"));
+             "rates in the world's axes (turn"));
   CHECK(says(with([](Sample& s) { s.body_rates_rad_s = pinnquad::swap_flu_frd(s.body_rates_rad_s); }),
              "x forward, y left, z up"));
   CHECK(says(with([](Sample& s) {
@@ -51,12 +55,32 @@ TEST_CASE("rates in another frame are named, the body's are not") {
              }),
              "east, north, up"));
   CHECK(says(with([](Sample& s) { s.body_rates_rad_s = -s.body_rates_rad_s; }), "turns against"));
+  CHECK(says(with([](Sample& s) { s.roll_rad *= -1; }), "w_x or roll is negated"));
+  CHECK(says(with([](Sample& s) { std::swap(s.roll_rad, s.pitch_rad); }), "are exchanged"));
   const auto still = with([](Sample& s) {
     s.roll_rad = s.pitch_rad = s.yaw_rad = 0;
     s.body_rates_rad_s.setZero();
   });
   CHECK_FALSE(still.has_value());
-  CHECK_FALSE(check_rate_frame({}).has_value());
+  CHECK_FALSE(pinnquad::find_turning_mistake(Flight()).has_value());
+}
+
+TEST_CASE("an attitude or a velocity that is late is told with its time, a few rows are not") {
+  const auto late = [](std::size_t rows, auto&& copy) {
+    Flight flight = good_flight();
+    for (std::size_t row = flight.size(); row-- > rows;) copy(flight[row], good_flight()[row - rows]);
+    flight.keep_rows([rows](std::size_t row) { return row >= rows; });
+    return flight;
+  };
+  const auto attitude = [](Sample& to, const Sample& from) {
+    to.roll_rad = from.roll_rad;
+    to.pitch_rad = from.pitch_rad;
+    to.yaw_rad = from.yaw_rad;
+  };
+  const auto found = pinnquad::find_turning_mistake(late(20, attitude));
+  REQUIRE(found.has_value());
+  CHECK(found->found.find("roll, pitch and yaw 200 ms late") == 0);
+  CHECK_FALSE(pinnquad::find_turning_mistake(late(5, attitude)).has_value());
 }
 
 TEST_CASE("every convention of an attitude that was read as another is named") {

@@ -32,8 +32,9 @@ struct ImportedDataset {
   std::string airframe;
   std::string mapping;
   std::vector<ImportStep> steps;
-  std::vector<std::string> notes;     ///< how what the logs lack was computed
-  std::vector<std::string> warnings;  ///< what looks wrong
+  std::vector<std::string> notes;           ///< how what the logs lack was computed
+  std::vector<std::string> warnings;        ///< what looks wrong
+  std::vector<std::string> contradictions;  ///< of these, with the file: what no model should learn from
 
   bool lacks(const std::string& quantity) const {
     for (const std::string& missing : absent) {
@@ -88,8 +89,8 @@ SourceKind kind_of_source(const std::string& path);
 /// std::invalid_argument, one line.
 ImportedDataset read_source(const std::vector<std::string>& paths, const LogSettings& settings = {});
 
-/// Throws std::invalid_argument, one line, where two flights hold the same rows; `places`: their files, if they have
-/// some.
+/// Throws std::invalid_argument, one line, where two flights hold the same rows, or one the liveliest of the other,
+/// from another clock or rounded; `places`: their files, if they have some.
 void require_different_flights(const Dataset& dataset, const std::vector<std::string>& places = {});
 
 }  // namespace pinnquad::logs

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// Two series of a flight that say the same: how a quantity changes, and what its rate integrates to. A column that is
+// negated, in another unit, of another axis or late shows in how the two go together.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "pinnquad/core/types.hpp"
+
+namespace pinnquad::detail {
+
+inline constexpr double fewest_motion_steps = 20;  ///< that decide something
+
+/// Sums over steps: changes of three quantities, and the integrals of three rates.
+struct MotionSums {
+  Matrix<double, 3, 3> products = Matrix<double, 3, 3>::Zero();  ///< row: quantity that changes; column: rate
+  Vector3<double> changes = Vector3<double>::Zero();             ///< squares
+  Vector3<double> integrals = Vector3<double>::Zero();
+  double steps = 0;
+
+  void add(const Vector3<double>& change, const Vector3<double>& integral) {
+    products += change * integral.transpose();
+    changes += change.cwiseAbs2();
+    integrals += integral.cwiseAbs2();
+    steps += 1;
+  }
+  /// 0 where both stand still, or one of them to the last digit.
+  double correlation(Eigen::Index axis, Eigen::Index column) const {
+    constexpr double smallest_change = 1e-3, digits = 1e-5;  // rad, rad/s, m/s, m: root mean square over a step
+    const double more = std::max(changes[axis], integrals[column]), less = std::min(changes[axis], integrals[column]);
+    if (!(more > smallest_change * smallest_change * steps) || !(less > digits * digits * steps)) return 0;
+    return products(axis, column) / std::sqrt(changes[axis] * integrals[column]);
+  }
+  /// The axes about which something moves.
+  std::array<bool, 3> moving() const {
+    constexpr double smallest_change = 1e-3;
+    std::array<bool, 3> result{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<Eigen::Index>(axis);
+      result[axis] = changes[at] + integrals[at] > smallest_change * smallest_change * steps;
+    }
+    return result;
+  }
+  /// 1 where change and integral are equal, -1 where they are opposite, 0 where they have nothing in common: mean over
+  /// some axes; 1 where there are none.
+  double agreement(const std::array<bool, 3>& of) const {
+    double sum = 0, axes = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<Eigen::Index>(axis);
+      const double squares = changes[at] + integrals[at];
+      if (!of[axis]) continue;
+      sum += squares > 0 ? 2 * products(at, at) / squares : 0;
+      axes += 1;
+    }
+    return axes > 0 ? sum / axes : 1;
+  }
+};
+
+/// A rate that follows another axis than its own, or its own negated or in another unit.
+struct AxisMistake {
+  Eigen::Index column = 0;  ///< the rate's
+  Eigen::Index axis = 0;    ///< the quantity's that it follows
+  bool negated = false;
+  double factor = 1;  ///< of the rate over what it should be
+};
+
+/// The first. `follows`: least correlation with the other axis; `better`: by how much more than with its own.
+inline std::optional<AxisMistake> find_axis_mistake(const MotionSums& sums, double follows, double better) {
+  constexpr double straight = 0.9, most_factor = 2;   // of a column that is its axis's but for a factor
+  constexpr double related = 0.6, great_factor = 20;  // the same where noise is left, of a factor that no noise makes
+  for (Eigen::Index column = 0; column < 3; ++column) {
+    const double own = sums.correlation(column, column);
+    Eigen::Index best = column;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      if (std::abs(sums.correlation(axis, column)) > std::abs(sums.correlation(best, column))) best = axis;
+    }
+    const double fits = sums.correlation(best, column);
+    if (std::abs(fits) > follows && std::abs(fits) > own + better) return AxisMistake{column, best, fits < 0, 1};
+    if (!(own > related)) continue;
+    const double factor = own > straight ? sums.integrals[column] / sums.products(column, column)
+                                         : std::sqrt(sums.integrals[column] / sums.changes[column]);
+    const double limit = own > straight ? most_factor : great_factor;
+    if (factor > limit || factor < 1 / limit) return AxisMistake{column, column, false, factor};
+  }
+  return std::nullopt;
+}
+
+/// The two series row by row, as running sums, in stretches without a gap.
+class MotionPair {
+ public:
+  /// `change(row)`: of the quantity from this row to the next; `rate(row)`: of it, per second.
+  template <class Time, class Change, class Rate>
+  MotionPair(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate) {
+    constexpr double longest_step_s = 0.5, largest = 1e4;  // beyond is no motion, whatever the unit
+    bool open = false;
+    for (std::size_t row = 0; row + 1 < rows; ++row) {
+      const double dt_s = time_s(row + 1) - time_s(row);
+      const bool usable = dt_s > 0 && dt_s <= longest_step_s;
+      const Vector3<double> changed = usable ? Vector3<double>(change(row)) : Vector3<double>::Zero();
+      const Vector3<double> mean = usable ? Vector3<double>((rate(row) + rate(row + 1)) / 2) : changed;
+      if (!usable || !(changed.norm() <= largest) || !(mean.norm() <= largest)) {
+        open = false;
+        continue;
+      }
+      if (!open) stretches_.push_back({{0.0}, {Vector3<double>::Zero()}, {Vector3<double>::Zero()}});
+      open = true;
+      Stretch& stretch = stretches_.back();
+      stretch.changed.push_back(stretch.changed.back() + changed);
+      stretch.integral.push_back(stretch.integral.back() + mean * dt_s);
+      stretch.time_s.push_back(stretch.time_s.back() + dt_s);
+    }
+  }
+
+  /// Over steps of at least `step_s`, one after the other; the rate of `late_s` before.
+  MotionSums sums(double step_s, double late_s = 0) const {
+    constexpr double rounding = 1e-6;
+    MotionSums sums;
+    for (const Stretch& stretch : stretches_) {
+      const std::size_t rows = stretch.time_s.size();
+      std::size_t from = 0, to = 0;  // the rows before the begin and the end of the earlier step
+      for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
+        while (end < rows && stretch.time_s[end] - stretch.time_s[begin] < step_s - rounding) ++end;
+        if (end == rows) break;
+        const double first_s = stretch.time_s[begin] - late_s, last_s = stretch.time_s[end] - late_s;
+        if (first_s < 0 || last_s > stretch.time_s.back()) continue;
+        const Vector3<double> integral = stretch.integral_at(last_s, to) - stretch.integral_at(first_s, from);
+        sums.add(stretch.changed[end] - stretch.changed[begin], integral);
+      }
+    }
+    return sums;
+  }
+
+  /// The time by which the quantity comes after its rate, where the two agree far better with it than without: a tenth
+  /// of a second or more, to half a second.
+  std::optional<double> lateness_s(double step_s) const {
+    constexpr double longest_s = 0.5, shortest_s = 0.1, grid_s = 0.02;
+    constexpr double agrees = 0.6, misses = 0.03, left = 0.4;
+    const MotionSums as_it_stands = sums(step_s);
+    const std::array<bool, 3> moving = as_it_stands.moving();
+    const double now = as_it_stands.agreement(moving);
+    if (!(now < 1 - misses)) return std::nullopt;
+    double late_s = 0, most = now;
+    for (int k = -static_cast<int>(longest_s / grid_s); k <= static_cast<int>(longest_s / grid_s); ++k) {
+      const MotionSums at = sums(step_s, grid_s * k);
+      if (at.steps < fewest_motion_steps || !(at.agreement(moving) > most)) continue;
+      most = at.agreement(moving);
+      late_s = grid_s * k;
+    }
+    const bool found = std::abs(late_s) > shortest_s - grid_s / 2 && most > agrees && 1 - most < left * (1 - now);
+    return found ? std::optional<double>(late_s) : std::nullopt;
+  }
+
+ private:
+  struct Stretch {
+    std::vector<double> time_s;  // from its begin
+    std::vector<Vector3<double>> changed, integral;
+
+    /// `row`: not after that time; the answer's.
+    Vector3<double> integral_at(double at_s, std::size_t& row) const {
+      while (row + 2 < time_s.size() && time_s[row + 1] <= at_s) ++row;
+      const double share = (at_s - time_s[row]) / (time_s[row + 1] - time_s[row]);
+      return integral[row] + share * (integral[row + 1] - integral[row]);
+    }
+  };
+  std::vector<Stretch> stretches_;
+};
+
+}  // namespace pinnquad::detail

@@ -1,0 +1,421 @@
+# SPDX-License-Identifier: MIT
+"""Faults that a pilot's logs have, planted one by one into good flights: the import names file, column and evidence, or
+refuses. Good flights, calm ones and recorded ones pass without a word. docs/import.md has the table."""
+import csv
+import lzma
+import math
+import random
+import re
+import shutil
+from math import cos, sin
+from pathlib import Path
+
+import pytest
+from conftest import SOURCE, listing, replaced, table
+
+DEGREES = 180 / math.pi
+GRAVITY = 9.80665
+ANGLES, RATES, FORCES = ("roll", "pitch", "yaw"), ("p", "q", "r"), ("fx", "fy", "fz")
+VELOCITY, POSITION, MOTORS = ("vn", "ve", "vd"), ("x", "y", "z"), ("u1", "u2", "u3", "u4")
+COLUMNS = ("t", *ANGLES, *RATES, *FORCES, *VELOCITY, *POSITION, *MOTORS)
+MAPPING = """\
+world = "ned"
+body = "frd"
+[time]
+column = "t"
+[attitude]
+euler = ["roll", "pitch", "yaw"]
+[body_rates]
+columns = ["p", "q", "r"]
+[specific_force]
+columns = ["fx", "fy", "fz"]
+[velocity]
+columns = ["vn", "ve", "vd"]
+[position]
+columns = ["x", "y", "z"]
+[motors]
+columns = ["u1", "u2", "u3", "u4"]
+order = "px4"
+"""
+MAPPED = "--mapping log.toml --airframe px4_sih"
+SIH = SOURCE / "examples/airframes/px4_sih.toml"
+
+
+def to_world(angles, vector):
+    """From FRD to NED."""
+    (sr, sp, sy), (cr, cp, cy) = map(sin, angles), map(cos, angles)
+    x, y, z = vector
+    return (cp * cy * x + (sr * sp * cy - cr * sy) * y + (cr * sp * cy + sr * sy) * z,
+            cp * sy * x + (sr * sp * sy + cr * cy) * y + (cr * sp * sy - sr * cy) * z,
+            -sp * x + sr * cp * y + cr * cp * z)
+
+
+def down(angles):
+    """The world's z in the body's axes."""
+    roll, pitch, _ = angles
+    return -sin(pitch), sin(roll) * cos(pitch), cos(roll) * cos(pitch)
+
+
+def logged(flight):
+    """The rows of a flight of the simulator as a vehicle logs them."""
+    rows, place = [], [0.0, 0.0]
+    for cells in table(flight):
+        f = {name: float(value) for name, value in cells.items()}
+        angles, (vx, vy, vz), (p, q, r) = ([f[name] for name in names] for names in (
+            ANGLES, ("v_bx", "v_by", "v_bz"), ("w_x", "w_y", "w_z")))
+        turned = (q * vz - r * vy, r * vx - p * vz, p * vy - q * vx)
+        force = [f[f"vdot_b{axis}"] + turn - GRAVITY * g for axis, turn, g in zip("xyz", turned, down(angles))]
+        velocity = to_world(angles, (vx, vy, vz))
+        if rows:
+            step = f["t"] - rows[-1]["t"]
+            place = [at + step * (rows[-1][name] + v) / 2 for at, name, v in zip(place, VELOCITY, velocity)]
+        motors = [f[name] for name in MOTORS]
+        rows.append(dict(zip(COLUMNS, (f["t"], *angles, p, q, r, *force, *velocity, *place, -f["altitude"], *motors))))
+    return rows
+
+
+def written(path, rows):
+    with open(path, "w", newline="") as file:
+        out = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        out.writeheader()
+        out.writerows(rows)
+
+
+# faults: each changes the rows of a log
+
+
+def each(change, *columns):
+    def plant(rows):
+        for row in rows:
+            for name in columns:
+                row[name] = change(row[name])
+
+    return plant
+
+
+def scaled(factor, *columns):
+    return each(lambda value: factor * value, *columns)
+
+
+def exchanged(one, other):
+    def plant(rows):
+        for row in rows:
+            row[one], row[other] = row[other], row[one]
+
+    return plant
+
+
+def half_range(rows):
+    """As a range of twice the width reads it."""
+    each(lambda u: 0.25 + u / 2, *MOTORS)(rows)
+
+
+def late(seconds, *columns):
+    def plant(rows):
+        shift = round(seconds / (rows[1]["t"] - rows[0]["t"]))
+        old = [dict(row) for row in rows]
+        for row, before in zip(rows[shift:], old):
+            row.update({name: before[name] for name in columns})
+        del rows[:shift]
+
+    return plant
+
+
+def world_rates(rows):
+    for row in rows:
+        turned = to_world([row[name] for name in ANGLES], [row[name] for name in RATES])
+        row.update(zip(RATES, turned))
+
+
+def body_velocity(rows):
+    """In the body's axes, where the mapping says the world's."""
+    for row in rows:
+        (sr, sp, sy), (cr, cp, cy) = (map(f, (row[name] for name in ANGLES)) for f in (sin, cos))
+        n, e, d = (row[name] for name in VELOCITY)
+        row.update(zip(VELOCITY, (cp * cy * n + cp * sy * e - sp * d,
+                                  (sr * sp * cy - cr * sy) * n + (sr * sp * sy + cr * cy) * e + sr * cp * d,
+                                  (cr * sp * cy + sr * sy) * n + (cr * sp * sy - sr * cy) * e + cr * cp * d)))
+
+
+NAMES = "first", "second", "third", "fourth"
+
+
+@pytest.fixture(scope="module")
+def flights(flown):
+    """The rows of four flights, two minutes each."""
+    return {name: logged(flown(f"d1 --airframe px4_sih --seed {seed} --samples 2400"))
+            for seed, name in enumerate(NAMES, start=11)}
+
+
+@pytest.fixture(scope="module")
+def loaded(flown, tmp_path_factory):
+    """A flight with a payload of a fifth of the mass."""
+    heavy = replaced(SIH, tmp_path_factory.mktemp("heavy") / "heavy.toml", ("^mass_kg = 1.0", "mass_kg = 1.2"))
+    return logged(flown(f"d1 --airframe {heavy} --seed 21 --samples 2400"))
+
+
+@pytest.fixture
+def logs(flights):
+    """logs(plant, names): log.toml, and the four flights as logs/NAME.csv, the fault planted into those."""
+
+    def write(plant=None, names=NAMES):
+        Path("log.toml").write_text(MAPPING)
+        Path("logs").mkdir()
+        for name, rows in flights.items():
+            rows = [dict(row) for row in rows]
+            if plant and name in names:
+                plant(rows)
+            written(f"logs/{name}.csv", rows)
+
+    return write
+
+
+ALL, ONE = NAMES, ("third",)
+# fault: plant, flights, words of the line that tells it, and exit code of the import: 0 where it is a warning
+FAULTS = {
+    "degrees as radians": (scaled(DEGREES, *ANGLES), ALL, ("degrees", "logs/first.csv:", "90"), 2),
+    "degrees as radians in one": (scaled(DEGREES, *ANGLES), ONE, ("degrees", "logs/third.csv:"), 2),
+    "radians as degrees": (scaled(1 / DEGREES, *ANGLES), ALL, ("57", "roll", "w_x", "times the turning"), 2),
+    "rates 57 times too small": (scaled(1 / DEGREES, *RATES), ALL, ("57", "w_x"), 2),
+    "rates in deg/s": (scaled(DEGREES, *RATES), ALL, ("degrees per second", "w_x", "agreement 0.03"), 2),
+    "roll negated": (scaled(-1, "roll"), ALL, ("w_x or roll is negated", "correlation -"), 2),
+    "pitch negated": (scaled(-1, "pitch"), ALL, ("w_y or pitch is negated", "correlation -"), 2),
+    "yaw negated": (scaled(-1, "yaw"), ALL, ("w_z or yaw is negated", "correlation -"), 2),
+    "p negated": (scaled(-1, "p"), ALL, ("w_x or roll is negated", "correlation -"), 2),
+    "r negated": (scaled(-1, "r"), ALL, ("w_z or yaw is negated", "correlation -"), 2),
+    "roll and pitch swapped": (exchanged("roll", "pitch"), ALL, ("roll and pitch", "exchanged", "correlation"), 2),
+    "rates in the world's axes": (world_rates, ALL, ("w_x", "rates in the world's axes", "agreement"), 2),
+    "velocity in km/h": (scaled(3.6, *VELOCITY), ALL, ("3.6 times", "v_bx"), 2),
+    "velocity in the body's axes": (body_velocity, ALL, ("v_bx", "once more", "agreement"), 2),
+    "z negated": (scaled(-1, "z"), ALL, ("altitude", "negated", "correlation -1"), 2),
+    "vd negated": (scaled(-1, "vd"), ALL, ("v_bx", "negated along down", "correlation -0.9"), 2),
+    "z and vd negated": (scaled(-1, "z", "vd"), ALL, ("v_bx", "negated along down", "correlation -0.9"), 2),
+    "attitude late": (late(0.2, *ANGLES), ALL, ("roll, pitch and yaw 200 ms late",), 2),
+    "rates late": (late(0.2, *RATES), ALL, ("w_x, w_y and w_z 200 ms late",), 2),
+    "velocity late": (late(0.2, *VELOCITY), ALL, ("v_bx", "velocities 200 ms late"), 2),
+    "frozen gyro": (each(lambda _: 0.01, *RATES), ALL, ("w_x, w_y, w_z", "the same in all"), 2),
+    "frozen q": (each(lambda _: 0.01, "q"), ALL, ("w_y", "the same in all"), 2),
+    "motors swapped": (exchanged("u1", "u3"), ALL, ("u1 to u4", "u3, u2, u1, u4", "% of roll"), 0),
+    "motors swapped in one": (exchanged("u1", "u3"), ONE, ("third: ", "u1 to u4", "u3, u2, u1, u4", "% of roll"), 0),
+    "pwm range, slopes halved": (half_range, ALL, ("u1", "roll effectiveness is ", "has 40"), 0),
+    "pwm range halved": (scaled(0.5, *MOTORS), ALL, ("u1", "thrust of a rotor over mass is 9.8", "has 5"), 0),
+    "pwm range in one": (half_range, ONE, ("third: ", "u1", "than in 3 other flights"), 0),
+    "motors late": (late(0.2, *MOTORS), ALL, ("u1 to u4", "ms before the commands"), 0),
+    "motors late in one": (late(0.2, *MOTORS), ONE, ("third: ", "u1", "before the commands, in the other flights"), 0),
+    "motion late": (late(0.2, *ANGLES, *RATES, *FORCES, *VELOCITY, *POSITION), ALL, ("u1", "ms after the commands"), 0),
+}
+
+
+def told(done):
+    """The lines that say what is wrong, but for a rate that is too slow: the simulator's."""
+    lines = done.lines if done.code else [line for line in (done.out + done.err).splitlines() if "warning: " in line]
+    return [line for line in lines if "was logged at 20 Hz" not in line]
+
+
+def finds(done, words):
+    """One line has them all, and no other line names another cause."""
+    lines = told(done)
+    assert any(all(word in line for word in words) for line in lines), (words, lines)
+    if done.code:
+        assert len(done.lines) == 1, done
+    if not any("% of roll" in word for word in words):
+        assert not any("motors 1 to 4" in line for line in lines), lines
+    if not any("57" in word or "degrees" in word for word in words):
+        assert not any("degrees" in line for line in lines), lines
+
+
+def left_nothing(before):
+    assert listing(".") == before
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_import(pinnquad, logs, name):
+    plant, names, words, code = FAULTS[name]
+    logs(plant, names)
+    before = listing(".")
+    finds(pinnquad(f"import logs {MAPPED} --out dataset", code=code), words)
+    if code:
+        left_nothing(before)
+
+
+def test_good_flights_pass(pinnquad, logs):
+    logs()
+    assert told(pinnquad(f"import logs {MAPPED} --out dataset")) == []
+    assert told(pinnquad(f"identify --log logs {MAPPED}")) == []
+
+
+TRAIN = "train --models constant,linearized --hold-out first --seeds 1 --out trained"
+LEARNT = "roll negated", "motors swapped in one", "pwm range in one", "motors late in one"
+
+
+@pytest.mark.parametrize("name", LEARNT)
+@pytest.mark.parametrize("command", [TRAIN, "identify --out vehicle.toml"])
+def test_train_and_identify(pinnquad, logs, name, command):
+    """What contradicts the airframe's signs is refused, the rest told; nothing is left of what was refused."""
+    plant, names, words, _ = FAULTS[name]
+    logs(plant, names)
+    before = listing(".")
+    done = pinnquad(f"{command} --log logs {MAPPED}", code=(0, 1, 2))
+    lines = done.lines + done.out.splitlines()
+    assert any(all(word in line for word in words) for line in lines), (words, done)
+    if "swapped" in name or "negated" in name:
+        assert done.code == 2 and len(done.lines) == 1, done
+    if done.code == 2:
+        left_nothing(before)
+
+
+def test_a_payload_in_one_flight(pinnquad, logs, loaded):
+    logs()
+    written("logs/third.csv", loaded)
+    words = ("third: ", "u1 to u4", "thrust of a rotor over mass is 4.1", "17 % less than in 3 other flights")
+    finds(pinnquad(f"import logs {MAPPED} --out dataset"), words)
+    done = pinnquad(f"{TRAIN} --dataset dataset --airframe px4_sih", code=(0, 1))
+    assert any(all(word in line for word in words) for line in done.lines), done
+    assert "17 % less than in 3 other flights" in Path("trained/report.json").read_text()
+
+
+def test_no_two_flights_that_agree(pinnquad, logs, flown, tmp_path):
+    logs()
+    Path("logs/fourth.csv").unlink()
+    for name, mass in ("second", 1.2), ("third", 1.45):
+        heavy = replaced(SIH, tmp_path / f"{name}.toml", ("^mass_kg = 1.0", f"mass_kg = {mass}"))
+        pinnquad(f"fly d1 --airframe {heavy} --seed 31 --samples 2400 --out flight.csv")
+        written(f"logs/{name}.csv", logged("flight.csv"))
+    before = listing(".")
+    for command in TRAIN, "identify --out vehicle.toml":
+        done = pinnquad.refused(f"{command} --log logs {MAPPED}", keyword="no two flights agree")
+        assert "logs/second.csv: " in done.lines[0] and "u1 to u4" in done.lines[0], done
+        left_nothing(before)
+
+
+def test_spins_against_the_motion(pinnquad, logs):
+    """The signs of yaw would be certified."""
+    logs()
+    turned = replaced(SIH, "turned.toml", ('"counter_clockwise"', '"?"'), ('"clockwise"', '"counter_clockwise"'),
+                      (r'"\?"', '"clockwise"'))
+    before = listing(".")
+    words = ("first", "u1 to u4", "spin", "yaw effectiveness -3", "w_z")
+    mapped = f"--mapping log.toml --airframe {turned}"
+    finds(pinnquad(f"import logs {mapped} --out dataset"), words)
+    shutil.rmtree("dataset")
+    for command in TRAIN, "identify --out vehicle.toml":
+        done = pinnquad.refused(f"{command} --log logs {mapped}", at="logs/first.csv", keyword="spin")
+        assert all(word in done.lines[0] for word in words), done
+        left_nothing(before)
+
+
+def test_without_an_accelerometer(pinnquad, logs):
+    """A negated z then contradicts the commands alone."""
+    logs(scaled(-1, "vd", "z"))
+    replaced("log.toml", "log.toml", (r"\[specific_force\]\ncolumns.*\n", ""))
+    finds(pinnquad(f"import logs {MAPPED} --out dataset"), ("first", "vdot_bz", "by its slope", "-4."))
+    pinnquad.refused(f"{TRAIN} --log logs {MAPPED}", at="logs/first.csv", keyword="is negated")
+    assert not Path("trained").exists()
+
+
+def shifted(rows):
+    return [{**row, "t": row["t"] + 100} for row in rows]
+
+
+def rounded(rows):
+    return [{name: round(value, 5) for name, value in row.items()} for row in rows]
+
+
+@pytest.mark.parametrize("change", [lambda rows: rows, shifted, rounded, lambda rows: rows[300:1500]],
+                         ids=["again", "another clock", "rounded", "a part"])
+@pytest.mark.parametrize("command", ["import --out dataset", f"{TRAIN} --log", "identify --out vehicle.toml --log"])
+def test_a_log_twice(pinnquad, logs, flights, change, command):
+    logs()
+    written("logs/copy.csv", change(flights["first"]))
+    before = listing(".")
+    pinnquad.refused(f"{command} logs {MAPPED}", keyword="hold the same flight")
+    left_nothing(before)
+
+
+def hovering(rows):
+    for row in rows:
+        row.update({name: 0.5 for name in MOTORS})
+
+
+def standing(rows):
+    for at, row in enumerate(rows):
+        row.update({name: 1e-4 * ((at + len(name)) % 7) for name in (*ANGLES, *RATES, *FORCES, *VELOCITY)})
+        row.update({name: 0.06 + 1e-3 * (at % 5) for name in MOTORS}, fz=-GRAVITY)
+
+
+BAD = {"no excitation": (hovering, "roll effectiveness", 1), "on the ground": (standing, "in the air", 2),
+       "frozen": (each(lambda _: 0.01, *RATES), "w_x", 2), "saturated": (each(lambda _: 1.0, "u3"), "u3", 2)}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input(pinnquad, logs, name):
+    plant, keyword, code = BAD[name]
+    logs(plant)
+    before = listing(".")
+    pinnquad.refused(f"identify --out vehicle.toml {MAPPED} --log logs/second.csv", at="logs/second.csv",
+                     keyword=keyword, code=code)
+    left_nothing(before)
+
+
+# flights that are none of a fault
+
+
+def calm(seed):
+    """A hover at 100 Hz that turns slowly, by an estimate of roll and pitch that wanders: pitch spreads by 0.018 rad,
+    its rate by 0.05 rad/s."""
+    noise, rows, wander = random.Random(seed), [], [0.0, 0.0]
+    for at in range(6000):
+        t, kept = at / 100, math.exp(-0.01 / 0.3)
+        wander = [kept * w + noise.gauss(0, 0.018 * math.sqrt(1 - kept**2)) for w in wander]
+        climb = 0.3 * sin(1.1 * t)
+        rates = noise.gauss(0, 0.05), noise.gauss(0, 0.05), 0.09 * cos(0.3 * t) + noise.gauss(0, 0.05)
+        motors = [(GRAVITY - climb) / 20 + noise.gauss(0, 0.005) for _ in MOTORS]
+        rows.append(dict(zip(COLUMNS, (
+            t, *wander, 0.3 * sin(0.3 * t), *rates,
+            *(GRAVITY * w + noise.gauss(0, 0.1) for w in (wander[1], -wander[0])),
+            climb - GRAVITY + noise.gauss(0, 0.1), 0.0, 0.0, -0.3 / 1.1 * cos(1.1 * t), 0.0, 0.0,
+            -5 - 0.3 / 1.21 * sin(1.1 * t), *motors))))
+    return rows
+
+
+def test_a_calm_flight_passes(pinnquad):
+    Path("log.toml").write_text(MAPPING)
+    for seed in 1, 2, 3:
+        written("calm.csv", calm(seed))
+        said = told(pinnquad(f"import calm.csv {MAPPED} --out dataset"))
+        assert all("no lag stands out" in line for line in said), said
+
+
+@pytest.fixture(scope="module")
+def sih(recorded, tmp_path_factory):
+    """Logs of PX4's simulation."""
+    folder = tmp_path_factory.mktemp("sih")
+    for name in "train_random", "train_excite", "payload":
+        with lzma.open(recorded(f"sih/{name}.ulg.xz")) as packed, open(folder / f"{name}.ulg", "wb") as log:
+            shutil.copyfileobj(packed, log)
+    return folder
+
+
+def test_recorded_flights_pass(pinnquad, recorded):
+    for log, mapping in ("nanobench_subset_50hz", "nanobench"), ("arpl_crazyflie", "arpl"):
+        done = pinnquad("import", recorded(f"flight_logs/{log}.csv"), "--mapping", mapping, "--out", mapping)
+        assert told(done) == [], log
+
+
+def test_px4s_simulation(pinnquad, sih, recorded):
+    """Its flights pass, the one with a payload is told from the others."""
+    said = told(pinnquad("import --mapping px4 --airframe px4_sih --out all", sih, recorded("sih/test_circle.ulg")))
+    assert len(said) == 1, said
+    assert re.search(r"payload: columns u1 to u4: thrust .* 4\.1\d .* 1[67] % less than in 3", said[0])
+
+
+@pytest.mark.parametrize("pattern, new, words, code", [
+    ('order = "px4"', 'order = "betaflight"', ("u1 to u4", "% of roll"), 0),
+    ('order = "wxyz"', 'order = "xyzw"', ("w_x", "order w, x, y, z"), 2),
+    ('direction = "body_to_world"', 'direction = "world_to_body"', ("w_x", "turns the body into the world"), 2),
+    ('^body = "frd"', 'body = "flu"', ("vdot_bz", "(FLU)", "-4.17"), 0),
+    ('(topic = "vehicle_angular_velocity")', r'\1\nunit = "deg/s"', ("w_x", "57", "agreement"), 2),
+    ('axes = "world"', 'axes = "body"', ("v_bx", "world's axes", "agreement"), 2)])
+def test_a_mapping_that_errs(pinnquad, sih, pattern, new, words, code):
+    replaced(SOURCE / "examples/mappings/px4.toml", "wrong.toml", (pattern, new))
+    finds(pinnquad("import --mapping wrong.toml --out wrong", sih / "payload.ulg", code=code), words)

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+#include "logs/vehicle_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "logs/command_lag.hpp"
+#include "logs/log_checks.hpp"
+#include "logs/motor_order_check.hpp"
+#include "logs/row_checks.hpp"
+#include "pinnquad/dynamics/allocation.hpp"
+#include "pinnquad/regression/identification.hpp"
+
+namespace pinnquad::logs {
+namespace {
+
+struct VehicleFinding {
+  std::size_t flight = 0;    ///< the first it is of
+  std::string sentence;      ///< begins with the flights' names
+  bool contradicts = false;  ///< nothing should be learned from these flights
+};
+
+constexpr const char* another_range =
+    ": another range of the commands (least and most of the mapping), or another vehicle";
+constexpr double told_share = 0.15;  // of a number that is compared
+
+bool is_told(const Estimate& estimate) {
+  return estimate.half_width <= told_share * std::abs(estimate.value) && estimate.value != 0;
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// "80.2 rad/s^2 (78 to 82.4)"
+std::string told(const Estimate& estimate, const char* unit) {
+  return short_number(estimate.value) + " " + unit + " (" + short_number(estimate.low()) + " to " +
+         short_number(estimate.high()) + ")";
+}
+
+/// A number that flights of one vehicle have in common.
+struct SharedNumber {
+  const char* words;
+  const char* unit;
+  Estimate (*of)(const Identification&);
+  double tolerance;  ///< of another flight's, over it
+};
+// clang-format off
+constexpr std::array<SharedNumber, 4> shared_numbers = {{
+    {"thrust of a rotor over mass", "m/s^2", [](const Identification& found) { return found.thrust_m_s2; }, 0.08},
+    {"roll effectiveness", "rad/s^2", [](const Identification& found) { return found.effectiveness_rad_s2[0]; }, 0.3},
+    {"pitch effectiveness", "rad/s^2", [](const Identification& found) { return found.effectiveness_rad_s2[1]; }, 0.3},
+    {"yaw effectiveness", "rad/s^2", [](const Identification& found) { return found.effectiveness_rad_s2[2]; }, 0.3}}};
+// clang-format on
+
+/// The airframe's own: mean of its rotors.
+double of_airframe(std::size_t number, const Airframe<double>& airframe) {
+  const AllocationMatrix<double> matrix = allocation(airframe);
+  double sum = 0;
+  for (const double entry : matrix[number]) sum += std::abs(entry) / static_cast<double>(rotor_count);
+  return sum / (number == 0 ? airframe.mass_kg : airframe.inertia_kg_m2[number - 1]);
+}
+
+struct Judged {
+  std::string name;
+  std::vector<Flight> aligned;  ///< by its own lag; empty where it has none
+  Identification found;
+  double lag_s = 0;  ///< from the commands as they were logged
+  bool lag_found = false;
+};
+
+/// Within what motors and links make, unless commands that are off by much more explain roll and pitch far better.
+CommandLag widest_lag(const std::vector<Flight>& segments, double period_s) {
+  constexpr double far_better = 1.25, confident = 0.25, well = 0.3;
+  const auto explained = [](const CommandLag& lag) {
+    return lag.found ? lag.motions[0].explained + lag.motions[1].explained : 0;
+  };
+  CommandLag lag = estimate_command_lag(segments, period_s);
+  CommandLag wide = estimate_command_lag(segments, period_s, {-0.4, 0.4});
+  const bool better = wide.confidence >= confident && explained(wide) > std::max(well, far_better * explained(lag));
+  return better ? wide : lag;
+}
+
+Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_removed_s) {
+  constexpr double most_s = 300, least_confidence = 0.25;
+  Judged judged;
+  judged.name = flight.name;
+  const double period_s = sample_period_s(RowSet(flight, {0, flight.size()}));
+  if (!(period_s > 0)) return judged;
+  const auto most = static_cast<std::size_t>(most_s / period_s);
+  Flight begin = flight;
+  std::size_t row = 0;
+  if (begin.size() > most) begin.keep_rows([&](std::size_t) { return row++ < most; });
+  judged.aligned = split_at_gaps(std::move(begin), 1.5 * period_s);
+  std::array<std::array<double, rotor_count>, 3> signs{};
+  for (std::size_t axis = 0; axis < 3; ++axis) signs[axis] = allocation_signs(airframe, static_cast<int>(axis));
+  IdentificationSettings settings;
+  settings.thrust_curve = airframe.rotors[0].thrust_curve;
+  RowSet rows;
+  for (const Flight& segment : judged.aligned) rows.add(segment, {0, segment.size()});
+  judged.found = identify(rows, signs, settings);
+  const CommandLag lag = widest_lag(judged.aligned, period_s);
+  judged.lag_found = lag.found && lag.confidence >= least_confidence;
+  judged.lag_s = lag.lag_s + lag_removed_s;
+  for (Flight& segment : judged.aligned) segment = remove_lag(std::move(segment), period_s, lag.found ? lag.lag_s : 0);
+  if (!lag.found) judged.aligned.clear();
+  return judged;
+}
+
+class VehicleCheck {
+ public:
+  VehicleCheck(std::vector<Judged> flights, const Airframe<double>& airframe, bool known)
+      : flights_(std::move(flights)), airframe_(airframe), known_(known) {}
+
+  std::vector<VehicleFinding> run() {
+    for (std::size_t i = 0; i < flights_.size(); ++i) {
+      if (check_force(i) || check_signs(i)) continue;
+      check_lag(i);
+      check_range(i);
+    }
+    check_slopes();
+    compare();
+    return std::move(findings_);
+  }
+
+ private:
+  void say(std::size_t flight, const std::string& what, bool contradicts = false) {
+    for (VehicleFinding& finding : findings_) {
+      const std::size_t colon = finding.sentence.find(": ");
+      if (finding.sentence.substr(colon + 2) != what) continue;
+      finding.sentence.insert(colon, ", " + flights_[flight].name);
+      return;
+    }
+    findings_.push_back({flight, flights_[flight].name + ": " + what, contradicts});
+  }
+
+  /// True where the specific force points against the rotors.
+  bool check_force(std::size_t i) {
+    const Estimate& thrust = flights_[i].found.thrust_m_s2;
+    if (!(thrust.high() < 0)) return false;
+    say(i,
+        "column vdot_bz: thrust of a rotor over mass is " + told(thrust, "m/s^2") +
+            ": the specific force points along +z of the body: that is x forward, y left, z up (FLU), or the force is "
+            "negated",
+        true);
+    wrong_.push_back(i);
+    return true;
+  }
+
+  /// Order of the motors, and the way that the propellers turn.
+  bool check_signs(std::size_t i) {
+    const Judged& flight = flights_[i];
+    const std::string columns = "columns u1 to u4: ";
+    if (!flight.aligned.empty()) {
+      const MotorOrderCheck order = check_motor_order(flight.aligned, airframe_);
+      if (order.finding) {
+        const Estimate& yaw = flight.found.effectiveness_rad_s2[2];
+        const bool measured = order.yaw_reversed && yaw.high() < 0;
+        say(i,
+            columns + *order.finding +
+                (measured ? "; yaw effectiveness " + told(yaw, "rad/s^2") + " in column w_z" : ""),
+            true);
+        wrong_.push_back(i);
+        return true;
+      }
+    }
+    constexpr std::array<const char*, 3> turns = {"roll", "pitch", "yaw"};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Estimate& estimate = flight.found.effectiveness_rad_s2[axis];
+      if (!(estimate.high() < 0)) continue;
+      say(i,
+          columns + turns[axis] + " turns against the commands, " + told(estimate, "rad/s^2") + " in column w_" +
+              "xyz"[axis] +
+              (axis == 2 ? ": the propellers turn the other way than the airframe says (spin), or motors are exchanged"
+                         : ": motors are exchanged, or the rate is negated"),
+          true);
+      wrong_.push_back(i);
+      return true;
+    }
+    return false;
+  }
+
+  void check_lag(std::size_t i) {
+    constexpr double longest_s = 0.12, apart_s = 0.06;
+    const Judged& flight = flights_[i];
+    if (!flight.lag_found) return;
+    std::vector<double> others;
+    for (std::size_t k = 0; k < flights_.size(); ++k) {
+      if (k != i && flights_[k].lag_found) others.push_back(flights_[k].lag_s);
+    }
+    const auto ms = [](double seconds) { return std::to_string(std::lround(1e3 * seconds)) + " ms"; };
+    std::string than;
+    if (!others.empty()) {
+      const auto middle = others.begin() + static_cast<std::ptrdiff_t>(others.size() / 2);
+      std::nth_element(others.begin(), middle, others.end());
+      if (std::abs(flight.lag_s - *middle) > apart_s) than = ", in the other flights " + ms(*middle);
+    }
+    if (than.empty() && std::abs(flight.lag_s) < longest_s) return;
+    say(i, "columns u1 to u4: the motion comes " + ms(std::abs(flight.lag_s)) +
+               (flight.lag_s < 0 ? " before" : " after") + " the commands" + than +
+               ": rotors and filters take 0 to 120 ms, and the same in each flight; a topic's clock is off");
+  }
+
+  /// Numbers that are not the airframe's, where it is known.
+  void check_range(std::size_t i) {
+    constexpr double factor = 1.4;
+    std::string off;
+    for (std::size_t number = 0; known_ && number < shared_numbers.size() - 1; ++number) {
+      const SharedNumber& shared = shared_numbers[number];
+      const Estimate estimate = shared.of(flights_[i].found);
+      const double has = of_airframe(number, airframe_);
+      if (!is_told(estimate) || (estimate.high() > has / factor && estimate.low() < has * factor)) continue;
+      off += (off.empty() ? "" : ", ") + (shared.words + (" is " + told(estimate, shared.unit))) +
+             " where the airframe has " + short_number(has);
+    }
+    if (!off.empty()) say(i, "columns u1 to u4: " + off + another_range);
+  }
+
+  /// By how much the slope of the thrust over the commands is off its level; empty where a flight does not tell.
+  std::optional<double> bent(std::size_t i) const {
+    constexpr double loose = 0.5;
+    const Estimate &level = flights_[i].found.thrust_m_s2, &slope = flights_[i].found.thrust_slope_m_s2;
+    if (!is_told(level) || !(slope.half_width < loose * std::abs(slope.value))) return std::nullopt;
+    if (slope.high() < 0) return -1;
+    return std::max({1.0, slope.low() / level.value, level.value / slope.high()});
+  }
+
+  /// A thrust that goes against the commands; one of another slope in most flights: rotors that saturate bend it too.
+  void check_slopes() {
+    constexpr double most_bent = 1.6;
+    std::size_t telling = 0, off = 0;
+    for (std::size_t i = 0; i < flights_.size(); ++i) {
+      if (bent(i)) ++telling;
+      if (bent(i).value_or(1) > most_bent) ++off;
+    }
+    for (std::size_t i = 0; i < flights_.size(); ++i) {
+      const double by = bent(i).value_or(1);
+      const bool against = by < 0 && flights_[i].found.thrust_m_s2.value > 0;
+      if (!against && !(by > most_bent && 2 * off > telling)) continue;
+      say(i,
+          "columns u1 to u4: thrust of a rotor over mass is " + told(flights_[i].found.thrust_m_s2, "m/s^2") +
+              " by its level and " + told(flights_[i].found.thrust_slope_m_s2, "m/s^2") + " by its slope" +
+              (against ? ": a velocity along down, or the specific force, is negated (column vdot_bz)" : another_range),
+          against);
+    }
+  }
+
+  bool agree(std::size_t a, std::size_t b, std::size_t number) const {
+    const Estimate of_a = shared_numbers[number].of(flights_[a].found);
+    const Estimate of_b = shared_numbers[number].of(flights_[b].found);
+    double tolerance = shared_numbers[number].tolerance;
+    const double volts_a = flights_[a].found.mean_voltage_V, volts_b = flights_[b].found.mean_voltage_V;
+    if (volts_a > 0 && volts_b > 0) tolerance += 2 * std::abs(volts_a / volts_b - 1);
+    const double scale = std::min(std::abs(of_a.value), std::abs(of_b.value));
+    return std::abs(of_a.value - of_b.value) <= tolerance * scale + std::hypot(of_a.half_width, of_b.half_width);
+  }
+
+  /// The flights whose number agrees with that of most others; empty where none tells it.
+  std::vector<std::size_t> agreeing(const std::vector<std::size_t>& flights, std::size_t number) const {
+    std::vector<std::size_t> group;
+    for (const std::size_t pivot : flights) {
+      std::vector<std::size_t> with;
+      for (const std::size_t other : flights) {
+        if (agree(pivot, other, number)) with.push_back(other);
+      }
+      if (with.size() > group.size()) group = with;
+    }
+    return group;
+  }
+
+  /// Says each number that is off that of most flights.
+  void compare() {
+    constexpr std::size_t fewest = 3;  // of two that disagree nobody knows which is right
+    std::vector<std::string> off(flights_.size());
+    bool none_agree = false;
+    for (std::size_t number = 0; number < shared_numbers.size(); ++number) {
+      const SharedNumber& shared = shared_numbers[number];
+      std::vector<std::size_t> telling;
+      for (std::size_t i = 0; i < flights_.size(); ++i) {
+        const bool wrong = std::find(wrong_.begin(), wrong_.end(), i) != wrong_.end();
+        if (!wrong && is_told(shared.of(flights_[i].found))) telling.push_back(i);
+      }
+      const std::vector<std::size_t> group = agreeing(telling, number);
+      double usual = 0;
+      for (const std::size_t i : group) {
+        usual += shared.of(flights_[i].found).value / static_cast<double>(group.size());
+      }
+      none_agree = none_agree || (group.size() == 1 && telling.size() >= fewest);
+      for (const std::size_t i : telling) {
+        if (std::find(group.begin(), group.end(), i) != group.end()) continue;
+        const Estimate estimate = shared.of(flights_[i].found);
+        const double share = estimate.value / usual - 1;
+        off[i] += (off[i].empty() ? "" : ", ") + (shared.words + (" is " + told(estimate, shared.unit))) + ", " +
+                  percent(std::abs(share)) + (share < 0 ? " less" : " more") + " than in " +
+                  (group.size() == 1 ? flights_[group.front()].name : std::to_string(group.size()) + " other flights") +
+                  " (" + short_number(usual) + ")";
+      }
+    }
+    for (std::size_t i = 0; i < flights_.size(); ++i) {
+      if (off[i].empty()) continue;
+      say(i,
+          "columns u1 to u4: " + off[i] + (none_agree ? ", and no two flights agree" : "") +
+              ": a payload, another battery or propeller, or another range of the commands",
+          none_agree);
+    }
+  }
+
+  std::vector<Judged> flights_;
+  const Airframe<double>& airframe_;
+  bool known_;
+  std::vector<std::size_t> wrong_;
+  std::vector<VehicleFinding> findings_;
+};
+
+}  // namespace
+
+void check_vehicle(ImportedDataset& dataset, const Airframe<double>& airframe, bool known) {
+  std::vector<Judged> judged;
+  for (const Flight& flight : dataset.flights.flights()) {
+    judged.push_back(judge(flight, airframe, dataset.lag_removed_s));
+  }
+  for (const VehicleFinding& finding : VehicleCheck(std::move(judged), airframe, known).run()) {
+    dataset.warnings.push_back(finding.sentence);
+    if (!finding.contradicts) continue;
+    dataset.contradictions.push_back(
+        dataset.sources[finding.flight] +
+        ": expected commands and motion of one vehicle, with the airframe's motor order and spins, found " +
+        finding.sentence);
+  }
+}
+
+void require_one_vehicle(const ImportedDataset& dataset) {
+  if (!dataset.contradictions.empty()) throw std::invalid_argument(dataset.contradictions.front());
+}
+
+}  // namespace pinnquad::logs
