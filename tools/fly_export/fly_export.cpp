@@ -247,7 +247,8 @@ bool closed_loop(const Flown& model, const Columns& columns) {
                        std::string("this airframe can't be flown near the ground: ") + to_string(vehicle.status()));
     return false;
   }
-  const auto held = programs::eight_for(vehicle.airframe(), vehicle.site().ground_z_m, programs::range_of_header<Model>());
+  const auto range = programs::range_of_header<Model>();
+  const auto held = programs::eight_for(vehicle.airframe(), vehicle.site().ground_z_m, range);
   if (!held) {
     programs::complain("fly_export", "the model's envelope holds no figure-eight, however slow");
     return false;

@@ -159,13 +159,13 @@ programs::Command programs::loop_command(CLI::App& program) {
   const auto options = std::make_shared<LoopOptions>();
   add_model(*line, options->model);
   line->add_option("--trajectory", options->trajectory,
-                   "eight: a figure-eight that the airframe can fly and the model's envelope holds; yaw_eight: a quicker one whose nose swings; "
-                   "circle: a level one")
+                   "eight: a figure-eight that the airframe can fly and the model's envelope holds; yaw_eight: a "
+                   "quicker one whose nose swings; circle: a level one")
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>(loop_trajectories.begin(), loop_trajectories.end())));
   line->add_option("--column", options->columns,
-                   "the value at which a column that the model asks for is held, in place of the middle of its training "
-                   "envelope: --column battery_voltage=15.2")
+                   "the value at which a column that the model asks for is held, in place of the middle of its "
+                   "training envelope: --column battery_voltage=15.2")
       ->type_name("NAME=VALUE");
   line->add_option(
       "--airframe", options->airframe,

@@ -60,8 +60,8 @@ inline constexpr bool affine_predictor<Network<Scalar, InputSize<Inputs>, Dense<
 }  // namespace detail
 
 /// Joins a network with the scalers of its context and the envelope of its training rows: their range, wider by a tenth
-/// on both sides (detail::ColumnStatistics), of a model that is affine but for a bounded residual twice as wide and more
-/// (detail::affine_reach). Batch norm is folded away: the network that is judged and exported flies.
+/// on both sides (detail::ColumnStatistics), of a model that is affine but for a bounded residual twice as wide and
+/// more (detail::affine_reach). Batch norm is folded away: the network that is judged and exported flies.
 template <class NetworkType, class ContextType>
 TrainedModel<detail::Folded<NetworkType>, ContextType> make_trained_model(const NetworkType& network,
                                                                           const ContextType& context,

@@ -89,8 +89,8 @@ struct ColumnStatistics {
   /// Divisor of the column: 1 if it stands still.
   double scale() const noexcept { return still() ? 1.0 : standard_deviation; }
 
-  /// By how much the envelope is wider than the range, on both sides: a tenth of the range or what the model reaches, in
-  /// half-widths; no less than the smallest deviation, or than the still margin if the column stands still.
+  /// By how much the envelope is wider than the range, on both sides: a tenth of the range or what the model reaches,
+  /// in half-widths; no less than the smallest deviation, or than the still margin if the column stands still.
   double margin(double reach = 0) const noexcept {
     constexpr double least_reach = 0.2;
     const double least = still() ? resolution.still_margin : resolution.smallest_deviation;
