@@ -28,7 +28,8 @@ struct AnyTrajectory {
   TrajectoryPoint<double> sample(double time_s) const noexcept { return point(time_s); }
 };
 
-/// The motions that a trajectory must stay within; of a model that is asked outside of its envelope too, the altitude alone.
+/// The motions that a trajectory must stay within; of a model that is asked outside of its envelope too, the altitude
+/// alone.
 ModelRange range_of(const BlockModel& model, bool keeps_envelope) {
   const RunTimeFeatures& features = model.features();
   const std::vector<double> lower = model.envelope_lower(), upper = model.envelope_upper();
