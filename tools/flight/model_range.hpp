@@ -76,7 +76,7 @@ ModelRange range_of_header() {
   for (std::size_t i = 0; i < size; ++i) {
     range.features.push_back({Features::names[i], Features::units[i], static_cast<double>(Model::envelope_lower[i]),
                               static_cast<double>(Model::envelope_upper[i]),
-                              pinnquad::detail::column_places<Features>[i]});
+                              pinnquad::detail::column_places<Features>.at[i]});
   }
   range.of = [](const ModelRange::Motion& motion) {
     Inputs inputs{};

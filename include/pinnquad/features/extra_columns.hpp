@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/features/features.hpp"
 
 namespace pinnquad {
@@ -46,26 +47,35 @@ template <class Features>
 inline constexpr auto extra_column_units = detail::extra_columns_of<Features>(true);
 
 namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
 constexpr bool same_start(std::string_view text, std::string_view start) noexcept {
   bool same = text.size() >= start.size();
   for (std::size_t i = 0; same && i < start.size(); ++i) same = text[i] == start[i];
   return same;
 }
+
 /// True of each entry of X that is a column, at whatever tap of a window.
 template <class Features>
-constexpr std::array<bool, std::size_t(Features::size)> find_columns() noexcept {
-  std::array<bool, std::size_t(Features::size)> found{};
+struct ColumnPlaces {
+  bool at[std::size_t(Features::size)] = {};  // no std::array: unoptimised code would call it
+};
+template <class Features>
+constexpr ColumnPlaces<Features> find_columns() noexcept {
+  ColumnPlaces<Features> found{};
   for (const std::string_view column : extra_column_names<Features>) {
-    for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t i = 0; i < std::size_t(Features::size); ++i) {
       const std::string_view name = Features::names[i];
       const bool ends = name.size() == column.size() || (name.size() > column.size() && name[column.size()] == '[');
-      found[i] = found[i] || (ends && same_start(name, column));
+      found.at[i] = found.at[i] || (ends && same_start(name, column));
     }
   }
   return found;
 }
 template <class Features>
-inline constexpr auto column_places = find_columns<Features>();
+inline constexpr ColumnPlaces<Features> column_places = find_columns<Features>();
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
 
 /// The inputs of another feature set and the columns' values. A value that was never set is NaN, which check() refuses.
 template <class Base, class Scalar, class... Column>
