@@ -154,10 +154,12 @@ def test_windows(pinnquad, recorded, made, model):
         assert len(places) == 9 and abs(held - sum(slopes)) < 2e-6 and abs(present - slopes[0]) < 2e-6, name
 
 
-@pytest.mark.parametrize("past, code", [(0.5, 0), (1.5, 1)])
+@pytest.mark.parametrize("past, code", [(0.5, 0), (1.02, 1)])
 def test_held_slope(pinnquad, flown, dataset, past, code):
     """Commands that are affine in the angular accelerations of now and, against them, of 20 ms before: the present
-    slope is 4 x 0.02 whatever the past takes off about the yaw axis, the slope of one that is held is that less it."""
+    slope is 4 x 0.02 whatever the past takes off about the yaw axis, the slope of one that is held is that less it; both
+    over the square of how much faster the flight is played than it was flown, so that there is a row every 20 ms."""
+    faster = 2.5
     signs = (-1, 1, 1, -1), (1, -1, 1, -1), (1, 1, -1, -1)  # front right, rear left, front left, rear right
 
     def of_two_instants():
@@ -168,7 +170,9 @@ def test_held_slope(pinnquad, flown, dataset, past, code):
                 return
             now = [0.002 * float(cells[4]), 0.002 * float(cells[5]), 0.02 * float(cells[6])]
             then = before or now
-            cells[0] = 0.02 * (line - 2)
+            cells[0] = 0.05 / faster * (line - 2)
+            for at in range(1, 13):  # accelerations, then velocity and rates
+                cells[at] = float(cells[at]) * (faster**2 if at < 7 else faster)
             for u in range(4):
                 cells[17 + u] = 0.5 + sum(signs[axis][u] * (now[axis] - (past if axis == 2 else 0.5) * then[axis])
                                           for axis in range(3))
@@ -185,9 +189,10 @@ def test_held_slope(pinnquad, flown, dataset, past, code):
     found = json.loads(pinnquad("certify --json held/model.hpp", code=code).out)
     assert found["verdict"] == ("counterexample" if code else "proven")
     if not code:
-        assert abs(found["slope"]["yaw"] - 0.08) < 1e-5 and abs(found["held_slope"]["yaw"] - 0.04) < 1e-5, found
+        slope, held = (found[key]["yaw"] * faster**2 for key in ("slope", "held_slope"))
+        assert abs(slope - 0.08) < 1e-5 and abs(held - 0.04) < 1e-5, found
         return
-    assert abs(found["counterexample"]["derivative"] + 0.04) < 1e-5
+    assert abs(found["counterexample"]["derivative"] * faster**2 + 0.08 * (past - 1)) < 1e-5
     assert found["counterexample"]["moved"] == ["wdot_z", *(f"wdot_z[-{tap}]" for tap in range(1, 9))]
 
 
