@@ -14,14 +14,10 @@
 
 namespace programs {
 
-/// A column that a model asks for, and the middle of its training envelope.
-struct AskedColumn {
-  std::string name, unit;
-  double middle = 0;
-};
-
-/// The value of each column, in their order: the middle where none is given. Throws std::invalid_argument, one line.
-inline std::vector<double> held_columns(const std::vector<AskedColumn>& asked, const std::vector<std::string>& given) {
+/// The value of each column that a model asks for, in their order: where none is given the middle of its envelope.
+/// `asked`: columns, each with `name`, `unit`, `lower` and `upper`. Throws std::invalid_argument, one line.
+template <class Columns>
+std::vector<double> held_columns(const Columns& asked, const std::vector<std::string>& given) {
   using pinnquad::printable;
   std::vector<std::optional<double>> values(asked.size());
   for (const std::string& text : given) {
@@ -44,7 +40,9 @@ inline std::vector<double> held_columns(const std::vector<AskedColumn>& asked, c
     values[at] = value;
   }
   std::vector<double> held;
-  for (std::size_t i = 0; i < asked.size(); ++i) held.push_back(values[i].value_or(asked[i].middle));
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    held.push_back(values[i].value_or((asked[i].lower + asked[i].upper) / 2));
+  }
   return held;
 }
 

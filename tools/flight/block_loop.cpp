@@ -8,7 +8,6 @@
 
 #include "flight/block_feed_forward.hpp"
 #include "flight/loop_trajectories.hpp"
-#include "flight/model_range.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
@@ -27,30 +26,6 @@ struct AnyTrajectory {
   std::function<TrajectoryPoint<double>(double)> point;
   TrajectoryPoint<double> sample(double time_s) const noexcept { return point(time_s); }
 };
-
-/// The motions that a trajectory must stay within; of a model that is asked outside of its envelope too, the altitude
-/// alone.
-ModelRange range_of(const BlockModel& model, bool keeps_envelope) {
-  const RunTimeFeatures& features = model.features();
-  const std::vector<double> lower = model.envelope_lower(), upper = model.envelope_upper();
-  ModelRange range;
-  for (int i = 0; i < features.size(); ++i) {
-    const auto at = std::size_t(i);
-    if (!keeps_envelope && features[i].name != "altitude") continue;
-    range.features.push_back({std::string(features[i].name), std::string(features[i].unit), lower[at], upper[at],
-                              features.is_column(i)});
-  }
-  if (!keeps_envelope) return range;
-  range.of = [&features](const ModelRange::Motion& motion) {
-    RunTimeInputs<double> lasting;
-    static_cast<ModelRange::Motion&>(lasting) = motion;
-    const std::vector<RunTimeInputs<double>> taps(std::size_t(features.window().taps), lasting);
-    std::vector<double> x(std::size_t(features.size()));
-    features.extract(taps.data(), x.data());
-    return x;
-  };
-  return range;
-}
 
 AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const ModelRange& range, LoopFlights& flights) {
   constexpr const char* none = "the model's envelope holds no trajectory of this kind, however slow: --no-envelope";
@@ -83,7 +58,8 @@ LoopFlights fly_with(const BlockModel& model, const LoopPlan& plan) {
   const double ground_z_m = vehicle.site().ground_z_m;
   LoopFlights flights;
   flights.near_ground = model.features().asks_for_altitude();
-  const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, range_of(model, plan.keeps_envelope), flights);
+  const ModelRange range = plan.keeps_envelope ? range_of(model) : range_of(model).of_altitude();
+  const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, range, flights);
   HoverTrim<double> trim;
   Status status = vehicle.status();
   if (status == Status::ok) status = hover_trim(vehicle, trajectory.sample(0).position_m, trim);
@@ -107,6 +83,26 @@ LoopFlights fly_with(const BlockModel& model, const LoopPlan& plan) {
 }
 
 }  // namespace
+
+ModelRange range_of(const BlockModel& model) {
+  const RunTimeFeatures& features = model.features();
+  const std::vector<double> lower = model.envelope_lower(), upper = model.envelope_upper();
+  ModelRange range;
+  for (int i = 0; i < features.size(); ++i) {
+    const auto at = std::size_t(i);
+    range.features.push_back({std::string(features[i].name), std::string(features[i].unit), lower[at], upper[at],
+                              features.is_column(i)});
+  }
+  range.of = [&features](const ModelRange::Motion& motion) {
+    RunTimeInputs<double> lasting;
+    static_cast<ModelRange::Motion&>(lasting) = motion;
+    const std::vector<RunTimeInputs<double>> taps(std::size_t(features.window().taps), lasting);
+    std::vector<double> x(std::size_t(features.size()));
+    features.extract(taps.data(), x.data());
+    return x;
+  };
+  return range;
+}
 
 LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   return model.features().asks_for_altitude() ? fly_with<InGroundEffect>(model, plan) : fly_with<Distant>(model, plan);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "flight/model_range.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 
@@ -27,6 +28,9 @@ struct LoopFlights {
   bool near_ground = false;            ///< in ground effect: the model is shown the altitude
   pinnquad::TrackingResult<double> model, analytic_inverse, hover_trim;
 };
+
+/// The motions that a model answers. The model must stay where it is.
+ModelRange range_of(const pinnquad::BlockModel& model);
 
 /// Where the model declines, the analytic inverse of the airframe flies. Throws std::invalid_argument, one line, of an
 /// airframe that can't be flown there.

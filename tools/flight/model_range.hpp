@@ -29,6 +29,14 @@ struct ModelRange {
   /// X of a motion that has lasted as long as the window; none: it answers any.
   std::function<std::vector<double>(const Motion&)> of;
 
+  /// The columns that it asks for, in their order.
+  std::vector<Feature> columns() const {
+    std::vector<Feature> asked;
+    for (const Feature& feature : features) {
+      if (feature.is_column && feature.name.back() != ']') asked.push_back(feature);  // of the present
+    }
+    return asked;
+  }
   /// Altitudes in its envelope, if it is shown the altitude.
   std::optional<std::pair<double, double>> altitude_m() const {
     const Feature* const altitude = find("altitude");
@@ -41,6 +49,12 @@ struct ModelRange {
     const Feature* const speed = find(velocity[axis]);
     if (speed == nullptr) return {};
     return std::min(speed->upper, -speed->lower);
+  }
+  /// The altitude alone: of a model that is asked outside of its envelope too.
+  ModelRange of_altitude() const {
+    ModelRange range;
+    if (const Feature* const altitude = find("altitude")) range.features.push_back(*altitude);
+    return range;
   }
   /// True where it answers a motion half as great again, counted from hover: a feedback asks for more than is planned.
   bool holds(const Motion& motion) const {
@@ -76,7 +90,7 @@ ModelRange range_of_header() {
   for (std::size_t i = 0; i < size; ++i) {
     range.features.push_back({Features::names[i], Features::units[i], static_cast<double>(Model::envelope_lower[i]),
                               static_cast<double>(Model::envelope_upper[i]),
-                              pinnquad::detail::column_places<Features>.at[i]});
+                              pinnquad::detail::is_column<Features>(static_cast<int>(i))});
   }
   range.of = [](const ModelRange::Motion& motion) {
     Inputs inputs{};

@@ -10,7 +10,6 @@
 #include <iterator>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -207,15 +206,7 @@ struct Measured {
 
 /// Values that the columns stand at in the closed loop.
 Columns column_values(const std::vector<std::string>& given) {
-  std::vector<programs::AskedColumn> asked;
-  for (std::size_t i = 0; i < column_names.size(); ++i) {
-    std::size_t feature = 0;
-    while (std::string_view(column_names[i]) != Model::Features::names[feature]) ++feature;
-    asked.push_back({column_names[i], column_units[i],
-                     (static_cast<double>(Model::envelope_lower[feature]) +
-                      static_cast<double>(Model::envelope_upper[feature])) / 2});
-  }
-  const std::vector<double> held = programs::held_columns(asked, given);
+  const std::vector<double> held = programs::held_columns(programs::range_of_header<Model>().columns(), given);
   Columns columns{};
   for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = Scalar(held[i]);
   return columns;

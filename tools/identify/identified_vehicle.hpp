@@ -79,12 +79,8 @@ inline IdentifiedVehicle identified_vehicle(const pinnquad::logs::ImportedDatase
   const std::vector<pinnquad::Flight> flights = sound_flights(dataset);
   pinnquad::RowSet rows;
   for (const pinnquad::Flight& flight : flights) rows.add(flight, {0, flight.size()});
-  std::array<std::array<double, pinnquad::rotor_count>, 3> signs{};
-  for (int axis = 0; axis < 3; ++axis) {
-    signs[static_cast<std::size_t>(axis)] = pinnquad::allocation_signs(like, axis);
-  }
   IdentifiedVehicle vehicle;
-  vehicle.found = pinnquad::identify(rows, signs, settings);
+  vehicle.found = pinnquad::identify(rows, pinnquad::axis_signs(like), settings);
   vehicle.found.delay_s.value += dataset.lag_removed_s;
   vehicle.found.response_s.value += dataset.lag_removed_s;
   const bool backwards = vehicle.found.effectiveness_rad_s2[2].high() < 0;

@@ -51,6 +51,17 @@ inline std::array<double, 3> greatest_turn_rad_s2(const Airframe<double>& airfra
   return greatest;
 }
 
+/// Of one rotor at command 1, mean over the rotors: specific force, m/s^2; angular acceleration about x, y, z, rad/s^2.
+inline std::array<double, 4> rotor_effects(const Airframe<double>& airframe) {
+  const AllocationMatrix<double> matrix = allocation(airframe);
+  std::array<double, 4> effects{};
+  for (std::size_t row = 0; row < 4; ++row) {
+    const double of = row == 0 ? airframe.mass_kg : airframe.inertia_kg_m2[row - 1];
+    for (const double entry : matrix[row]) effects[row] += std::abs(entry) / (rotor_count * of);
+  }
+  return effects;
+}
+
 /// The command of all rotors in hover at the rated density.
 inline double hover_command(const Airframe<double>& airframe) {
   return command_of_fraction(airframe.rotors[0].thrust_curve, 1 / airframe.thrust_to_weight());

@@ -12,10 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "logs/airframe_doubts.hpp"
 #include "logs/command_lag.hpp"
 #include "logs/log_checks.hpp"
 #include "logs/motor_order_check.hpp"
 #include "logs/row_checks.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/dynamics/allocation.hpp"
 #include "pinnquad/regression/identification.hpp"
 
@@ -63,14 +65,6 @@ constexpr std::array<SharedNumber, 4> shared_numbers = {{
     {"yaw effectiveness", "rad/s^2", [](const Identification& found) { return found.effectiveness_rad_s2[2]; }, 0.3}}};
 // clang-format on
 
-/// The airframe's own: mean of its rotors.
-double of_airframe(std::size_t number, const Airframe<double>& airframe) {
-  const AllocationMatrix<double> matrix = allocation(airframe);
-  double sum = 0;
-  for (const double entry : matrix[number]) sum += std::abs(entry) / static_cast<double>(rotor_count);
-  return sum / (number == 0 ? airframe.mass_kg : airframe.inertia_kg_m2[number - 1]);
-}
-
 struct Judged {
   std::string name;
   std::vector<Flight> aligned;  ///< by its own lag; empty where it has none
@@ -102,13 +96,11 @@ Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_
   std::size_t row = 0;
   if (begin.size() > most) begin.keep_rows([&](std::size_t) { return row++ < most; });
   judged.aligned = split_at_gaps(std::move(begin), 1.5 * period_s);
-  std::array<std::array<double, rotor_count>, 3> signs{};
-  for (std::size_t axis = 0; axis < 3; ++axis) signs[axis] = allocation_signs(airframe, static_cast<int>(axis));
   IdentificationSettings settings;
   settings.thrust_curve = airframe.rotors[0].thrust_curve;
   RowSet rows;
   for (const Flight& segment : judged.aligned) rows.add(segment, {0, segment.size()});
-  judged.found = identify(rows, signs, settings);
+  judged.found = identify(rows, axis_signs(airframe), settings);
   const CommandLag lag = widest_lag(judged.aligned, period_s);
   judged.lag_found = lag.found && lag.confidence >= least_confidence;
   judged.lag_s = lag.lag_s + lag_removed_s;
@@ -201,9 +193,8 @@ class VehicleCheck {
     const auto ms = [](double seconds) { return std::to_string(std::lround(1e3 * seconds)) + " ms"; };
     std::string than;
     if (!others.empty()) {
-      const auto middle = others.begin() + static_cast<std::ptrdiff_t>(others.size() / 2);
-      std::nth_element(others.begin(), middle, others.end());
-      if (std::abs(flight.lag_s - *middle) > apart_s) than = ", in the other flights " + ms(*middle);
+      const double usual_s = detail::median_of(std::move(others));
+      if (std::abs(flight.lag_s - usual_s) > apart_s) than = ", in the other flights " + ms(usual_s);
     }
     if (than.empty() && std::abs(flight.lag_s) < longest_s) return;
     say(i, "columns u1 to u4: the motion comes " + ms(std::abs(flight.lag_s)) +
@@ -218,7 +209,7 @@ class VehicleCheck {
     for (std::size_t number = 0; known_ && number < shared_numbers.size() - 1; ++number) {
       const SharedNumber& shared = shared_numbers[number];
       const Estimate estimate = shared.of(flights_[i].found);
-      const double has = of_airframe(number, airframe_);
+      const double has = rotor_effects(airframe_)[number];
       if (!is_told(estimate) || (estimate.high() > has / factor && estimate.low() < has * factor)) continue;
       off += (off.empty() ? "" : ", ") + (shared.words + (" is " + told(estimate, shared.unit))) +
              " where the airframe has " + short_number(has);

@@ -37,18 +37,6 @@ struct LoopOptions {
   bool json = false;
 };
 
-std::vector<programs::AskedColumn> asked_columns(const BlockModel& model) {
-  const std::vector<std::string> names = model.feature_names();
-  const std::vector<double> lower = model.envelope_lower(), upper = model.envelope_upper();
-  std::vector<programs::AskedColumn> asked;
-  for (const ColumnName& column : model.columns()) {
-    std::size_t feature = 0;
-    while (feature + 1 < names.size() && names[feature] != column.name) ++feature;
-    asked.push_back({column.name, column.unit, (lower[feature] + upper[feature]) / 2});
-  }
-  return asked;
-}
-
 /// The airframe that flies. Throws std::invalid_argument for one whose motors are not those of the model.
 programs::NamedAirframe chosen_airframe(const LoopOptions& options, const BlockModel& model) {
   if (options.airframe.empty()) return {model.airframe_name(), model.airframe()};
@@ -131,7 +119,7 @@ int loop(const LoopOptions& options) {
   if (model.features().window().latest_s > 0) {
     throw std::invalid_argument(model.path() + ": its window looks ahead of the present, which no loop can");
   }
-  const std::vector<double> columns = programs::held_columns(asked_columns(model), options.columns);
+  const std::vector<double> columns = programs::held_columns(programs::range_of(model).columns(), options.columns);
   const programs::NamedAirframe airframe = chosen_airframe(options, model);
   const programs::LoopFlights flights =
       programs::fly_loop(model, {options.trajectory, airframe.value, options.guard == "envelope", columns});

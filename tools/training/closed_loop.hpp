@@ -20,6 +20,7 @@
 #include "flight/loop_figures.hpp"
 #include "flight/loop_trajectories.hpp"
 #include "pinnquad/aero/drag.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 #include "training/command_comparison.hpp"
@@ -87,10 +88,7 @@ inline std::vector<double> usual_columns(const pinnquad::BlockModel& model, cons
   std::vector<double> held;
   for (const pinnquad::ColumnName& column : model.columns()) {
     const pinnquad::Flight& flight = *training.pieces().front().flight;
-    std::vector<double> values = flight.column(column.name)->values;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    held.push_back(*middle);
+    held.push_back(pinnquad::detail::median_of(flight.column(column.name)->values));
   }
   return held;
 }

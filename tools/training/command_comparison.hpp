@@ -17,27 +17,21 @@
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/dynamics/allocation.hpp"
 #include "pinnquad/evaluation/summary.hpp"
+#include "training/judgement.hpp"
 
 namespace programs {
 
-/// Thrust and the turns about x, y, z: sums of the commands by what each rotor adds to them.
-inline constexpr std::array<const char*, 4> command_sums = {"thrust", "roll", "pitch", "yaw"};
-
 struct ComparedCommands {
+  static constexpr std::array<double, pinnquad::rotor_count> all_of_one_sign = {1, 1, 1, 1};
   std::array<std::vector<double>, 4> model, formula;  ///< of each sum, tick by tick
 
   void take(const pinnquad::Airframe<double>& airframe, const pinnquad::Commands<double>& by_model,
             const pinnquad::Commands<double>& by_formula) {
-    const auto signs = pinnquad::motor_torque_signs(airframe);
-    for (std::size_t sum = 0; sum < 4; ++sum) {
-      double own = 0, other = 0;
-      for (std::size_t rotor = 0; rotor < by_model.size(); ++rotor) {
-        const double sign = sum == 0 ? 1.0 : double(signs[rotor][sum - 1]);
-        own += sign * by_model[rotor];
-        other += sign * by_formula[rotor];
-      }
-      model[sum].push_back(own);
-      formula[sum].push_back(other);
+    const auto about = pinnquad::axis_signs(airframe);
+    for (std::size_t sum = 0; sum < sum_names.size(); ++sum) {
+      const std::array<double, pinnquad::rotor_count> signs = sum == 0 ? all_of_one_sign : about[sum - 1];
+      model[sum].push_back(pinnquad::signed_sum(signs, by_model));
+      formula[sum].push_back(pinnquad::signed_sum(signs, by_formula));
     }
   }
 };
@@ -68,12 +62,12 @@ ComparedPolicy(Policy, Formula, pinnquad::Airframe<double>, ComparedCommands*) -
 /// model's over the formula's, whose sign is that of their correlation.
 inline nlohmann::json comparison_json(const ComparedCommands& compared) {
   nlohmann::json result = nlohmann::json::object();
-  for (std::size_t sum = 0; sum < 4; ++sum) {
+  for (std::size_t sum = 0; sum < sum_names.size(); ++sum) {
     if (compared.model[sum].size() < 2) continue;
     const auto moments = pinnquad::joint_moments(compared.formula[sum], compared.model[sum]);
     if (!(moments.variance_x > 0)) continue;
     const double apart = moments.variance_x + moments.variance_y - 2 * moments.covariance;
-    result[command_sums[sum]] = {{"rms_difference", std::sqrt(std::max(apart, 0.0))},
+    result[sum_names[sum]] = {{"rms_difference", std::sqrt(std::max(apart, 0.0))},
                                  {"spread", std::sqrt(moments.variance_x)},
                                  {"slope", moments.covariance / moments.variance_x}};
   }
@@ -83,7 +77,7 @@ inline nlohmann::json comparison_json(const ComparedCommands& compared) {
 /// "thrust 0.98 (0.011), roll 1.02 (0.004)": slopes, and differences.
 inline std::string comparison_in_words(const nlohmann::json& comparison) {
   std::string words;
-  for (const char* const sum : command_sums) {
+  for (const char* const sum : sum_names) {
     if (!comparison.contains(sum)) continue;
     char text[80];
     std::snprintf(text, sizeof text, "%s%s %.2f (%.3f)", words.empty() ? "" : ", ", sum,
@@ -95,7 +89,7 @@ inline std::string comparison_in_words(const nlohmann::json& comparison) {
 
 /// "moves the roll sum of its commands against the formula's, slope -0.83"; empty where all move with it.
 inline std::string turned_round(const nlohmann::json& comparison) {
-  for (const char* const sum : command_sums) {
+  for (const char* const sum : sum_names) {
     if (!comparison.contains(sum) || comparison[sum]["slope"] > 0) continue;
     char text[120];
     std::snprintf(text, sizeof text, "moves the %s sum of its commands against the formula's, slope %.2f", sum,

@@ -105,11 +105,6 @@ inline Predictions predictions_of(const ModelKind& kind, const TrainedNetwork& m
 
 }  // namespace detail
 
-inline std::array<std::array<double, pinnquad::rotor_count>, 3> axis_signs(const NamedAirframe& given) {
-  const pinnquad::GivenAirframe airframe{given.name, given.value};
-  return {airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()};
-}
-
 /// Fits one kind and asks it what the rows held out need. Where validation chooses between kinds (one parting, whose
 /// rows held out have no say), one that takes the validation rows for fitting is fitted without them too, from the
 /// first seed. Throws what the kind's fit() throws.

@@ -16,7 +16,9 @@
 #include <nlohmann/json.hpp>
 
 #include "identify/identified_vehicle.hpp"
+#include "logs/airframe_doubts.hpp"
 #include "logs/specific_force.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "training/certificate_words.hpp"
 #include "training/hold_out.hpp"
@@ -39,17 +41,6 @@ struct FlownVehicle {
 
 namespace detail {
 
-/// Of one rotor at command 1, mean over the rotors: specific force, m/s^2; angular acceleration about x, y, z, rad/s^2.
-inline std::array<double, 4> rotor_effects(const pinnquad::Airframe<double>& airframe) {
-  const pinnquad::AllocationMatrix<double> matrix = pinnquad::allocation(airframe);
-  std::array<double, 4> effects{};
-  for (std::size_t row = 0; row < 4; ++row) {
-    const double of = row == 0 ? airframe.mass_kg : airframe.inertia_kg_m2[row - 1];
-    for (const double entry : matrix[row]) effects[row] += std::abs(entry) / (pinnquad::rotor_count * of);
-  }
-  return effects;
-}
-
 /// The command that balances weight, of rotors with this specific force at command 1.
 inline double hover_command(double curve, double thrust_m_s2) {
   const double fraction = pinnquad::standard_gravity_m_s2<double> / (pinnquad::rotor_count * thrust_m_s2);
@@ -66,10 +57,7 @@ inline double usual_thrust_m_s2(const pinnquad::Dataset& flights, double curve) 
       if (fractions > 0) thrusts.push_back(-pinnquad::logs::specific_force_m_s2(sample)[2] / fractions);
     }
   }
-  if (thrusts.empty()) return 0;
-  const auto middle = thrusts.begin() + static_cast<std::ptrdiff_t>(thrusts.size() / 2);
-  std::nth_element(thrusts.begin(), middle, thrusts.end());
-  return *middle;
+  return thrusts.empty() ? 0 : pinnquad::detail::median_of(std::move(thrusts));
 }
 
 inline bool is_told_above_zero(const pinnquad::Estimate& estimate) {
@@ -80,7 +68,7 @@ inline bool is_told_above_zero(const pinnquad::Estimate& estimate) {
 /// Turning that is not told is that of its rotors with the thrust that the flights show, on its moments of inertia.
 inline NamedAirframe assumed_airframe(const NamedAirframe& like, pinnquad::Identification found,
                                       const pinnquad::Dataset& flights, std::vector<std::string>& unknown) {
-  const std::array<double, 4> own = rotor_effects(like.value);
+  const std::array<double, 4> own = pinnquad::logs::rotor_effects(like.value);
   const auto complete = [](pinnquad::Estimate& estimate, double instead) {
     if (is_told_above_zero(estimate)) return true;
     estimate = {instead, 0};
@@ -107,7 +95,7 @@ inline std::vector<std::string> contradictions(const pinnquad::Identification& f
     std::snprintf(text, sizeof text, "%.3g to %.3g%s in the flights, %.3g of ", low, high, unit, own);
     lines.push_back(what + " is " + text + given.name);
   };
-  const std::array<double, 4> own = rotor_effects(given.value);
+  const std::array<double, 4> own = pinnquad::logs::rotor_effects(given.value);
   const double curve = given.value.rotors[0].thrust_curve;
   const pinnquad::Estimate& thrust = found.thrust_m_s2;
   if (is_told_above_zero(thrust)) {

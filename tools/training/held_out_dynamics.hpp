@@ -18,9 +18,6 @@
 
 namespace programs {
 
-/// Of the four commands: all of one sign, then those about the axes.
-inline constexpr std::array<const char*, 4> sum_names = {"thrust", "roll", "pitch", "yaw"};
-
 /// Held-out rows of a parting that follow each other without a gap and all count.
 struct HeldOutStretch {
   const pinnquad::Flight* flight = nullptr;
@@ -247,7 +244,7 @@ inline HeldOutDynamics held_out_dynamics(const FitPlan& plan, const Fits& fits, 
     return result;
   }
   result.segment_s = static_cast<double>(length) * result.period_s;
-  const auto about = axis_signs(plan.airframe);
+  const auto about = pinnquad::axis_signs(plan.airframe.value);
   for (std::size_t sum = 0; sum < sum_names.size(); ++sum) {
     const MotorFigures signs = sum == 0 ? MotorFigures{1, 1, 1, 1} : about[sum - 1];
     const WelchSpectra spectra = detail::spectra_of(

@@ -16,6 +16,8 @@
 namespace programs {
 
 constexpr std::array<const char*, 3> axis_names = {"roll", "pitch", "yaw"};
+/// Of the four commands: all of one sign, then those about the axes.
+constexpr std::array<const char*, 4> sum_names = {"thrust", "roll", "pitch", "yaw"};
 
 using pinnquad::axis_series;
 using pinnquad::AxisSeries;

@@ -280,7 +280,7 @@ inline nlohmann::json certificate_json(const nlohmann::json& report) {
 }
 
 inline std::array<MotorFigures, 4> signs_of_sums(const NamedAirframe& airframe) {
-  const auto about = axis_signs(airframe);
+  const auto about = pinnquad::axis_signs(airframe.value);
   return {{{1, 1, 1, 1}, about[0], about[1], about[2]}};
 }
 

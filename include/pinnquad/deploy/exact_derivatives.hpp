@@ -100,9 +100,7 @@ class ExactDerivatives {
   }
 
  private:
-  void take_airframe(const Airframe<double>& airframe) {
-    for (std::size_t axis = 0; axis < 3; ++axis) signs_[axis] = allocation_signs(airframe, static_cast<int>(axis));
-  }
+  void take_airframe(const Airframe<double>& airframe) { signs_ = axis_signs(airframe); }
   template <class Scalar>
   void take_numbers(const Scalar* parameters, const detail::Scales<Scalar>& scales) {
     const int inputs = network_.inputs(), outputs = network_.outputs();

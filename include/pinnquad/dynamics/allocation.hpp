@@ -76,6 +76,12 @@ constexpr std::array<Scalar, rotor_count> allocation_signs(const Airframe<Scalar
   return signs;
 }
 
+/// Those about roll, pitch and yaw.
+template <class Scalar>
+constexpr std::array<std::array<Scalar, rotor_count>, 3> axis_signs(const Airframe<Scalar>& airframe) noexcept {
+  return {allocation_signs(airframe, 0), allocation_signs(airframe, 1), allocation_signs(airframe, 2)};
+}
+
 /// Signed sum of motor commands about an axis, e.g. roll: -u1 + u2 + u3 - u4.
 template <class Scalar>
 constexpr Scalar signed_sum(const std::array<Scalar, rotor_count>& signs, const Commands<Scalar>& commands) noexcept {

@@ -146,7 +146,7 @@ std::vector<Commands<double>> predicted_commands(const Model& model, const RowSe
     each_features<typename Model::Features, typename Model::Scalar>(
         RowSet(*piece.flight, piece.rows), [&](const Flight&, std::size_t row, const typename Model::FeatureVector& x) {
           for (std::size_t i = 0; inside_envelope && i < x.size(); ++i) {
-            if (detail::column_places<typename Model::Features>.at[i]) continue;
+            if (detail::is_column<typename Model::Features>(static_cast<int>(i))) continue;
             if (!(x[i] >= model.envelope_lower[i] && x[i] <= model.envelope_upper[i])) return;
           }
           const auto u = model.predict(x);

@@ -95,7 +95,7 @@ class RunTimeFeatures {
   static bool take_text(std::string_view& texts, std::string_view& text) noexcept {
     const std::size_t end = texts.find('\0');
     if (end == std::string_view::npos) return false;
-    text = {texts.data(), end};  // substr() may throw
+    text = {texts.data(), end};  // substr() is not noexcept
     texts.remove_prefix(end + 1);
     return true;
   }

@@ -81,10 +81,7 @@ class RunTimeModel {
   /// As the compiled model does: columns outside their range of the training rows are moved to its edge.
   void saturate_columns(Scalar* standardised) const noexcept {
     for (int i = 0; i < features_.size(); ++i) {
-      if (!features_.is_column(i)) continue;
-      const Scalar least = (scales_.lower[i] - scales_.input_mean[i]) / scales_.input_deviation[i];
-      const Scalar most = (scales_.upper[i] - scales_.input_mean[i]) / scales_.input_deviation[i];
-      standardised[i] = standardised[i] < least ? least : (most < standardised[i] ? most : standardised[i]);
+      if (features_.is_column(i)) standardised[i] = detail::saturated(scales_, i, standardised[i]);
     }
   }
   /// As InverseDynamics::inside_envelope().

@@ -55,7 +55,6 @@ constexpr bool same_start(std::string_view text, std::string_view start) noexcep
   return same;
 }
 
-/// True of each entry of X that is a column, at whatever tap of a window.
 template <class Features>
 struct ColumnPlaces {
   bool at[std::size_t(Features::size)] = {};  // no std::array: unoptimised code would call it
@@ -74,6 +73,16 @@ constexpr ColumnPlaces<Features> find_columns() noexcept {
 }
 template <class Features>
 inline constexpr ColumnPlaces<Features> column_places = find_columns<Features>();
+
+/// True of an entry of X that is a column, at whatever tap of a window.
+template <class Features>
+constexpr bool is_column([[maybe_unused]] int place) noexcept {
+  if constexpr (extra_column_names<Features>.size() == 0) {
+    return false;
+  } else {
+    return column_places<Features>.at[place];
+  }
+}
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 

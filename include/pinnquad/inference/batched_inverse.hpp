@@ -59,7 +59,7 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
     for (int k = 0; k < size; ++k) {
       const Scalar* feature = x + k * samples + first;
       for (int s = 0; s < count; ++s) {
-        const bool column = detail::column_places<typename Model::Features>.at[k];
+        const bool column = detail::is_column<typename Model::Features>(k);
         const bool inside =
             is_finite(feature[s]) & (column | ((feature[s] >= scales.lower[k]) & (feature[s] <= scales.upper[k])));
         outside[s] |= inside ? 0 : 1;

@@ -200,7 +200,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
 
  private:
   static PINNQUAD_ALWAYS_INLINE bool within(const detail::Scales<Scalar>& scales, const Scalar* x, int i) noexcept {
-    return detail::column_places<Features>.at[i] || (x[i] >= scales.lower[i] && x[i] <= scales.upper[i]);
+    return detail::is_column<Features>(i) || (x[i] >= scales.lower[i] && x[i] <= scales.upper[i]);
   }
 
   using Pipeline = detail::Pipeline<Features, typename Model::Outputs, typename Model::Vehicle>;

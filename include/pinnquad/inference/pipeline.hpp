@@ -65,12 +65,9 @@ PINNQUAD_ALWAYS_INLINE void saturate_columns([[maybe_unused]] const Scales<Scala
                                              [[maybe_unused]] Scalar* standardised) noexcept {
   if constexpr (extra_column_names<Features>.size() > 0) {
     for (int i = 0; i < Features::size; ++i) {
-      if (!column_places<Features>.at[i]) continue;
-      const Scalar least = (scales.lower[i] - scales.input_mean[i]) / scales.input_deviation[i];
-      const Scalar most = (scales.upper[i] - scales.input_mean[i]) / scales.input_deviation[i];
-      for (int s = 0; s < Lanes; ++s) {
-        Scalar& value = standardised[i * Lanes + s];
-        value = value < least ? least : (most < value ? most : value);
+      if (!is_column<Features>(i)) continue;
+      for (Scalar* value = standardised + i * Lanes; value < standardised + (i + 1) * Lanes; ++value) {
+        *value = saturated(scales, i, *value);
       }
     }
   }

@@ -105,7 +105,7 @@ struct ThrustPlaces {
 /// True for "s_z", "vdot_bz" and, of other taps, "s_z[-1]".
 constexpr bool is_thrust(std::string_view name) noexcept {
   const std::size_t bracket = name.find('[');
-  const std::string_view of_tap(name.data(), bracket < name.size() ? bracket : name.size());  // substr() may throw
+  const std::string_view of_tap(name.data(), bracket < name.size() ? bracket : name.size());  // no substr(): noexcept
   return of_tap == "s_z" || of_tap == "vdot_bz";
 }
 template <class Features>

@@ -60,6 +60,14 @@ struct Scales {
   const Scalar* upper;
 };
 
+/// A standardised input no further out than its range of the training rows.
+template <class Scalar>
+constexpr Scalar saturated(const Scales<Scalar>& scales, int input, Scalar standardised) noexcept {
+  const Scalar least = (scales.lower[input] - scales.input_mean[input]) / scales.input_deviation[input];
+  const Scalar most = (scales.upper[input] - scales.input_mean[input]) / scales.input_deviation[input];
+  return standardised < least ? least : (most < standardised ? most : standardised);
+}
+
 /// Of an exported header.
 template <class Model>
 constexpr Scales<typename Model::Scalar> scales_in_header() noexcept {

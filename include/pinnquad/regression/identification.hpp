@@ -260,7 +260,7 @@ class Identifier {
 }  // namespace detail
 
 /// The vehicle of flights, rows of one period with the commands as they were given: in what a log's import shifted, the
-/// shift is missing from `delay_s`. `signs`: allocation_signs() of roll, pitch and yaw.
+/// shift is missing from `delay_s`. `signs`: axis_signs().
 inline Identification identify(const RowSet& rows, const std::array<std::array<double, rotor_count>, 3>& signs,
                                const IdentificationSettings& settings = {}) {
   return detail::Identifier(rows, signs, settings).run();

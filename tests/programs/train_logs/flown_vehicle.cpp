@@ -73,8 +73,8 @@ TEST_CASE("the vehicle of flights without an airframe is the one that flew, by t
   REQUIRE(vehicle.identified());
   CHECK(vehicle.is_known());
   CHECK(vehicle.airframe.name == "identified");
-  const auto truth = programs::detail::rotor_effects(other_vehicle().value);
-  const auto found = programs::detail::rotor_effects(vehicle.airframe.value);
+  const auto truth = pinnquad::logs::rotor_effects(other_vehicle().value);
+  const auto found = pinnquad::logs::rotor_effects(vehicle.airframe.value);
   CHECK(found[0] == doctest::Approx(truth[0]).epsilon(0.03));
   for (std::size_t axis = 1; axis < 4; ++axis) CHECK(found[axis] == doctest::Approx(truth[axis]).epsilon(0.06));
   CHECK(vehicle.airframe.value.rotor_time_constant_s ==
@@ -116,8 +116,8 @@ TEST_CASE("flights that do not tell a vehicle leave it assumed: it hovers as the
   CHECK_FALSE(vehicle.is_known());
   CHECK(vehicle.airframe.name == "paper_quadrotor, assumed");
   CHECK(std::count(vehicle.unknown.begin(), vehicle.unknown.end(), "pitch effectiveness") == 1);
-  CHECK(programs::detail::rotor_effects(vehicle.airframe.value)[0] ==
-        doctest::Approx(programs::detail::rotor_effects(other_vehicle().value)[0]).epsilon(0.05));
+  CHECK(pinnquad::logs::rotor_effects(vehicle.airframe.value)[0] ==
+        doctest::Approx(pinnquad::logs::rotor_effects(other_vehicle().value)[0]).epsilon(0.05));
   CHECK(programs::vehicle_json(vehicle)["airframe"] == "assumed");
   const programs::NamedAirframe given = other_vehicle();
   CHECK(flown(given, dataset).is_known());
@@ -132,8 +132,8 @@ TEST_CASE("flights that do not tell a vehicle leave it assumed: it hovers as the
   const programs::FlownVehicle refused = flown({}, still);
   CHECK(refused.asked->why_not.find("w_x") != std::string::npos);
   CHECK(refused.unknown.size() == 4);
-  CHECK(programs::detail::rotor_effects(refused.airframe.value)[0] ==
-        doctest::Approx(programs::detail::rotor_effects(other_vehicle().value)[0]).epsilon(0.1));
+  CHECK(pinnquad::logs::rotor_effects(refused.airframe.value)[0] ==
+        doctest::Approx(pinnquad::logs::rotor_effects(other_vehicle().value)[0]).epsilon(0.1));
 }
 
 TEST_CASE("damping, linear drag and trim act on the identified vehicle where the flights tell them") {
@@ -208,7 +208,7 @@ TEST_CASE(
   };
   const auto same = compared({0, 1, 2, 3}, 1);
   CHECK(programs::turned_round(same).empty());
-  for (const char* sum : programs::command_sums) {
+  for (const char* sum : programs::sum_names) {
     CHECK(same[sum]["slope"].get<double>() == doctest::Approx(1));
     CHECK(same[sum]["rms_difference"].get<double>() < 1e-9);
   }
