@@ -128,7 +128,7 @@ void check_export(const Fitted& fitted, const Answer& answer, const std::string&
   const auto at_voltage = [&](float volts) {
     auto inputs = history.inputs();
     inputs.template column<BatteryVoltage>() = volts;
-    std::vector<float> x(std::size_t(Features::size));
+    std::vector<float> x(static_cast<std::size_t>(Features::size));
     Features::extract(inputs, x.data());
     return x;
   };

@@ -85,9 +85,8 @@ template <class Model>
 ModelRange range_of_header() {
   using Features = typename Model::Features;
   using Inputs = typename Features::template Inputs<double>;
-  constexpr auto size = std::size_t(Features::size);
   ModelRange range;
-  for (std::size_t i = 0; i < size; ++i) {
+  for (std::size_t i = 0; i < std::size_t(Features::size); ++i) {
     range.features.push_back({Features::names[i], Features::units[i], static_cast<double>(Model::envelope_lower[i]),
                               static_cast<double>(Model::envelope_upper[i]),
                               pinnquad::detail::is_column<Features>(static_cast<int>(i))});
@@ -100,7 +99,7 @@ ModelRange range_of_header() {
       inputs.others.fill(inputs);
       inputs.complete = true;
     }
-    std::vector<double> x(size);
+    std::vector<double> x(static_cast<std::size_t>(Features::size));
     Features::extract(inputs, x.data());
     return x;
   };
