@@ -395,12 +395,13 @@ TEST_CASE("a tick that is late by seconds counts as a tenth of one: thrust does 
 }
 
 TEST_CASE("the attitude of a flown window is the same, whichever of its two quaternions the estimator says") {
-  pinnquad::autopilot::detail::FlownMotion one_sign(0.01f), both(0.01f);
+  const pinnquad::FlownMotionSettings<float> settings{100'000, 0.01f, 0};
+  pinnquad::FlownMotion<float> one_sign(settings), both(settings);
   pinnquad::State<float> state;
   int windows = 0;
   for (int tick = 0; tick < 400; ++tick) {
     const auto now_us = static_cast<std::uint64_t>(1'000'000 + 2000 * tick);
-    const auto flown = [&](pinnquad::autopilot::detail::FlownMotion& motion, float sign) {
+    const auto flown = [&](pinnquad::FlownMotion<float>& motion, float sign) {
       const pinnquad::Quaternion<float> q =
           pinnquad::from_euler<float>({0.03f * static_cast<float>(tick % 25), -0.2f, 1.0f});
       state.attitude = {sign * q.w, sign * q.x, sign * q.y, sign * q.z};

@@ -40,6 +40,13 @@ class InputHistory<programs::FlightFeatures, Scalar, MostSamples, void> {
     return inputs_.complete ? Status::ok : Status::warming_up;
   }
   const Inputs& inputs() const noexcept { return inputs_; }
+  Inputs lasting(const Present& present) const {
+    Inputs inputs = inputs_;
+    static_cast<MotionInputsWithAltitude<Scalar>&>(inputs) = present;
+    inputs.taps.assign(inputs.taps.size(), present);
+    inputs.complete = true;
+    return inputs;
+  }
   void clear() noexcept {
     past_.clear();
     inputs_.complete = false;

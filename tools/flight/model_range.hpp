@@ -14,6 +14,7 @@
 
 #include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/features/features.hpp"
+#include "pinnquad/features/input_history.hpp"
 
 namespace programs {
 
@@ -84,7 +85,6 @@ struct ModelRange {
 template <class Model>
 ModelRange range_of_header() {
   using Features = typename Model::Features;
-  using Inputs = typename Features::template Inputs<double>;
   ModelRange range;
   for (std::size_t i = 0; i < std::size_t(Features::size); ++i) {
     range.features.push_back({Features::names[i], Features::units[i], static_cast<double>(Model::envelope_lower[i]),
@@ -92,15 +92,11 @@ ModelRange range_of_header() {
                               pinnquad::detail::is_column<Features>(static_cast<int>(i))});
   }
   range.of = [](const ModelRange::Motion& motion) {
-    Inputs inputs{};
-    static_cast<pinnquad::MotionInputs<double>&>(inputs) = motion;
-    if constexpr (std::is_base_of_v<ModelRange::Motion, Inputs>) inputs.altitude_m = motion.altitude_m;
-    if constexpr (pinnquad::is_windowed<Features>) {
-      inputs.others.fill(inputs);
-      inputs.complete = true;
-    }
+    typename pinnquad::InputHistory<Features, double>::Present present{};
+    static_cast<pinnquad::MotionInputs<double>&>(present) = motion;
+    if constexpr (std::is_base_of_v<ModelRange::Motion, decltype(present)>) present.altitude_m = motion.altitude_m;
     std::vector<double> x(static_cast<std::size_t>(Features::size));
-    Features::extract(inputs, x.data());
+    Features::extract(pinnquad::InputHistory<Features, double>::lasting(present), x.data());
     return x;
   };
   return range;

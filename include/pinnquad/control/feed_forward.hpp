@@ -109,14 +109,7 @@ class NetworkInverse {
   template <class Scalar>
   Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& desired, std::uint64_t time_us,
                     Commands<Scalar>& commands) noexcept {
-    Present present;
-    static_cast<MotionInputs<NetworkScalar>&>(present) = narrowed(motion_inputs(state, desired));
-    if constexpr (!std::is_same_v<Measured, detail::MotionAlone>) {
-      static_assert(is_detected<detail::NoexceptMeasurement, Measured, Scalar, Present>,
-                    "pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be "
-                    "noexcept; time is a std::uint64_t of microseconds (control/feed_forward.hpp)");
-      measured_(state, time_us, present);
-    }
+    const Present present = measured_present(state, desired, time_us);
     const double time_s = seconds_of(time_us);
     static_cast<void>(history_.take(present, time_s));  // predict() says it too
     Commands<NetworkScalar> predicted{};
@@ -129,9 +122,35 @@ class NetworkInverse {
     return status;
   }
 
+  /// The network's answer to a motion that was flown, without guard: `ok`, or why there is none (`outside_envelope`).
+  /// A window is asked as though the motion had lasted; the one of the motions wanted stays as it is.
+  template <class Scalar>
+  Status observed(const State<Scalar>& state, const Accelerations<Scalar>& flown, std::uint64_t time_us,
+                  Commands<Scalar>& commands) noexcept {
+    Commands<NetworkScalar> said{};
+    const Status status = inverse_.observed(history_.lasting(measured_present(state, flown, time_us)), said);
+    if (status != Status::ok) return status == Status::limited ? Status::outside_envelope : status;
+    for (std::size_t i = 0; i < said.size(); ++i) commands[i] = Scalar(said[i]);
+    return status;
+  }
+
   const FallbackCount& count() const noexcept { return count_; }
 
  private:
+  template <class Scalar>
+  Present measured_present(const State<Scalar>& state, const Accelerations<Scalar>& motion,
+                           [[maybe_unused]] std::uint64_t time_us) noexcept {
+    Present present;
+    static_cast<MotionInputs<NetworkScalar>&>(present) = narrowed(motion_inputs(state, motion));
+    if constexpr (!std::is_same_v<Measured, detail::MotionAlone>) {
+      static_assert(is_detected<detail::NoexceptMeasurement, Measured, Scalar, Present>,
+                    "pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be "
+                    "noexcept; time is a std::uint64_t of microseconds (control/feed_forward.hpp)");
+      measured_(state, time_us, present);
+    }
+    return present;
+  }
+
   template <class Scalar>
   static MotionInputs<NetworkScalar> narrowed(const MotionInputs<Scalar>& in) noexcept {
     const Quaternion<Scalar>& q = in.attitude;

@@ -4,6 +4,7 @@
 // policy declines too.
 #pragma once
 
+#include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
@@ -35,13 +36,21 @@ class TrackingController {
   /// u = u_ff(state, reference motion) + allocation^-1 (m a_fb along body z, J omega_dot_fb), summed in thrust
   /// fractions, then desaturated. Where the policy declines, u_ff is the allocation of the reference motion's
   /// rigid-body wrench, without air.
+  /// A policy that learns (control/adaptive_inverse.hpp) is shown the state and the commands of the tick before first,
+  /// and what it finds across the thrust is taken from the acceleration that is asked for.
   /// `ok`. `limited`: the policy limited, or the sum was desaturated. `fell_back`: the policy fell back, or declined
   /// (feed_forward_status() says why). Any other Status of the controller, and `output_not_finite`: the commands are
   /// untouched.
   Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point, std::uint64_t time_us,
                     Commands<Scalar>& commands) noexcept {
+    TrajectoryPoint<Scalar> asked = point;
+    if constexpr (learns_in_flight<FeedForward, Scalar>) {
+      feed_forward_.learn(time_us, flew_ && !saturated(last_), state, last_);
+      asked.acceleration_m_s2 -= feed_forward_.acceleration_bias_m_s2();
+      flew_ = false;
+    }
     Accelerations<Scalar> motion, feedback;
-    const Status demanded = controller_(state, point, motion, feedback);
+    const Status demanded = controller_(state, asked, motion, feedback);
     if (demanded != Status::ok) return demanded;
     Commands<Scalar> reference{};
     feed_forward_status_ = feed_forward_(state, motion, time_us, reference);
@@ -59,6 +68,10 @@ class TrackingController {
     if (!all_finite(sum)) return Status::output_not_finite;
     const Commands<Scalar> wanted = rotors_.commands_of(sum);
     commands = desaturate(rotors_, wanted);
+    if constexpr (learns_in_flight<FeedForward, Scalar>) {
+      last_ = commands;
+      flew_ = true;
+    }
     return status == Status::ok && clipped(wanted) != wanted ? Status::limited : status;
   }
   /// Time in seconds would be truncated.
@@ -76,6 +89,8 @@ class TrackingController {
   FeedForward feed_forward_;
   Scalar rotor_scale_;
   Status feed_forward_status_{Status::ok};
+  Commands<Scalar> last_{};  ///< in force since the tick before, for a policy that learns
+  bool flew_ = false;
 };
 
 }  // namespace pinnquad

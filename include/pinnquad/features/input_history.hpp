@@ -187,6 +187,7 @@ class InputHistory {
     return Status::ok;
   }
   const Inputs& inputs() const noexcept { return inputs_; }
+  static const Inputs& lasting(const Present& present) noexcept { return present; }
   void clear() noexcept {}
 
  private:
@@ -221,6 +222,15 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
 
   /// As of the last take(): the present inputs, and the window's taps where it was `ok`.
   const Inputs& inputs() const noexcept { return inputs_; }
+
+  /// The inputs of a motion that has lasted as long as the window.
+  static Inputs lasting(const Present& present) noexcept {
+    Inputs inputs{};
+    static_cast<Present&>(inputs) = present;
+    inputs.others.fill(present);
+    inputs.complete = true;
+    return inputs;
+  }
 
   /// Forgets the past, as after a controller was switched off.
   void clear() noexcept {

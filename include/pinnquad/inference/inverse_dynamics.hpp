@@ -165,6 +165,22 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
                            PINNQUAD_INLINE_LAMBDA { forward(standardised, made); });
   }
 
+  /// The network's answer to a motion that was measured, without guard: `ok`, or `limited` outside the envelope. A
+  /// Status of the features' check, `not_finite` and `output_not_finite` leave the commands untouched.
+  PINNQUAD_NOINLINE Status observed(const Inputs& measured, Commands<Scalar>& commands) const noexcept {
+    const Status checked = Features::check(measured);
+    if (checked != Status::ok) return checked;
+    Scalar x[Features::size];
+    Features::extract(measured, x);
+    if (!all_finite(x, Features::size)) return Status::not_finite;
+    const bool inside = inside_envelope(x);
+    Commands<Scalar> said{};
+    evaluate_over(x, said.data());
+    if (!all_finite(said)) return Status::output_not_finite;
+    commands = said;
+    return inside ? Status::ok : Status::limited;
+  }
+
   /// True if every feature but the columns lies in the training rows' range, margin included; false for NaN, under
   /// -ffast-math too.
   PINNQUAD_ALWAYS_INLINE bool inside_envelope(const Scalar* x) const noexcept {

@@ -18,7 +18,6 @@ template <class Inverse, class Trust>
 class MonitoredInverse : private detail::Held<Inverse> {
  public:
   using Scalar = typename Inverse::Scalar;
-  using Features = typename Inverse::Features;
   using Inputs = typename Inverse::Inputs;
   using Report = typename Inverse::Report;
   using Monitor = CommandResidualMonitor<Trust, Scalar>;
@@ -34,14 +33,9 @@ class MonitoredInverse : private detail::Held<Inverse> {
   /// A measured motion, and the commands that were flown in it. The bare network is asked, inside the envelope or not.
   /// Unless `ok` nothing changes: a Status of the features' check, `output_not_finite`, `not_finite`.
   Status observe(const Inputs& measured, const Commands<Scalar>& flown) noexcept {
-    const Status checked = Features::check(measured);
-    if (checked != Status::ok) return checked;
-    Scalar x[Features::size];
-    Features::extract(measured, x);
-    if (!all_finite(x, Features::size)) return Status::not_finite;
     Commands<Scalar> predicted{};
-    inverse().evaluate(static_cast<const Scalar*>(x), predicted.data());
-    if (!all_finite(predicted)) return Status::output_not_finite;
+    const Status status = inverse().observed(measured, predicted);
+    if (!has_output(status)) return status;
     return monitor_.update(predicted, flown);
   }
 

@@ -30,31 +30,49 @@ struct TrackingResult {
   FallbackCount fallback{};            ///< of a policy that has one, else zero
 };
 
+/// What flies as it is modelled, seen as it is. Another world has the same functions:
+///   Status step(VehicleState<Scalar>&, const Commands<Scalar>&, Scalar step_s) noexcept   as Quadrotor::step()
+///   State<Scalar> sense(const VehicleState<Scalar>&) noexcept                              what the controller sees
+template <class Vehicle>
+struct ExactWorld {
+  const Vehicle& vehicle;
+
+  template <class Scalar>
+  Status step(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s) const noexcept {
+    return vehicle.step(state, commands, step_s);
+  }
+  template <class Scalar>
+  const State<Scalar>& sense(const VehicleState<Scalar>& state) const noexcept {
+    return state.body;
+  }
+};
+
 /// Flies `trajectory` from its point at time 0, at rest with level attitude if the trajectory starts so.
+/// `nominal`: the vehicle that the controller knows. `world`: what flies. `observer(time_s, point, vehicle, commands)`
+/// sees each control tick.
 /// The flight ends early where controller or physics give a Status without output; where the policy declines it goes
 /// on (TrackingController). The figures cover what was flown.
-template <class Scalar, class... Effects, class Trajectory, class FeedForward>
-TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& quadrotor, const Trajectory& trajectory,
+template <class Scalar, class... Effects, class World, class Trajectory, class FeedForward, class Observer>
+TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& nominal, World& world, const Trajectory& trajectory,
                              const FlightController<Scalar>& flight_controller, const FeedForward& feed_forward,
-                             const TrackingPlan<Scalar>& plan = {}) noexcept {
+                             const TrackingPlan<Scalar>& plan, const Observer& observer) noexcept {
   using std::sqrt;
   TrackingResult<Scalar> result;
   const TrajectoryPoint<Scalar> start = trajectory.sample(Scalar(0));
   FlatMotion<Scalar> flat;
-  result.status = flat_motion(start, quadrotor.site().gravity_m_s2, flat);
-  if (result.status == Status::ok) result.status = quadrotor.status();
+  result.status = flat_motion(start, nominal.site().gravity_m_s2, flat);
+  if (result.status == Status::ok) result.status = nominal.status();
   if (result.status != Status::ok) return result;
 
   VehicleState<Scalar> vehicle;
   vehicle.body = {start.position_m, start.velocity_m_s, flat.attitude, flat.body_rates_rad_s};
-  const Scalar rotor_scale = quadrotor.rotor_scale(quadrotor.surroundings(vehicle.body, Scalar(0)));
+  const Scalar rotor_scale = nominal.rotor_scale(nominal.surroundings(vehicle.body, Scalar(0)));
   HoverTrim<Scalar> trim;
-  result.status = hover_trim(quadrotor, start.position_m, trim);
+  result.status = hover_trim(nominal, start.position_m, trim);
   if (result.status != Status::ok) return result;
   vehicle.rotors = trim.commands;
 
-  TrackingController<Scalar, FeedForward> controller(quadrotor.airframe(), flight_controller, feed_forward,
-                                                     rotor_scale);
+  TrackingController<Scalar, FeedForward> controller(nominal.airframe(), flight_controller, feed_forward, rotor_scale);
   Commands<Scalar> commands{};
   const Scalar tick_s = plan.physics_step_s * Scalar(plan.steps_per_control);
   Scalar squares(0), largest_square(0), largest_speed_square(0);
@@ -69,15 +87,16 @@ TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& quadrotor, con
     if (square > largest_square) largest_square = square;
     const Scalar speed_square = vehicle.body.velocity_m_s.squaredNorm();
     if (speed_square > largest_speed_square) largest_speed_square = speed_square;
-    result.status = controller(vehicle.body, point, static_cast<std::uint64_t>(time_us + 0.5), commands);
+    result.status = controller(world.sense(vehicle), point, static_cast<std::uint64_t>(time_us + 0.5), commands);
     if (saturated(commands)) ++ticks_at_end;
+    observer(time_s, point, vehicle, commands);
     if (!has_output(result.status)) break;
     if (result.declined == Status::ok && !has_output(controller.feed_forward_status())) {
       result.declined = controller.feed_forward_status();
     }
     result.status = Status::ok;
     for (int i = 0; i < plan.steps_per_control && result.status == Status::ok; ++i) {
-      result.status = quadrotor.step(vehicle, commands, plan.physics_step_s);
+      result.status = world.step(vehicle, commands, plan.physics_step_s);
     }
     if (result.status != Status::ok) break;
   }
@@ -89,6 +108,15 @@ TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& quadrotor, con
   result.saturated_share = counted > 0 ? Scalar(ticks_at_end) / Scalar(counted) : Scalar(0);
   result.fallback = fallback_count(controller.feed_forward());
   return result;
+}
+
+/// The same of a vehicle that is as its controller knows it.
+template <class Scalar, class... Effects, class Trajectory, class FeedForward>
+TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& quadrotor, const Trajectory& trajectory,
+                             const FlightController<Scalar>& flight_controller, const FeedForward& feed_forward,
+                             const TrackingPlan<Scalar>& plan = {}) noexcept {
+  ExactWorld<Quadrotor<Scalar, Effects...>> world{quadrotor};
+  return track(quadrotor, world, trajectory, flight_controller, feed_forward, plan, [](const auto&...) noexcept {});
 }
 
 }  // namespace pinnquad

@@ -8,7 +8,7 @@
 
 #include "pinnquad/control/autopilot/bias_alarm.hpp"
 #include "pinnquad/control/autopilot/core_settings.hpp"
-#include "pinnquad/control/autopilot/flown_motion.hpp"
+#include "pinnquad/control/autopilot/flown_trust.hpp"
 #include "pinnquad/control/autopilot/inputs.hpp"
 #include "pinnquad/control/autopilot/model_inputs.hpp"
 #include "pinnquad/control/autopilot/model_slots.hpp"
@@ -44,7 +44,7 @@ class NeuralController {
   using Inverse = InverseDynamics<View, NetworkGuard>;
   /// The past that answers depend on: the command residual is of windows of this length, and a raised alarm of the bias
   /// is cleared no faster.
-  static constexpr std::uint64_t residual_window_us = detail::FlownMotion::window_us;
+  static constexpr std::uint64_t residual_window_us = 2 * detail::residual_period_us;
   static constexpr float alarm_clear_s = detail::BiasAlarm::clear_s;
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
   static_assert(!trusts || ModelInputs::of_motion_alone,

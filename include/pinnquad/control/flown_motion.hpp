@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// The flown motion of a window, as a model can be asked about it, and the mean commands that the rotors followed in it.
+// What learns in flight (control/adaptive_inverse.hpp) and the command residual (docs/trust.md) compare motion and
+// commands of one instant.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/dynamics/rotor.hpp"
+#include "pinnquad/features/features.hpp"
+
+namespace pinnquad {
+
+/// Settings of a FlownMotion.
+template <class Scalar>
+struct FlownMotionSettings {
+  std::uint32_t period_us = 25'000;
+  Scalar rotor_lag_s = Scalar(0);  ///< time constant of the rotors
+  Scalar delay_s = Scalar(0);      ///< by which a state comes late beside the commands, of estimator and filters
+};
+
+/// Means over two periods of length T that follow each other. An acceleration is the difference of the mean velocities
+/// or body rates of the two over the time between them: the weight of the acceleration at time t rises to the border
+/// of the two and falls from there. State and commands have the same weights, so that all are of one instant. The next
+/// motion shares a period with this one, so that noise of a mean cancels in the sum of the two. The commands are behind
+/// the rotors' lag, and as old as the state. Periods begin at whole multiples of T on the samples' clock, so that a
+/// replay of a part of the ticks knows where.
+template <class Scalar>
+class FlownMotion {
+ public:
+  /// Commands are kept this finely beside the delay.
+  static constexpr std::size_t delayed_commands = 24;
+
+  explicit FlownMotion(const FlownMotionSettings<Scalar>& settings = {}) noexcept
+      : settings_(settings),
+        period_s_(Scalar(1e-6) * static_cast<Scalar>(settings.period_us)),
+        delay_us_(static_cast<std::uint64_t>(Scalar(1e6) * settings.delay_s)) {}
+
+  const FlownMotionSettings<Scalar>& settings() const noexcept { return settings_; }
+
+  /// Samples with the times at which they were taken. One that is not finite spoils its period.
+  void velocity(std::uint64_t time_us, const Vector3<Scalar>& m_s) noexcept { take(time_us, m_s, now_.velocity); }
+  void body_rates(std::uint64_t time_us, const Vector3<Scalar>& rad_s) noexcept { take(time_us, rad_s, now_.rates); }
+
+  /// Drops the open periods: other commands flew, or the estimator was reset.
+  void interrupt() noexcept { now_.whole = before_.whole = false; }
+
+  /// One tick: the state, and the commands in force since the tick before. True if a period has ended, and the one
+  /// before it was whole too: motion() and flown() are theirs. `known`: these commands drove the motors, and the state
+  /// is fresh.
+  bool tick(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
+    const bool follows = now_us > before_us_ && now_us - before_us_ <= longest_tick_us();
+    if (!(known && follows)) {
+      interrupt();
+      rotors_ = commands;
+      stored_ = 0;
+    }
+    const std::uint64_t number = now_us / settings_.period_us;
+    bool ended = false;
+    if (number != number_) {
+      if (number != number_ + 1) interrupt();
+      ended = now_.whole && before_.whole && finish();
+      before_ = now_;
+      now_ = {};
+      number_ = number;
+      now_.whole = known && follows && now_us - number * settings_.period_us <= longest_tick_us();
+    }
+    if (known && follows) {
+      weigh(now_us, Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_), state, commands);
+    }
+    before_us_ = now_us;
+    return ended;
+  }
+
+  /// Time between two motions.
+  Scalar period_s(Scalar /*tick_s*/) const noexcept { return period_s_; }
+  const MotionInputs<Scalar>& motion() const noexcept { return motion_; }
+  const Commands<Scalar>& flown() const noexcept { return flown_; }
+
+ private:
+  std::uint64_t longest_tick_us() const noexcept {
+    const std::uint64_t half = settings_.period_us / 2;
+    return half < 20'000 ? half : 20'000;
+  }
+
+  /// Sums over samples (t, v), t from the period's beginning.
+  struct Mean {
+    Scalar count{0}, t{0};
+    Vector3<Scalar> v = Vector3<Scalar>::Zero();
+  };
+  /// Weighted sums over ticks.
+  struct Weighted {
+    Scalar weight{0};
+    Quaternion<Scalar> attitude{Scalar(0), Scalar(0), Scalar(0), Scalar(0)};
+    Vector3<Scalar> velocity = Vector3<Scalar>::Zero(), rates = Vector3<Scalar>::Zero();
+    Commands<Scalar> commands{};
+
+    void add(Scalar by, const State<Scalar>& state, const Commands<Scalar>& rotors) noexcept {
+      const Quaternion<Scalar>&q = state.attitude, &sum = attitude;
+      const Scalar along = sum.w * q.w + sum.x * q.x + sum.y * q.y + sum.z * q.z;
+      const Scalar turn = along < Scalar(0) ? -by : by;  // q and -q are one attitude
+      attitude = {sum.w + turn * q.w, sum.x + turn * q.x, sum.y + turn * q.y, sum.z + turn * q.z};
+      weight += by;
+      velocity += by * state.velocity_m_s;
+      rates += by * state.body_rates_rad_s;
+      for (std::size_t i = 0; i < rotors.size(); ++i) commands[i] += by * rotors[i];
+    }
+  };
+  struct Period {
+    Mean velocity, rates;
+    Weighted rising, falling;  ///< as the earlier of the two, and as the later
+    bool whole = false;        ///< so far, since it began
+  };
+
+  void take(std::uint64_t time_us, const Vector3<Scalar>& value, Mean& mean) noexcept {
+    if (time_us / settings_.period_us != number_) return;
+    mean.count += Scalar(1);
+    mean.t += Scalar(1e-6) * static_cast<Scalar>(time_us - number_ * settings_.period_us);
+    mean.v += value;
+  }
+
+  void weigh(std::uint64_t now_us, Scalar step_s, const State<Scalar>& state,
+             const Commands<Scalar>& commands) noexcept {
+    const Scalar share = step_s / (settings_.rotor_lag_s + step_s);
+    for (std::size_t i = 0; i < commands.size(); ++i) rotors_[i] += share * (commands[i] - rotors_[i]);
+    const Commands<Scalar>& then = delayed(now_us);
+    const Scalar t = Scalar(1e-6) * static_cast<Scalar>(now_us - number_ * settings_.period_us);
+    now_.rising.add(t * step_s, state, then);
+    now_.falling.add((period_s_ - t) * step_s, state, then);
+  }
+
+  /// What the rotors followed when the state was: the oldest kept that is no older.
+  const Commands<Scalar>& delayed(std::uint64_t now_us) noexcept {
+    if (delay_us_ == 0) return rotors_;
+    const auto at = [this](std::size_t i) noexcept -> Kept& { return kept_[(oldest_ + i) % kept_.size()]; };
+    if (stored_ == 0 || now_us - at(stored_ - 1).time_us >= delay_us_ / (delayed_commands - 2)) {
+      if (stored_ == kept_.size()) {
+        oldest_ = (oldest_ + 1) % kept_.size();
+        --stored_;
+      }
+      at(stored_++) = {now_us, rotors_};
+    }
+    while (stored_ > 1 && at(1).time_us + delay_us_ <= now_us) {
+      oldest_ = (oldest_ + 1) % kept_.size();
+      --stored_;
+    }
+    if (at(0).time_us + delay_us_ > now_us) now_.whole = false;  // older than what is kept
+    return at(0).commands;
+  }
+
+  /// False where the samples don't cover the periods, or are no numbers.
+  bool slope(const Mean& earlier, const Mean& later, Vector3<Scalar>& result) const noexcept {
+    if (!(earlier.count > Scalar(0) && later.count > Scalar(0))) return false;
+    const Scalar time_s = period_s_ + later.t / later.count - earlier.t / earlier.count;
+    if (!(time_s > Scalar(0.5) * period_s_)) return false;
+    result = (later.v / later.count - earlier.v / earlier.count) / time_s;
+    return all_finite(result);
+  }
+
+  PINNQUAD_NOINLINE bool finish() noexcept {
+    Vector3<Scalar> world_m_s2;
+    Accelerations<Scalar> measured;
+    if (!slope(before_.velocity, now_.velocity, world_m_s2)) return false;
+    if (!slope(before_.rates, now_.rates, measured.angular_rad_s2)) return false;
+    const Weighted &a = before_.rising, &b = now_.falling;
+    const Quaternion<Scalar>&p = a.attitude, &q = b.attitude;
+    const Scalar turn = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < Scalar(0) ? Scalar(-1) : Scalar(1);
+    const Quaternion<Scalar> both{p.w + turn * q.w, p.x + turn * q.x, p.y + turn * q.y, p.z + turn * q.z};
+    const Scalar weight = a.weight + b.weight, length = squared_norm(both);
+    if (!(weight > Scalar(0) && length > Scalar(0))) return false;
+    State<Scalar> mean;
+    mean.velocity_m_s = (a.velocity + b.velocity) / weight;
+    mean.body_rates_rad_s = (a.rates + b.rates) / weight;
+    mean.attitude = normalized(both);
+    Commands<Scalar> flown{};
+    for (std::size_t i = 0; i < flown.size(); ++i) flown[i] = (a.commands[i] + b.commands[i]) / weight;
+    measured.linear_m_s2 = body_derivative<Scalar>(mean, world_m_s2);
+    if (!(all_finite(mean) && all_finite(measured.linear_m_s2) && all_finite(flown))) return false;
+    motion_ = motion_inputs(mean, measured);
+    flown_ = flown;
+    return true;
+  }
+
+  struct Kept {
+    std::uint64_t time_us;
+    Commands<Scalar> commands;
+  };
+
+  FlownMotionSettings<Scalar> settings_;
+  Scalar period_s_;
+  std::uint64_t delay_us_;
+  std::uint64_t before_us_ = 0;
+  std::uint64_t number_ = 0;  ///< of the period
+  Period before_, now_;
+  Commands<Scalar> rotors_{};                  ///< behind their lag
+  std::array<Kept, delayed_commands> kept_{};  ///< the last `stored_` from `oldest_` on
+  std::size_t oldest_ = 0, stored_ = 0;
+  MotionInputs<Scalar> motion_{};
+  Commands<Scalar> flown_{};
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// The bias of an inverse: what its commands and the forces that it knows of lack, from a payload, a weak rotor or battery,
+// wind. It is learnt from the past alone: the answer to a motion asked for shifts, and rises with it as before.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/core/status.hpp"
+#include "pinnquad/core/types.hpp"
+
+namespace pinnquad {
+
+/// Of the signed sums: the sum of all commands, and those about roll, pitch and yaw (outputs/axis_command_outputs.hpp).
+template <class Scalar>
+using SignedSums = std::array<Scalar, 4>;
+
+/// Settings of a MotionBias.
+template <class Scalar>
+struct MotionBiasSettings {
+  SignedSums<Scalar> time_constants_s{Scalar(0.2), Scalar(0.45), Scalar(0.45), Scalar(0.45)};
+  SignedSums<Scalar> most{Scalar(0.8), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way
+  Scalar across_time_constant_s = Scalar(0.2);
+  Scalar most_across_m_s2 = Scalar(3);  ///< its length
+  Scalar hold_s = Scalar(0.5);          ///< without a residual it stays this long, then fades
+  Scalar fade_s = Scalar(2);            ///< time constant of fading
+};
+
+/// b <- b + T / (T + time constant) (r - b) of each signed sum of commands, |b| <= most. T: the period of r; r: the residual, commands flown - commands that
+/// the inverse gives for the motion flown. And the same of d, the acceleration across the thrust (NED, m/s^2) that no
+/// rotor makes.
+template <class Scalar>
+class MotionBias {
+ public:
+  explicit constexpr MotionBias(const MotionBiasSettings<Scalar>& settings = {}) noexcept : settings_(settings) {}
+
+  constexpr const MotionBiasSettings<Scalar>& settings() const noexcept { return settings_; }
+  constexpr const SignedSums<Scalar>& sums() const noexcept { return sums_; }
+  const Vector3<Scalar>& across_m_s2() const noexcept { return across_; }
+  /// `ok`: it learns. `limited`: at a bound. `warming_up`: nothing has been learnt yet, or for longer than `hold_s`.
+  /// `not_finite`: the last residual was no number.
+  Status status() const noexcept { return status_; }
+
+  /// One residual. `not_finite`: nothing changes.
+  Status learn(const SignedSums<Scalar>& residual, const Vector3<Scalar>& across_m_s2, Scalar period_s) noexcept {
+    if (!(all_finite(residual) && all_finite(across_m_s2))) return status_ = Status::not_finite;
+    bool bound = false;
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const Scalar wanted = sums_[i] + share(settings_.time_constants_s[i], period_s) * (residual[i] - sums_[i]);
+      const Scalar most = settings_.most[i];
+      sums_[i] = wanted > most ? most : (wanted < -most ? -most : wanted);
+      bound = bound || wanted > most || wanted < -most;
+    }
+    across_ += share(settings_.across_time_constant_s, period_s) * (across_m_s2 - across_);
+    const Scalar length = across_.norm();
+    if (length > settings_.most_across_m_s2) {
+      across_ *= settings_.most_across_m_s2 / length;
+      bound = true;
+    }
+    waited_s_ = Scalar(0);
+    return status_ = bound ? Status::limited : Status::ok;
+  }
+
+  /// Time in flight in which nothing could be learnt: it holds, then fades.
+  void wait(Scalar step_s) noexcept {
+    if (!(step_s > Scalar(0))) return;
+    waited_s_ += step_s;
+    if (waited_s_ <= settings_.hold_s) return;
+    const Scalar kept = settings_.fade_s / (settings_.fade_s + step_s);
+    for (Scalar& sum : sums_) sum *= kept;
+    across_ *= kept;
+    if (status_ != Status::not_finite) status_ = Status::warming_up;
+  }
+
+  /// Forgets: for another model, on the ground.
+  void reset() noexcept { *this = MotionBias(settings_); }
+  /// Goes on from what was logged.
+  void resume(const SignedSums<Scalar>& sums, const Vector3<Scalar>& across_m_s2, Scalar waited_s) noexcept {
+    if (!(all_finite(sums) && all_finite(across_m_s2) && is_finite(waited_s))) return;
+    sums_ = sums;
+    across_ = across_m_s2;
+    waited_s_ = waited_s;
+  }
+  Scalar waited_s() const noexcept { return waited_s_; }
+
+ private:
+  static Scalar share(Scalar time_constant_s, Scalar period_s) noexcept {
+    return period_s / (period_s + time_constant_s);
+  }
+
+  MotionBiasSettings<Scalar> settings_;
+  SignedSums<Scalar> sums_{};
+  Vector3<Scalar> across_ = Vector3<Scalar>::Zero();
+  Scalar waited_s_{0};
+  Status status_{Status::warming_up};
+};
+
+}  // namespace pinnquad
