@@ -13,7 +13,7 @@
 #include "model/block_command.hpp"
 #include "model/certify_command.hpp"
 #include "model/evaluate_command.hpp"
-#include "model/loop_command.hpp"
+#include "loop/loop_command.hpp"
 #include "model/replay_command.hpp"
 #include "project/new_command.hpp"
 #include "training/train_command.hpp"

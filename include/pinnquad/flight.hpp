@@ -12,6 +12,7 @@
 #include "pinnquad/control/bias_estimate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/filtered_motion.hpp"
+#include "pinnquad/control/known_drag.hpp"
 #include "pinnquad/control/tracking_controller.hpp"
 #include "pinnquad/control/trajectory.hpp"
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"

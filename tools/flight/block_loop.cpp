@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "flight/block_loop.hpp"
 
-#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -20,12 +19,6 @@ using namespace pinnquad;
 
 using Distant = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
 using InGroundEffect = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
-
-/// Any trajectory behind one type: one loop per vehicle and guard is compiled.
-struct AnyTrajectory {
-  std::function<TrajectoryPoint<double>(double)> point;
-  TrajectoryPoint<double> sample(double time_s) const noexcept { return point(time_s); }
-};
 
 AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const ModelRange& range, LoopFlights& flights) {
   constexpr const char* none = "the model's envelope holds no trajectory of this kind, however slow: --no-envelope";

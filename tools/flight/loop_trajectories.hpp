@@ -8,15 +8,55 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
+#include <random>
 #include <utility>
 
 #include "pinnquad/control/flatness.hpp"
 #include "pinnquad/control/trajectory.hpp"
+#include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace programs {
+
+/// Any trajectory behind one type: one loop per vehicle is compiled.
+struct AnyTrajectory {
+  std::function<pinnquad::TrajectoryPoint<double>(double)> point;
+  pinnquad::TrajectoryPoint<double> sample(double time_s) const noexcept { return point(time_s); }
+};
+
+/// Sums of three sines along each axis and of the heading, whose multiples of one period and phases are drawn. Starts
+/// at rest.
+struct RandomPath {
+  pinnquad::Vector3<double> center_m = pinnquad::Vector3<double>::Zero();  ///< NED
+  std::array<double, 4> half_size = {4, 4, 0.5, 0.4};                      ///< m; of the heading rad
+  std::array<std::array<double, 3>, 4> multiple{}, offset_rad{};
+  double period_s = 20, ramp_s = 4;
+
+  explicit RandomPath(std::uint64_t seed) {
+    std::mt19937_64 engine(seed);
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        multiple[axis][i] = 1 + static_cast<double>(i + pinnquad::uniform_index(engine, 2));
+        offset_rad[axis][i] = pinnquad::uniform(engine, 0, 6.283185307179586);
+      }
+    }
+  }
+  pinnquad::TrajectoryPoint<double> sample(double time_s) const noexcept {
+    const auto phase = pinnquad::detail::smooth_phase(time_s, period_s, ramp_s);
+    std::array<pinnquad::detail::Derivatives<double>, 4> sums{};
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto part =
+            pinnquad::detail::harmonic(phase, half_size[axis] / 3, multiple[axis][i], offset_rad[axis][i]);
+        for (std::size_t order = 0; order < part.size(); ++order) sums[axis][order] += part[order];
+      }
+    }
+    return pinnquad::detail::assembled(center_m, sums[0], sums[1], sums[2], sums[3]);
+  }
+};
 
 namespace detail {
 
@@ -118,6 +158,23 @@ std::optional<pinnquad::Circle<double>> circle_for(const pinnquad::Airframe<doub
   circle.period_s = std::max(circle.period_s, detail::least_period_s(airframe, circle.radius_m));
   if (!detail::slow_down(circle, ground_z_m, range)) return {};
   return circle;
+}
+
+/// A random path by its seed, near the ground in the middle of the heights.
+template <class Range>
+std::optional<RandomPath> random_path_for(const pinnquad::Airframe<double>& airframe, double ground_z_m,
+                                          const Range& range, std::uint64_t seed) {
+  RandomPath path(seed);
+  path.center_m = {0, 0, -detail::far_above_ground_m};
+  for (std::size_t axis = 0; axis < 3; ++axis) path.half_size[axis] *= detail::size_along(range, axis);
+  if (const auto altitude = range.altitude_m()) {
+    const double lowest = std::max(altitude->first, detail::least_altitude_m);
+    path.center_m[2] = ground_z_m - (lowest + 0.45 * (altitude->second - lowest));
+    path.half_size = {1, 1, 0.35 * (altitude->second - lowest), 0.4};
+  }
+  path.period_s = std::max(path.period_s, detail::least_period_s(airframe, 9 * path.half_size[0]));
+  if (!detail::slow_down(path, ground_z_m, range)) return {};
+  return path;
 }
 
 }  // namespace programs

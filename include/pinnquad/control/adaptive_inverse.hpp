@@ -27,11 +27,31 @@ using ObservedCall = decltype(std::declval<Policy&>().observed(std::declval<cons
 template <class Policy, class Scalar>
 using LearnCall = decltype(std::declval<Policy&>().learn(std::uint64_t{}, bool{}, std::declval<const State<Scalar>&>(),
                                                          std::declval<const Commands<Scalar>&>()));
+template <class Policy, class Scalar>
+using AcrossCall = decltype(std::declval<const Policy&>().across_m_s2(std::declval<const State<Scalar>&>()));
 }  // namespace detail
 
-/// True for a feed-forward policy that learns from what was flown.
+/// True for a feed-forward policy that learns from what was flown:
+///   void learn(std::uint64_t now_us, bool known, const State<S>&, const Commands<S>&) noexcept
 template <class Policy, class Scalar>
 inline constexpr bool learns_in_flight = is_detected<detail::LearnCall, Policy, Scalar>;
+
+/// True for one that knows of an acceleration across the thrust, which no rotor makes: NED, to be taken from what is
+/// asked for.
+///   Vector3<S> across_m_s2(const State<S>&) const noexcept
+template <class Policy, class Scalar>
+inline constexpr bool knows_across = is_detected<detail::AcrossCall, Policy, Scalar>;
+
+/// What the policy knows of; zero of one that knows of nothing.
+template <class Scalar, class Policy>
+Vector3<Scalar> across_of(const Policy& policy, const State<Scalar>& state) noexcept {
+  if constexpr (knows_across<Policy, Scalar>) {
+    return policy.across_m_s2(state);
+  } else {
+    static_cast<void>(policy), static_cast<void>(state);
+    return Vector3<Scalar>::Zero();
+  }
+}
 
 /// A feed-forward policy around another one. `Motion`: what makes one instant of what was flown, FlownMotion or
 /// FilteredMotion.
@@ -81,8 +101,12 @@ class AdaptiveInverse {
     motion_.body_rates(now_us, state.body_rates_rad_s);
   }
 
-  /// d: to be taken from an acceleration (NED) before it is asked for.
-  const Vector3<Scalar>& acceleration_bias_m_s2() const noexcept { return bias_.across_m_s2(); }
+  /// d, beside what the inverse knows of.
+  Vector3<Scalar> across_m_s2(const State<Scalar>& state) const noexcept {
+    return bias_.across_m_s2() + across_of(inverse_, state);
+  }
+  /// The inverse's.
+  FallbackCount count() const noexcept { return fallback_count(inverse_); }
 
  private:
   void add_bias(Commands<Scalar>& commands) const noexcept {
@@ -113,7 +137,8 @@ class AdaptiveInverse {
     }
     Vector3<Scalar> across = SpecificForce::of<Scalar>(motion);
     across[2] = Scalar(0);
-    static_cast<void>(bias_.learn(residual, body_to_world<Scalar>(motion.attitude, across), motion_.period_s(step_s)));
+    across = body_to_world<Scalar>(motion.attitude, across) - across_of(inverse_, state);
+    static_cast<void>(bias_.learn(residual, across, motion_.period_s(step_s)));
   }
 
   FeedForward inverse_;
@@ -121,6 +146,54 @@ class AdaptiveInverse {
   MotionBias<Scalar> bias_;
   Motion motion_;
   std::uint64_t before_us_ = 0;
+};
+
+/// Two that learn: the first answers; where it declines, or has needed a bias beyond its bound for `patience_s`, the
+/// second does, by its own bias, until the first has needed none beyond it for as long.
+template <class Scalar, class First, class Second>
+class HandsOver {
+ public:
+  HandsOver(const First& first, const Second& second, Scalar patience_s = Scalar(0.5)) noexcept
+      : first_(first), second_(second), patience_s_(patience_s) {}
+
+  const First& first() const noexcept { return first_; }
+  const Second& second() const noexcept { return second_; }
+  bool handed_over() const noexcept { return handed_over_; }
+
+  /// `fell_back` where the second answers.
+  Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& wanted, std::uint64_t time_us,
+                    Commands<Scalar>& commands) noexcept {
+    const Status status = handed_over_ ? Status::distrusted : first_(state, wanted, time_us, commands);
+    if (has_output(status)) return status;
+    return has_output(second_(state, wanted, time_us, commands)) ? Status::fell_back : status;
+  }
+
+  void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
+    first_.learn(now_us, known, state, commands);
+    second_.learn(now_us, known, state, commands);
+    const Scalar step_s =
+        before_us_ != 0 && now_us > before_us_ ? Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_) : Scalar(0);
+    before_us_ = now_us;
+    const bool beyond = first_.bias().status() == Status::limited && second_.bias().status() != Status::limited;
+    for_s_ = beyond != handed_over_ ? for_s_ + step_s : Scalar(0);
+    if (for_s_ < patience_s_) return;
+    handed_over_ = beyond;
+    for_s_ = Scalar(0);
+  }
+
+  Vector3<Scalar> across_m_s2(const State<Scalar>& state) const noexcept {
+    return handed_over_ ? second_.across_m_s2(state) : first_.across_m_s2(state);
+  }
+  /// The first one's.
+  FallbackCount count() const noexcept { return first_.count(); }
+
+ private:
+  First first_;
+  Second second_;
+  Scalar patience_s_;
+  std::uint64_t before_us_ = 0;
+  Scalar for_s_{0};  ///< time that has said otherwise
+  bool handed_over_ = false;
 };
 
 }  // namespace pinnquad

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "pinnquad/control/rotor_follower.hpp"
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/features/features.hpp"
 
 namespace pinnquad {
@@ -18,6 +18,7 @@ template <class Scalar>
 struct FilteredMotionSettings {
   Scalar cutoff_rad_s = Scalar(75);  ///< 12 Hz
   Scalar rotor_lag_s = Scalar(0);    ///< time constant of the rotors
+  Scalar delay_s = Scalar(0);        ///< by which a state comes late beside the commands
 };
 
 /// Velocity, body rates, attitude and commands through one Butterworth low-pass of second order,
@@ -26,14 +27,15 @@ struct FilteredMotionSettings {
 template <class Scalar>
 class FilteredMotion {
  public:
-  explicit FilteredMotion(const FilteredMotionSettings<Scalar>& settings = {}) noexcept : settings_(settings) {}
+  explicit FilteredMotion(const FilteredMotionSettings<Scalar>& settings = {}) noexcept
+      : settings_(settings), rotors_(settings.rotor_lag_s, settings.delay_s) {}
 
   const FilteredMotionSettings<Scalar>& settings() const noexcept { return settings_; }
 
   /// It is shown the state of each tick.
   void velocity(std::uint64_t /*time_us*/, const Vector3<Scalar>& /*m_s*/) noexcept {}
   void body_rates(std::uint64_t /*time_us*/, const Vector3<Scalar>& /*rad_s*/) noexcept {}
-  void interrupt() noexcept { run_s_ = Scalar(0); }
+  void interrupt() noexcept { runs_ = false; }
 
   /// One tick, as FlownMotion's. True once the low-pass has settled: six of its time constants after the first of ticks
   /// that follow each other.
@@ -42,7 +44,7 @@ class FilteredMotion {
     before_us_ = now_us;
     const bool follows = step_s > Scalar(0) && step_s * settings_.cutoff_rad_s <= Scalar(0.5);
     if (!(known && follows && all_finite(state) && all_finite(commands))) {
-      run_s_ = Scalar(0);
+      interrupt();
       return false;
     }
     const Quaternion<Scalar>& q = state.attitude;
@@ -54,15 +56,15 @@ class FilteredMotion {
       now[static_cast<std::size_t>(3 + i)] = state.body_rates_rad_s[i];
     }
     now[6] = sign * q.w, now[7] = sign * q.x, now[8] = sign * q.y, now[9] = sign * q.z;
-    const bool first = !(run_s_ > Scalar(0));
-    const Scalar share = first ? Scalar(1) : step_s / (settings_.rotor_lag_s + step_s);
-    for (std::size_t i = 0; i < rotor_count; ++i) {
-      rotors_[i] += share * (commands[i] - rotors_[i]);
-      now[10 + i] = rotors_[i];
+    if (!runs_) {
+      rotors_.restart(commands);
+      settled_s_ = Scalar(0);
     }
+    const bool known_rotors = rotors_.follow(now_us, step_s, commands);
+    for (std::size_t i = 0; i < rotor_count; ++i) now[10 + i] = rotors_.then()[i];
     const Scalar w = settings_.cutoff_rad_s;
     for (std::size_t i = 0; i < channels; ++i) {
-      if (first) {
+      if (!runs_) {
         at_[i] = now[i];
         rate_[i] = Scalar(0);
         continue;
@@ -70,9 +72,9 @@ class FilteredMotion {
       rate_[i] += step_s * (w * w * (now[i] - at_[i]) - Scalar(1.4142135623730951) * w * rate_[i]);
       at_[i] += step_s * rate_[i];
     }
-    run_s_ += step_s;
-    if (!(run_s_ * w >= Scalar(6))) return false;
-    return finish();
+    runs_ = true;
+    settled_s_ = known_rotors ? settled_s_ + step_s : Scalar(0);
+    return settled_s_ * w >= Scalar(6) && finish();
   }
 
   /// There is a motion of each tick.
@@ -100,9 +102,10 @@ class FilteredMotion {
 
   FilteredMotionSettings<Scalar> settings_;
   std::uint64_t before_us_ = 0;
-  Scalar run_s_{0};  ///< since the first of these ticks
+  bool runs_ = false;
+  Scalar settled_s_{0};  ///< since rotors and states are known together
   std::array<Scalar, channels> at_{}, rate_{};
-  Commands<Scalar> rotors_{};
+  RotorFollower<Scalar> rotors_;
   MotionInputs<Scalar> motion_{};
   Commands<Scalar> flown_{};
 };

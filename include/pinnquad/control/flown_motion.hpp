@@ -4,13 +4,11 @@
 // commands of one instant.
 #pragma once
 
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
+#include "pinnquad/control/rotor_follower.hpp"
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/features/features.hpp"
 
 namespace pinnquad {
@@ -32,13 +30,10 @@ struct FlownMotionSettings {
 template <class Scalar>
 class FlownMotion {
  public:
-  /// Commands are kept this finely beside the delay.
-  static constexpr std::size_t delayed_commands = 24;
-
   explicit FlownMotion(const FlownMotionSettings<Scalar>& settings = {}) noexcept
       : settings_(settings),
         period_s_(Scalar(1e-6) * static_cast<Scalar>(settings.period_us)),
-        delay_us_(static_cast<std::uint64_t>(Scalar(1e6) * settings.delay_s)) {}
+        rotors_(settings.rotor_lag_s, settings.delay_s) {}
 
   const FlownMotionSettings<Scalar>& settings() const noexcept { return settings_; }
 
@@ -56,8 +51,7 @@ class FlownMotion {
     const bool follows = now_us > before_us_ && now_us - before_us_ <= longest_tick_us();
     if (!(known && follows)) {
       interrupt();
-      rotors_ = commands;
-      stored_ = 0;
+      rotors_.restart(commands);
     }
     const std::uint64_t number = now_us / settings_.period_us;
     bool ended = false;
@@ -125,31 +119,10 @@ class FlownMotion {
 
   void weigh(std::uint64_t now_us, Scalar step_s, const State<Scalar>& state,
              const Commands<Scalar>& commands) noexcept {
-    const Scalar share = step_s / (settings_.rotor_lag_s + step_s);
-    for (std::size_t i = 0; i < commands.size(); ++i) rotors_[i] += share * (commands[i] - rotors_[i]);
-    const Commands<Scalar>& then = delayed(now_us);
+    if (!rotors_.follow(now_us, step_s, commands)) now_.whole = false;
     const Scalar t = Scalar(1e-6) * static_cast<Scalar>(now_us - number_ * settings_.period_us);
-    now_.rising.add(t * step_s, state, then);
-    now_.falling.add((period_s_ - t) * step_s, state, then);
-  }
-
-  /// What the rotors followed when the state was: the oldest kept that is no older.
-  const Commands<Scalar>& delayed(std::uint64_t now_us) noexcept {
-    if (delay_us_ == 0) return rotors_;
-    const auto at = [this](std::size_t i) noexcept -> Kept& { return kept_[(oldest_ + i) % kept_.size()]; };
-    if (stored_ == 0 || now_us - at(stored_ - 1).time_us >= delay_us_ / (delayed_commands - 2)) {
-      if (stored_ == kept_.size()) {
-        oldest_ = (oldest_ + 1) % kept_.size();
-        --stored_;
-      }
-      at(stored_++) = {now_us, rotors_};
-    }
-    while (stored_ > 1 && at(1).time_us + delay_us_ <= now_us) {
-      oldest_ = (oldest_ + 1) % kept_.size();
-      --stored_;
-    }
-    if (at(0).time_us + delay_us_ > now_us) now_.whole = false;  // older than what is kept
-    return at(0).commands;
+    now_.rising.add(t * step_s, state, rotors_.then());
+    now_.falling.add((period_s_ - t) * step_s, state, rotors_.then());
   }
 
   /// False where the samples don't cover the periods, or are no numbers.
@@ -185,20 +158,12 @@ class FlownMotion {
     return true;
   }
 
-  struct Kept {
-    std::uint64_t time_us;
-    Commands<Scalar> commands;
-  };
-
   FlownMotionSettings<Scalar> settings_;
   Scalar period_s_;
-  std::uint64_t delay_us_;
   std::uint64_t before_us_ = 0;
   std::uint64_t number_ = 0;  ///< of the period
   Period before_, now_;
-  Commands<Scalar> rotors_{};                  ///< behind their lag
-  std::array<Kept, delayed_commands> kept_{};  ///< the last `stored_` from `oldest_` on
-  std::size_t oldest_ = 0, stored_ = 0;
+  RotorFollower<Scalar> rotors_;
   MotionInputs<Scalar> motion_{};
   Commands<Scalar> flown_{};
 };

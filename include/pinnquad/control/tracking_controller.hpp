@@ -8,6 +8,7 @@
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
+#include "pinnquad/control/integral_inverse.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
@@ -46,13 +47,14 @@ class TrackingController {
     TrajectoryPoint<Scalar> asked = point;
     if constexpr (learns_in_flight<FeedForward, Scalar>) {
       feed_forward_.learn(time_us, flew_ && !saturated(last_), state, last_);
-      asked.acceleration_m_s2 -= feed_forward_.acceleration_bias_m_s2();
       flew_ = false;
     }
+    asked.acceleration_m_s2 -= across_of(feed_forward_, state);
     Accelerations<Scalar> motion, feedback;
     const Status demanded = controller_(state, asked, motion, feedback);
     if (demanded != Status::ok) return demanded;
     Commands<Scalar> reference{};
+    if constexpr (integrates_feedback<FeedForward, Scalar>) feed_forward_.integrate(feedback);
     feed_forward_status_ = feed_forward_(state, motion, time_us, reference);
     Status status = feed_forward_status_;
     ThrustFractions<Scalar> sum = rotors_.fractions(reference);

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Flies a model from its block, as feed-forward in a closed loop: no compiler is asked.
+// Flies a model from its block, as feed-forward in a closed loop: no compiler is asked. Or controllers that are compared
+// under conditions.
 //   pinnquad loop my_model/model.block --trajectory circle --column battery_voltage=15.2
-#include "model/loop_command.hpp"
+//   pinnquad loop my_model/model.block --controllers structured,adaptive,indi --conditions calm,payload --out compared
+#include "loop/loop_command.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -21,6 +25,9 @@
 #include "command_line/options.hpp"
 #include "flight/block_loop.hpp"
 #include "flight/loop_figures.hpp"
+#include "loop/campaign.hpp"
+#include "loop/controllers.hpp"
+#include "loop/summary.hpp"
 #include "model/given_model.hpp"
 #include "pinnquad/exported/model.hpp"
 
@@ -35,7 +42,23 @@ struct LoopOptions {
   std::string guard = "envelope";
   std::vector<std::string> columns;
   bool json = false;
+  // of a comparison
+  std::vector<std::string> controllers, conditions, trajectories = {"eight", "circle", "random"},
+                                                    gains = {"equal", "tuned"};
+  int seeds = 5, budget = 40;
+  double duration_s = 40, noise = 1, delay_ms = 0;
+  unsigned threads = 0;
+  std::string out;
+
+  bool compares() const { return !(controllers.empty() && conditions.empty() && out.empty()); }
 };
+
+template <class Named>
+std::vector<std::string> names_of(const Named& all) {
+  std::vector<std::string> names;
+  for (const auto& each : all) names.emplace_back(each.name);
+  return names;
+}
 
 /// The airframe that flies. Throws std::invalid_argument for one whose motors are not those of the model.
 programs::NamedAirframe chosen_airframe(const LoopOptions& options, const BlockModel& model) {
@@ -114,6 +137,42 @@ void print_table(const LoopOptions& options, const BlockModel& model, const std:
   if (!reasons.empty()) std::printf("  the analytic inverse stood in for the model: %s\n", reasons.c_str());
 }
 
+/// Controllers side by side.
+int compare(const LoopOptions& options, const BlockModel& model, const std::vector<double>& columns,
+            const Airframe<double>& airframe) {
+  if (options.out.empty()) throw std::invalid_argument("--out: the folder of the comparison is missing");
+  const auto or_usual = [](const std::vector<std::string>& named, std::vector<std::string> usual) {
+    std::vector<std::string> once;
+    for (const std::string& name : named.empty() ? usual : named) {
+      if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
+    }
+    return once;
+  };
+  programs::LoopCampaign plan{model, columns, airframe};
+  plan.controllers = or_usual(options.controllers, {"pid", "formula", "indi", "structured", "adaptive"});
+  plan.conditions = or_usual(options.conditions, {"calm", "wind_8", "gusts", "payload", "weak_rotor", "battery"});
+  plan.trajectories = or_usual(options.trajectories, {});
+  plan.gains = or_usual(options.gains, {});
+  plan.seeds = options.seeds;
+  plan.budget = options.budget;
+  plan.duration_s = options.duration_s;
+  for (double* noise : {&plan.sensors.position_m, &plan.sensors.velocity_m_s, &plan.sensors.attitude_rad,
+                        &plan.sensors.body_rates_rad_s}) {
+    *noise *= options.noise;
+  }
+  plan.sensors.delay_s = 1e-3 * options.delay_ms;
+  plan.threads = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  plan.out = options.out;
+  const nlohmann::json result = programs::run_campaign(plan);
+  if (options.json) {
+    std::printf("%s\n", result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  } else {
+    programs::print_loop_tables(result, plan.controllers, plan.conditions, plan.gains);
+    std::printf("%zu flights, all in %s/loop.json\n", result["rows"].size(), printable(options.out).c_str());
+  }
+  return 0;
+}
+
 int loop(const LoopOptions& options) {
   const BlockModel model = programs::read_model(options.model);
   if (model.features().window().latest_s > 0) {
@@ -121,6 +180,7 @@ int loop(const LoopOptions& options) {
   }
   const std::vector<double> columns = programs::held_columns(programs::range_of(model).columns(), options.columns);
   const programs::NamedAirframe airframe = chosen_airframe(options, model);
+  if (options.compares()) return compare(options, model, columns, airframe.value);
   const programs::LoopFlights flights =
       programs::fly_loop(model, {options.trajectory, airframe.value, options.guard == "envelope", columns});
   programs::stop_if_interrupted();
@@ -164,11 +224,50 @@ programs::Command programs::loop_command(CLI::App& program) {
       ->capture_default_str()
       ->check(CLI::IsMember({"envelope", "none"}));
   line->add_flag("--json", options->json, "the figures as JSON");
+  const auto one_of = [](const std::vector<std::string>& names) { return CLI::IsMember(names); };
+  const auto list = [&](const char* name, std::vector<std::string>& value, const std::vector<std::string>& names,
+                        const std::string& text) {
+    line->add_option(name, value, text)
+        ->delimiter(',')
+        ->type_name("NAME,...")
+        ->check(one_of(names))
+        ->group("Comparison");
+  };
+  const auto described = [](const char* text, const auto& all) {
+    std::string result = text;
+    for (const auto& each : all) result += std::string("\n  ") + each.name + ": " + each.summary;
+    return result;
+  };
+  list("--controllers", options->controllers, names_of(loop_controllers),
+       described("compare these controllers in the loop (default: pid,formula,indi,structured,adaptive):",
+                 loop_controllers));
+  list("--conditions", options->conditions, names_of(loop_conditions),
+       described("under these conditions (default: calm,wind_8,gusts,payload,weak_rotor,battery):", loop_conditions));
+  list("--trajectories", options->trajectories, {campaign_trajectories.begin(), campaign_trajectories.end()},
+       "on these trajectories (default: eight,circle,random); step: a place 50 m away");
+  list("--gains", options->gains, {campaign_gains.begin(), campaign_gains.end()},
+       "equal: moderate gains, the same for all; tuned: those that a search finds for each, on other trajectories and "
+       "seeds (default: both)");
+  const auto number = [&](const char* name, auto& value, auto least, auto most, const char* text) {
+    add_number(*line, name, value, least, most, text)->group("Comparison");
+  };
+  number("--seeds", options->seeds, 1, 1000, "seeds of noise, wind, gusts, random paths, the weak rotor");
+  number("--budget", options->budget, 1, 100000, "evaluations of the search, the same for each controller");
+  number("--duration", options->duration_s, 15.0, 3600.0, "of a flight, s; errors are of what comes after 10 s");
+  number("--noise", options->noise, 0.0, 100.0,
+         "of what controllers see, times 5 mm, 0.02 m/s, 0.002 rad, 0.02 rad/s for each sample at 500 Hz");
+  number("--delay", options->delay_ms, 0.0, 200.0, "of what controllers see, ms");
+  number("--threads", options->threads, 1u, 1024u, "flights at once (default: all cores)");
+  line->get_option("--threads")->default_str("");
+  line->add_option("--out", options->out, "folder of the comparison: loop.json; the same command goes on in it")
+      ->type_name("FOLDER")
+      ->group("Comparison");
   line->footer(
       "Examples:\n"
       "  pinnquad loop my_model/model.hpp\n"
       "  pinnquad loop my_model/model.block --trajectory circle --guard none --json\n"
       "  pinnquad loop trained.block --column battery_voltage=15.2\n"
+      "  pinnquad loop trained.block --controllers structured,adaptive,indi --conditions calm,payload --out compared\n"
       "The feedback is the same for all that fly. A model that is shown the altitude flies near the ground.\n"
       "Exit codes: 0; 1 the model loses the vehicle, or answers nothing; 2 bad input or a file that can't be read; "
       "130\n"

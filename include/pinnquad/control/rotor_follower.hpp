@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// The commands that rotors follow: behind their lag, and as old as a state that comes late.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "pinnquad/core/types.hpp"
+
+namespace pinnquad {
+
+/// First-order lag r' = (u - r) / lag of commands in force from tick to tick, seen a delay later.
+template <class Scalar>
+class RotorFollower {
+ public:
+  /// So finely are commands kept beside the delay.
+  static constexpr std::size_t most_kept = 24;
+
+  explicit RotorFollower(Scalar lag_s = Scalar(0), Scalar delay_s = Scalar(0)) noexcept
+      : lag_s_(lag_s), delay_us_(static_cast<std::uint64_t>(Scalar(1e6) * delay_s)) {}
+
+  /// Rotors that have settled at these commands; nothing is known of the past.
+  void restart(const Commands<Scalar>& commands) noexcept {
+    rotors_ = commands;
+    stored_ = 0;
+  }
+
+  /// One tick: the commands in force since the tick before. False while the delay reaches back beyond the restart.
+  bool follow(std::uint64_t now_us, Scalar step_s, const Commands<Scalar>& commands) noexcept {
+    const Scalar share = step_s / (lag_s_ + step_s);
+    for (std::size_t i = 0; i < commands.size(); ++i) rotors_[i] += share * (commands[i] - rotors_[i]);
+    if (delay_us_ == 0) return true;
+    if (stored_ == 0 || now_us - kept(stored_ - 1).time_us >= delay_us_ / (most_kept - 2)) {
+      if (stored_ == most_kept) drop_oldest();
+      kept(stored_++) = {now_us, rotors_};
+    }
+    while (stored_ > 1 && kept(1).time_us + delay_us_ <= now_us) drop_oldest();
+    return kept(0).time_us + delay_us_ <= now_us;
+  }
+
+  /// What the rotors followed a delay ago.
+  const Commands<Scalar>& then() const noexcept { return delay_us_ == 0 ? rotors_ : kept_[oldest_].commands; }
+
+ private:
+  struct Kept {
+    std::uint64_t time_us;
+    Commands<Scalar> commands;
+  };
+
+  Kept& kept(std::size_t i) noexcept { return kept_[(oldest_ + i) % most_kept]; }
+  void drop_oldest() noexcept {
+    oldest_ = (oldest_ + 1) % most_kept;
+    --stored_;
+  }
+
+  Scalar lag_s_;
+  std::uint64_t delay_us_;
+  Commands<Scalar> rotors_{};
+  std::array<Kept, most_kept> kept_{};  ///< the last `stored_` from `oldest_` on
+  std::size_t oldest_ = 0, stored_ = 0;
+};
+
+}  // namespace pinnquad

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// Controllers that are compared: compositions of flight code by name. Outer loop, reference, limits, filters and the
+// rotors' lag are the same for all; they differ in what turns a motion into commands, and in what they learn.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "flight/block_feed_forward.hpp"
+#include "loop/any_policy.hpp"
+#include "pinnquad/control/filtered_motion.hpp"
+#include "pinnquad/control/known_drag.hpp"
+
+namespace programs {
+
+struct LoopController {
+  const char* name;
+  const char* summary;
+  bool asks_model = false;  ///< of the block
+  bool learns = false;
+};
+
+inline constexpr std::array<LoopController, 10> loop_controllers = {{
+    {"pid", "cascaded PID: the rigid body's allocation, integral of the feedback", false, true},
+    {"formula", "the analytic inverse with nominal drag"},
+    {"geometric", "the same, and the attitude leans against nominal drag"},
+    {"formula_adaptive", "the analytic inverse, with a bias learnt in flight", false, true},
+    {"indi", "incremental inversion of the rigid body (INDI): rates and force", false, true},
+    {"observer", "disturbance observer: geometric, and a low-pass of what it lacks", false, true},
+    {"structured", "the model of the block", true},
+    {"structured_drag", "the same, and the attitude leans against nominal drag", true},
+    {"adaptive", "the model, with a bias learnt in flight; beyond its bound formula_adaptive", true, true},
+    {"structured_indi", "incremental inversion of the model", true, true},
+}};
+
+/// Factors of what each controller has by default; 1 each: equal, moderate gains.
+struct LoopGains {
+  double outer = 1;     ///< of position and velocity gains
+  double inner = 1;     ///< of attitude and body rate gains
+  double learning = 1;  ///< of the rates at which it learns: integral, bias, cut-off
+};
+
+inline pinnquad::FlightGains<double> flight_gains(const LoopGains& factors) {
+  pinnquad::FlightGains<double> gains;
+  gains.position_1_s *= factors.outer;
+  gains.velocity_1_s *= factors.outer;
+  for (double* gain : {&gains.tilt_1_s, &gains.yaw_1_s, &gains.roll_pitch_rate_1_s, &gains.yaw_rate_1_s}) {
+    *gain *= factors.inner;
+  }
+  return gains;
+}
+
+/// What the controllers are told.
+template <class Vehicle>
+struct LoopKnowledge {
+  const pinnquad::BlockModel& model;
+  const std::vector<double>& columns;  ///< of the model, in their order
+  const Vehicle& vehicle;              ///< with its effects
+  pinnquad::MotionBiasSettings<double> bias{};
+  double delay_s = 0;  ///< by which states come late
+};
+
+/// Throws std::out_of_range for a name that is none.
+template <class Vehicle>
+AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& known, const LoopGains& gains) {
+  using namespace pinnquad;
+  using Body = Quadrotor<double, StandardAtmosphere>;
+  using Formula = AnalyticInverse<Vehicle>;
+  const Airframe<double>& airframe = known.vehicle.airframe();
+  const AnalyticInverse<Body> rigid_body(Body(airframe, known.vehicle.site()));
+  const Formula formula(known.vehicle);
+  const double lag_s = airframe.rise_time_constant_s(0);
+  const FlownMotion<double> flown({25'000, lag_s, known.delay_s});
+  FilteredMotionSettings<double> low_pass;
+  low_pass.cutoff_rad_s *= gains.learning;
+  low_pass.rotor_lag_s = lag_s;
+  low_pass.delay_s = known.delay_s;
+  const FilteredMotion<double> filtered(low_pass);
+  MotionBiasSettings<double> bias = known.bias, at_once = known.bias, slower = known.bias;
+  for (std::size_t i = 0; i < bias.time_constants_s.size(); ++i) {
+    bias.time_constants_s[i] /= gains.learning;
+    at_once.time_constants_s[i] = 0;
+    slower.time_constants_s[i] = 0.05 / gains.learning;
+  }
+  bias.across_time_constant_s /= gains.learning;
+  at_once.across_time_constant_s = 0;
+  slower.across_time_constant_s = 0.05 / gains.learning;
+  IntegralSettings<double> integral;
+  integral.linear_1_s *= gains.learning;
+  integral.angular_1_s *= gains.learning;
+
+  const auto adaptive = [&](const auto& inverse) {
+    return AdaptiveInverse<double, std::decay_t<decltype(inverse)>>(inverse, airframe, bias, flown);
+  };
+  const auto incremental = [&](const auto& inverse, const MotionBiasSettings<double>& settings) {
+    return AdaptiveInverse<double, std::decay_t<decltype(inverse)>, FilteredMotion<double>>(inverse, airframe, settings,
+                                                                                            filtered);
+  };
+  const KnownDrag<Formula, Vehicle> geometric(formula, known.vehicle);
+  if (name == "pid") return AnyPolicy(IntegralInverse<double, AnalyticInverse<Body>>(rigid_body, integral));
+  if (name == "formula") return AnyPolicy(formula);
+  if (name == "geometric") return AnyPolicy(geometric);
+  if (name == "formula_adaptive") return AnyPolicy(adaptive(formula));
+  if (name == "indi") return AnyPolicy(incremental(rigid_body, at_once));
+  if (name == "observer") return AnyPolicy(incremental(geometric, slower));
+
+  const double ground_z_m = known.vehicle.site().ground_z_m;
+  const auto of_model = [&](const auto& guard, const auto& compose) {
+    return with_feed_forward(known.model, guard, ground_z_m, known.columns, compose);
+  };
+  const Extend<TrainingGuard, Fallback<Formula>> falls_back(formula);
+  if (name == "structured") {
+    return of_model(falls_back, [](const auto& network) { return AnyPolicy(network); });
+  }
+  if (name == "structured_drag") {
+    return of_model(falls_back, [&](const auto& network) {
+      return AnyPolicy(KnownDrag<std::decay_t<decltype(network)>, Vehicle>(network, known.vehicle));
+    });
+  }
+  if (name == "adaptive") {
+    return of_model(TrainingGuard{}, [&](const auto& network) {
+      using First = decltype(adaptive(network));
+      using Second = decltype(adaptive(formula));
+      return AnyPolicy(HandsOver<double, First, Second>(adaptive(network), adaptive(formula)));
+    });
+  }
+  if (name == "structured_indi") {
+    return of_model(TrainingGuard{}, [&](const auto& network) {
+      using First = decltype(incremental(network, at_once));
+      using Second = decltype(incremental(formula, at_once));
+      return AnyPolicy(HandsOver<double, First, Second>(incremental(network, at_once), incremental(formula, at_once)));
+    });
+  }
+  throw std::out_of_range(name);
+}
+
+}  // namespace programs
