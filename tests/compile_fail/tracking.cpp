@@ -2,6 +2,7 @@
 // CASE NOT_A_FEED_FORWARD: pinnquad: this type is no feed-forward policy
 // CASE FEED_FORWARD_IN_SECONDS: pinnquad: this type is no feed-forward policy; time is a std::uint64_t of microseconds
 // CASE FEED_FORWARD_MAY_THROW: pinnquad: a feed-forward policy flies: its operator.. must be noexcept
+// CASE NOT_AN_INVERSE: pinnquad: AdaptiveInverse's second argument is no feed-forward policy
 #include "pinnquad/control/tracking_controller.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 
@@ -33,8 +34,15 @@ struct Policy {
   }
 };
 
+#if defined(NOT_AN_INVERSE)
+struct Inverse {};
+#else
+using Inverse = Policy;
+#endif
+
 using Controller = pinnquad::TrackingController<double, Policy>;
+using Learning = pinnquad::AdaptiveInverse<double, Inverse>;
 
 }  // namespace
 
-int main() { return sizeof(Controller) > sizeof(Policy) ? 0 : 1; }
+int main() { return sizeof(Controller) > sizeof(Policy) && sizeof(Learning) > sizeof(Inverse) ? 0 : 1; }

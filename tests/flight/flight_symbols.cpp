@@ -366,6 +366,39 @@ unsigned char pinnquad_flight_track_analytic(double* rmse_m) {
   return fly(pinnquad::Circle<double>{}, pinnquad::AnalyticInverse<Everything<double>>(everything<double>()), rmse_m);
 }
 
+unsigned char pinnquad_flight_track_adaptive(float* rmse_m) {
+  using Inverse = pinnquad::NetworkInverse<Guarded>;
+  const pinnquad::AdaptiveInverse<float, Inverse> feed_forward(
+      Inverse(guarded()), pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>(),
+      pinnquad::bias_settings<SmallModel>(), pinnquad::FlownMotion<float>({25'000, 0.005F, 0.02F}));
+  return fly(pinnquad::FigureEight<float>{}, feed_forward, rmse_m);
+}
+
+unsigned char pinnquad_flight_track_incremental(double* rmse_m) {
+  using Inverse = pinnquad::AnalyticInverse<Everything<double>>;
+  using Incremental = pinnquad::AdaptiveInverse<double, Inverse, pinnquad::FilteredMotion<double>>;
+  return fly(pinnquad::Circle<double>{},
+             Incremental(Inverse(everything<double>()), pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>()),
+             rmse_m);
+}
+
+/// Every function of an inverse that learns, tick by tick.
+unsigned char pinnquad_flight_learn(const float* state, const float* wanted, float* u) {
+  using Inverse = pinnquad::NetworkInverse<Guarded>;
+  pinnquad::MotionBias<float> logged;
+  pinnquad::AdaptiveInverse<float, Inverse> inverse(Inverse(guarded()),
+                                                    pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>());
+  const auto vehicle = read(state);
+  Commands<float> commands{u[0], u[1], u[2], u[3]};
+  inverse.learn(static_cast<std::uint64_t>(wanted[6]), true, vehicle.body, commands);
+  inverse.interrupt();
+  logged.resume(inverse.bias().sums(), inverse.acceleration_bias_m_s2(), inverse.bias().waited_s());
+  const Status status = inverse(vehicle.body, motion(wanted), 0, commands);
+  for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i] + logged.sums()[i];
+  inverse.reset();
+  return static_cast<unsigned char>(status);
+}
+
 unsigned char pinnquad_flight_track_hover(float* rmse_m) {
   pinnquad::HoverTrim<float> trim;
   const Status status = pinnquad::hover_trim(everything<float>(), Vector3<float>(0.0F, 0.0F, -5.0F), trim);

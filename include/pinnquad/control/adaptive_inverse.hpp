@@ -92,11 +92,8 @@ class AdaptiveInverse {
     const Scalar step_s =
         before_us_ != 0 && now_us > before_us_ ? Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_) : Scalar(0);
     before_us_ = now_us;
-    if (motion_.tick(now_us, known, state, commands)) {
-      compare(now_us, state.position_m, step_s);
-    } else {
-      bias_.wait(step_s);
-    }
+    const bool learnt = motion_.tick(now_us, known, state, commands) && compare(now_us, state.position_m, step_s);
+    if (!learnt) bias_.wait(step_s);
     motion_.velocity(now_us, state.velocity_m_s);
     motion_.body_rates(now_us, state.body_rates_rad_s);
   }
@@ -115,7 +112,8 @@ class AdaptiveInverse {
     }
   }
 
-  PINNQUAD_NOINLINE void compare(std::uint64_t now_us, const Vector3<Scalar>& position_m, Scalar step_s) noexcept {
+  /// False where the inverse has no answer of its own, or the residual is no number.
+  PINNQUAD_NOINLINE bool compare(std::uint64_t now_us, const Vector3<Scalar>& position_m, Scalar step_s) noexcept {
     const MotionInputs<Scalar>& motion = motion_.motion();
     State<Scalar> state;
     state.position_m = position_m;
@@ -130,7 +128,7 @@ class AdaptiveInverse {
     } else {
       status = inverse_(state, flown, now_us, said);
     }
-    if (status != Status::ok) return;
+    if (status != Status::ok) return false;
     SignedSums<Scalar> residual{};
     for (std::size_t k = 0; k < 4; ++k) {
       for (std::size_t i = 0; i < rotor_count; ++i) residual[k] += mix_.signs[k][i] * (motion_.flown()[i] - said[i]);
@@ -138,7 +136,7 @@ class AdaptiveInverse {
     Vector3<Scalar> across = SpecificForce::of<Scalar>(motion);
     across[2] = Scalar(0);
     across = body_to_world<Scalar>(motion.attitude, across) - across_of(inverse_, state);
-    static_cast<void>(bias_.learn(residual, across, motion_.period_s(step_s)));
+    return has_output(bias_.learn(residual, across, motion_.period_s(step_s)));
   }
 
   FeedForward inverse_;

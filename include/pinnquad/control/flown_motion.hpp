@@ -48,24 +48,22 @@ class FlownMotion {
   /// before it was whole too: motion() and flown() are theirs. `known`: these commands drove the motors, and the state
   /// is fresh.
   bool tick(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
-    const bool follows = now_us > before_us_ && now_us - before_us_ <= longest_tick_us();
-    if (!(known && follows)) {
+    const bool numbers = all_finite(commands);
+    const bool follows = known && numbers && now_us > before_us_ && now_us - before_us_ <= longest_tick_us();
+    if (!follows) {
       interrupt();
-      rotors_.restart(commands);
+      if (numbers) rotors_.restart(commands);  // one that is none would stay behind the lag for good
     }
     const std::uint64_t number = now_us / settings_.period_us;
     bool ended = false;
     if (number != number_) {
-      if (number != number_ + 1) interrupt();
       ended = now_.whole && before_.whole && finish();
       before_ = now_;
       now_ = {};
       number_ = number;
-      now_.whole = known && follows && now_us - number * settings_.period_us <= longest_tick_us();
+      now_.whole = follows && now_us - number * settings_.period_us <= longest_tick_us();
     }
-    if (known && follows) {
-      weigh(now_us, Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_), state, commands);
-    }
+    if (follows) weigh(now_us, Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_), state, commands);
     before_us_ = now_us;
     return ended;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The bias of an inverse: what its commands and the forces that it knows of lack, from a payload, a weak rotor or battery,
-// wind. It is learnt from the past alone: the answer to a motion asked for shifts, and rises with it as before.
+// The bias of an inverse: what its commands and the forces that it knows of lack, from a payload, a weak rotor or
+// battery, wind. It is learnt from the past alone: the answer to a motion asked for shifts, and rises with it as
+// before.
 #pragma once
 
 #include <array>
@@ -27,9 +28,9 @@ struct MotionBiasSettings {
   Scalar fade_s = Scalar(2);            ///< time constant of fading
 };
 
-/// b <- b + T / (T + time constant) (r - b) of each signed sum of commands, |b| <= most. T: the period of r; r: the residual, commands flown - commands that
-/// the inverse gives for the motion flown. And the same of d, the acceleration across the thrust (NED, m/s^2) that no
-/// rotor makes.
+/// b <- b + T / (T + time constant) (r - b) of each signed sum of commands, |b| <= most. T: the period of r; r: the
+/// residual, commands flown - commands that the inverse gives for the motion flown. And the same of d, the acceleration
+/// across the thrust (NED, m/s^2) that no rotor makes. A time constant of 0 is the last residual, an infinite one none.
 template <class Scalar>
 class MotionBias {
  public:
@@ -42,9 +43,10 @@ class MotionBias {
   /// `not_finite`: the last residual was no number.
   Status status() const noexcept { return status_; }
 
-  /// One residual. `not_finite`: nothing changes.
+  /// One residual, and the period that it is of. `not_finite`: of a residual or period that is none; nothing changes.
   Status learn(const SignedSums<Scalar>& residual, const Vector3<Scalar>& across_m_s2, Scalar period_s) noexcept {
-    if (!(all_finite(residual) && all_finite(across_m_s2))) return status_ = Status::not_finite;
+    const bool sound = all_finite(residual) && all_finite(across_m_s2) && is_finite(period_s) && period_s > Scalar(0);
+    if (!sound) return status_ = Status::not_finite;
     bool bound = false;
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       const Scalar wanted = sums_[i] + share(settings_.time_constants_s[i], period_s) * (residual[i] - sums_[i]);

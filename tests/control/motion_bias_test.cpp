@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// The bias of the signed sums: first order, its bounds, hold and fade, what it says of itself.
+#include "pinnquad/control/motion_bias.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace pinnquad;
+
+namespace {
+
+using Bias = MotionBias<double>;
+constexpr double period_s = 0.025, rounding = 1e-12;
+const double no_number = std::numeric_limits<double>::quiet_NaN();
+const double infinity = std::numeric_limits<double>::infinity();
+const Vector3<double> none = Vector3<double>::Zero();
+
+MotionBiasSettings<double> settings() {
+  MotionBiasSettings<double> result;
+  result.time_constants_s = {0.2, 0.4, 0.8, 1.6};
+  result.across_time_constant_s = 0.3;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a constant residual is found as first order finds it: r (1 - (c / (c + T))^n)") {
+  const SignedSums<double> residual{0.3, -0.2, 0.1, 0.05};
+  const Vector3<double> across(1, -0.5, 0.2);
+  Bias bias(settings());
+  CHECK(bias.status() == Status::warming_up);
+  for (int n = 1; n <= 200; ++n) {
+    REQUIRE(bias.learn(residual, across, period_s) == Status::ok);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double c = settings().time_constants_s[k];
+      CHECK(std::abs(bias.sums()[k] - residual[k] * (1 - std::pow(c / (c + period_s), n))) <= rounding);
+      // and what a time constant is: 1 - exp(-t / c), to a period
+      CHECK(std::abs(bias.sums()[k] - residual[k] * (1 - std::exp(-period_s * n / c))) <= 0.1 * std::abs(residual[k]));
+    }
+    CHECK((bias.across_m_s2() - across * (1 - std::pow(0.3 / (0.3 + period_s), n))).norm() <= rounding);
+  }
+}
+
+TEST_CASE("a time constant of 0 is the last residual, an infinite one none") {
+  MotionBiasSettings<double> extreme = settings();
+  extreme.time_constants_s = {0, infinity, 0, infinity};
+  Bias bias(extreme);
+  REQUIRE(bias.learn({0.3, 0.2, -0.1, 0.4}, none, period_s) == Status::ok);
+  CHECK(bias.sums() == SignedSums<double>{0.3, 0, -0.1, 0});
+}
+
+TEST_CASE("bounds: of each sum, and of the length across; it says that it is limited, and comes off again") {
+  Bias bias(settings());
+  for (int i = 0; i < 400; ++i) static_cast<void>(bias.learn({5, -5, 0.1, 0}, {6, 8, 0}, period_s));
+  CHECK(bias.status() == Status::limited);
+  CHECK(bias.sums()[0] == settings().most[0]);
+  CHECK(bias.sums()[1] == -settings().most[1]);
+  CHECK(std::abs(bias.sums()[2] - 0.1) <= 1e-4);
+  CHECK(bias.across_m_s2().norm() == doctest::Approx(settings().most_across_m_s2));
+  CHECK(bias.across_m_s2()[0] / bias.across_m_s2()[1] == doctest::Approx(0.75));
+  // no windup: one period after the residual is gone it moves
+  REQUIRE(bias.learn({0, 0, 0, 0}, none, period_s) == Status::ok);
+  CHECK(bias.sums()[0] == doctest::Approx(settings().most[0] * 0.2 / (0.2 + period_s)));
+}
+
+TEST_CASE("without a residual it holds, then fades; a residual ends the waiting") {
+  Bias bias(settings());
+  for (int i = 0; i < 400; ++i) static_cast<void>(bias.learn({0.3, 0.1, 0, 0}, {1, 0, 0}, period_s));
+  const double before = bias.sums()[0];
+  constexpr double step_s = 0.002;
+  double waited_s = 0;
+  for (int i = 0; i < 249; ++i) {
+    bias.wait(step_s);
+    waited_s += step_s;
+  }
+  CHECK(bias.sums()[0] == before);
+  CHECK(bias.status() == Status::ok);
+  for (int i = 0; i < 1001; ++i) {
+    bias.wait(step_s);
+    waited_s += step_s;
+  }
+  CHECK(bias.status() == Status::warming_up);
+  const double faded_s = waited_s - settings().hold_s;
+  const double kept = std::exp(-faded_s / settings().fade_s);
+  CHECK(bias.sums()[0] == doctest::Approx(before * kept).epsilon(0.01));
+  CHECK(bias.sums()[1] == doctest::Approx(0.1 * kept).epsilon(0.01));
+  CHECK(bias.across_m_s2()[0] == doctest::Approx(kept).epsilon(0.01));
+  CHECK(bias.waited_s() == doctest::Approx(waited_s));
+  CHECK(bias.learn({0.3, 0.1, 0, 0}, none, period_s) == Status::ok);
+  CHECK(bias.waited_s() == 0);
+  const double held = bias.sums()[0];
+  bias.wait(0.4);
+  CHECK(bias.sums()[0] == held);
+  // steps that are none
+  for (const double step : {0.0, -1.0, no_number}) bias.wait(step);
+  CHECK(bias.waited_s() == doctest::Approx(0.4));
+}
+
+TEST_CASE("what is no number is not learnt, and said; nor from a period that is none") {
+  Bias bias(settings());
+  REQUIRE(bias.learn({0.3, 0.1, 0, 0}, {1, 0, 0}, period_s) == Status::ok);
+  const SignedSums<double> before = bias.sums();
+  CHECK(bias.learn({0.3, no_number, 0, 0}, none, period_s) == Status::not_finite);
+  CHECK(bias.learn({0.3, 0.1, 0, infinity}, none, period_s) == Status::not_finite);
+  CHECK(bias.learn({0.3, 0.1, 0, 0}, {0, no_number, 0}, period_s) == Status::not_finite);
+  CHECK(bias.learn({0.3, 0.1, 0, 0}, none, no_number) == Status::not_finite);
+  CHECK(bias.learn({0.3, 0.1, 0, 0}, none, 0.0) == Status::not_finite);
+  CHECK(bias.learn({0.3, 0.1, 0, 0}, none, -1.0) == Status::not_finite);
+  CHECK(bias.status() == Status::not_finite);
+  CHECK(bias.sums() == before);
+  CHECK(bias.learn({0.3, 0.1, 0, 0}, none, period_s) == Status::ok);
+}
+
+TEST_CASE("it goes on from what was logged, within its bounds, and forgets when told so") {
+  Bias flown(settings()), replayed(settings());
+  for (int i = 0; i < 20; ++i) static_cast<void>(flown.learn({0.3, -0.1, 0.02, 0}, {1, 2, 0}, period_s));
+  flown.wait(0.3);
+  replayed.resume(flown.sums(), flown.across_m_s2(), flown.waited_s());
+  for (int i = 0; i < 20; ++i) {
+    flown.wait(0.05);
+    replayed.wait(0.05);
+    CHECK(replayed.sums() == flown.sums());
+    CHECK(replayed.across_m_s2() == flown.across_m_s2());
+  }
+  const SignedSums<double> before = replayed.sums();
+  replayed.resume({no_number, 0, 0, 0}, none, 0);
+  replayed.resume({0, 0, 0, 0}, {no_number, 0, 0}, 0);
+  replayed.resume({0, 0, 0, 0}, none, no_number);
+  CHECK(replayed.sums() == before);
+  replayed.reset();
+  CHECK(replayed.sums() == SignedSums<double>{});
+  CHECK(replayed.across_m_s2() == none);
+  CHECK(replayed.status() == Status::warming_up);
+  CHECK(replayed.settings().time_constants_s == settings().time_constants_s);
+}
