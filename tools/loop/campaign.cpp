@@ -19,6 +19,7 @@
 #include "flight/block_loop.hpp"
 #include "flight/loop_trajectories.hpp"
 #include "loop/controllers.hpp"
+#include "loop/loop_page.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
@@ -140,6 +141,7 @@ class Loop {
     }};
   }
 
+  /// A row of the table; with the error over time where the condition changes at half time, of the first seed.
   nlohmann::json fly(const Cell& cell, const LoopGains& gains) const {
     const auto seed = static_cast<std::uint64_t>(cell.seed);
     const AnyTrajectory path = trajectory(cell.trajectory, seed);
@@ -196,6 +198,12 @@ class Loop {
     if (recovered && !crashed) row["recovery_s"] = *recovered;
     if (flown.fallback.asked > 0) {
       row["answered_share"] = 1 - flown.fallback.fallbacks() / static_cast<double>(flown.fallback.asked);
+    }
+    if (condition.at_half && cell.seed == 1 && cell.trajectory == "eight") {
+      row["series"] = {{"period_s", 25 * period_s}, {"error_cm", nlohmann::json::array()}};
+      for (std::size_t i = 0; i < errors.squares.size(); i += 25) {
+        row["series"]["error_cm"].push_back(std::round(1e4 * std::sqrt(errors.squares[i])) / 100);
+      }
     }
     return row;
   }
@@ -313,7 +321,8 @@ nlohmann::json plan_of(const LoopCampaign& plan) {
   return {{"format", 1},
           {"model", plan.model.path()},
           {"contents", hexadecimal(plan.model.contents_hash())},
-          {"airframe", plan.model.airframe_name()},
+          {"airframe", plan.airframe_name},
+          {"vehicle", "quadratic drag"},
           {"mass_kg", plan.airframe.mass_kg},
           {"columns", plan.columns},
           {"seeds", plan.seeds},
@@ -409,10 +418,23 @@ nlohmann::json run(const LoopCampaign& plan) {
     if (tuned.count(controller) != 0) result["tuning"].push_back(tuned.at(controller));
   }
   result["rows"] = nlohmann::json::array();
-  for (const Cell& cell : cells) result["rows"].push_back(rows.at(cell.key()));
-  AtomicFile file(plan.out + "/loop.json");
-  file.stream() << result.dump(1) << '\n';
-  file.commit();
+  result["series"] = nlohmann::json::array();
+  for (const Cell& cell : cells) {
+    nlohmann::json& row = rows.at(cell.key());
+    if (row.contains("series")) {
+      nlohmann::json series = row["series"];
+      for (const char* key : {"controller", "condition", "gains"}) series[key] = row[key];
+      result["series"].push_back(series);
+      row.erase("series");
+    }
+    result["rows"].push_back(row);
+  }
+  result["summary"] = loop_summary(result["rows"]);
+  AtomicFile json(plan.out + "/loop.json"), page(plan.out + "/loop.html");
+  json.stream() << result.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  page.stream() << loop_page(result);
+  json.commit();
+  page.commit();
   return result;
 }
 

@@ -21,6 +21,7 @@ struct LoopCampaign {
   const pinnquad::BlockModel& model;
   std::vector<double> columns;            ///< of the model, in their order
   pinnquad::Airframe<double> airframe{};  ///< that the controllers are told
+  std::string airframe_name{};
   std::vector<std::string> controllers{}, conditions{}, trajectories{}, gains{};
   int seeds = 5;
   int budget = 40;  ///< evaluations of the search, for each controller

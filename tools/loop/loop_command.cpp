@@ -139,7 +139,7 @@ void print_table(const LoopOptions& options, const BlockModel& model, const std:
 
 /// Controllers side by side.
 int compare(const LoopOptions& options, const BlockModel& model, const std::vector<double>& columns,
-            const Airframe<double>& airframe) {
+            const programs::NamedAirframe& airframe) {
   if (options.out.empty()) throw std::invalid_argument("--out: the folder of the comparison is missing");
   const auto or_usual = [](const std::vector<std::string>& named, std::vector<std::string> usual) {
     std::vector<std::string> once;
@@ -148,7 +148,7 @@ int compare(const LoopOptions& options, const BlockModel& model, const std::vect
     }
     return once;
   };
-  programs::LoopCampaign plan{model, columns, airframe};
+  programs::LoopCampaign plan{model, columns, airframe.value, airframe.name};
   plan.controllers = or_usual(options.controllers, {"pid", "formula", "indi", "structured", "adaptive"});
   plan.conditions = or_usual(options.conditions, {"calm", "wind_8", "gusts", "payload", "weak_rotor", "battery"});
   plan.trajectories = or_usual(options.trajectories, {});
@@ -167,8 +167,9 @@ int compare(const LoopOptions& options, const BlockModel& model, const std::vect
   if (options.json) {
     std::printf("%s\n", result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
-    programs::print_loop_tables(result, plan.controllers, plan.conditions, plan.gains);
-    std::printf("%zu flights, all in %s/loop.json\n", result["rows"].size(), printable(options.out).c_str());
+    programs::print_loop_tables(result);
+    std::printf("%zu flights, in %s/loop.json; to look at: %s/loop.html\n", result["rows"].size(),
+                printable(options.out).c_str(), printable(options.out).c_str());
   }
   return 0;
 }
@@ -180,7 +181,7 @@ int loop(const LoopOptions& options) {
   }
   const std::vector<double> columns = programs::held_columns(programs::range_of(model).columns(), options.columns);
   const programs::NamedAirframe airframe = chosen_airframe(options, model);
-  if (options.compares()) return compare(options, model, columns, airframe.value);
+  if (options.compares()) return compare(options, model, columns, airframe);
   const programs::LoopFlights flights =
       programs::fly_loop(model, {options.trajectory, airframe.value, options.guard == "envelope", columns});
   programs::stop_if_interrupted();
@@ -259,7 +260,8 @@ programs::Command programs::loop_command(CLI::App& program) {
   number("--delay", options->delay_ms, 0.0, 200.0, "of what controllers see, ms");
   number("--threads", options->threads, 1u, 1024u, "flights at once (default: all cores)");
   line->get_option("--threads")->default_str("");
-  line->add_option("--out", options->out, "folder of the comparison: loop.json; the same command goes on in it")
+  line->add_option("--out", options->out,
+                   "folder of the comparison: loop.json, loop.html; the same command goes on in it")
       ->type_name("FOLDER")
       ->group("Comparison");
   line->footer(
