@@ -64,7 +64,7 @@ TEST_CASE("along a diagonal the one rotor behind loses as much, those at the sid
   std::sort(lost.begin(), lost.end());
   CHECK(lost[0] < 1e-9);
   CHECK(lost[2] < 0.02 * Wake{}.depth);
-  CHECK(lost[3] == doctest::Approx(Wake{}.depth).epsilon(0.06));
+  CHECK(std::fabs(lost[3] / Wake{}.depth - 1) <= 0.05);
 }
 
 TEST_CASE("over speed: none at rest, a bell with its top at the peak speed, continuous slopes everywhere") {

@@ -82,6 +82,20 @@ TEST_CASE("hover has a trim: near the rigid body's in calm air, more with a weak
   const double load = 1.15;
   CHECK(hard.commands[0] / rigid.commands[0] == doctest::Approx(load).epsilon(0.01));
   CHECK(hard.commands[1] / rigid.commands[1] == doctest::Approx(load / 0.85).epsilon(0.01));
+  State<double> there;
+  there.position_m = place;
+  Commands<double> late{};  // its battery is empty after a minute
+  REQUIRE(inverse_commands(vehicle(still), there, {}, 60.0, late) == Status::ok);
+  CHECK(late[0] / hard.commands[0] == doctest::Approx(12.6 * 12.6 / (10.5 * 10.5)).epsilon(1e-6));
+}
+
+TEST_CASE("its airframe: a kilogram, rotors that lag 20 ms, three times the thrust that it needs") {
+  const pinnquad::Airframe<double> airframe = pinnquad::harder_airframe();
+  CHECK(check_airframe(airframe) == Status::ok);
+  CHECK(airframe.mass_kg == 1.0);
+  CHECK(airframe.rise_time_constant_s(0) == 0.020);
+  CHECK(airframe.fall_time_constant_s(3) == 0.020);
+  CHECK(airframe.thrust_to_weight() == doctest::Approx(3.0).epsilon(0.02));
 }
 
 TEST_CASE("a minute of the random pilot: every row is finite, seed by seed") {
@@ -135,6 +149,17 @@ TEST_CASE("idle rotors land it: it stands within a millimetre of its static dept
       NoLegs(pinnquad::harder_airframe(), pinnquad::paper_site<double>()), {}, plan);
   for (int i = 0; i < 1500; ++i) falls.tick({0, 0, 0, 0});
   CHECK(falls.end() == FlightEnd::ground);
+}
+
+TEST_CASE("a payload presses the legs deeper: it weighs on them too") {
+  HarderConditions conditions;
+  conditions.wind_m_s = 0;
+  conditions.payload = {0.25, 0};
+  FlightPlan plan;
+  plan.start_m = Vector3<double>(0, 0, 0.877 - 0.25);
+  pinnquad::Simulator<HarderQuadrotor, pinnquad::SteadyPilot> simulator(vehicle(conditions), {}, plan);
+  for (int i = 0; i < 1500; ++i) simulator.tick({0, 0, 0, 0});
+  CHECK(std::fabs(simulator.altitude_m() - (0.18 - 1.25 * 0.002)) <= 1e-4);
 }
 
 TEST_CASE("the near-ground pilot's landings reach the ground, and the flight goes on") {

@@ -131,14 +131,14 @@ struct Inflow {
     }
 
    private:
-    /// z up to `free`, then bent towards `most`, with a slope that has no step.
+    /// z up to `straight`, then bent towards `straight + span`, with a slope that has no step.
     static PINNQUAD_ALWAYS_INLINE Scalar held(Scalar z, Scalar without_thrust) noexcept {
       const bool down = z < Scalar(0);
-      const Scalar free = down ? Scalar(0.5) : Scalar(0.65) * without_thrust;
+      const Scalar straight = down ? Scalar(0.5) : Scalar(0.65) * without_thrust;
       const Scalar span = down ? Scalar(0.5) : Scalar(0.2) * without_thrust;
-      const Scalar magnitude = down ? -z : z, beyond = magnitude - free;
+      const Scalar magnitude = down ? -z : z, beyond = magnitude - straight;
       if (!(beyond > Scalar(0))) return z;  // NaN stays NaN
-      const Scalar bent = free + span * (beyond / (span + beyond));
+      const Scalar bent = straight + span * (beyond / (span + beyond));
       return down ? -bent : bent;
     }
   };
