@@ -2,11 +2,17 @@
 // One 1 kHz step of the simulated vehicle, beside the naive prediction that other programs compare with.
 #include <benchmark/benchmark.h>
 
+#include <random>
+
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
+#include "pinnquad/aero/flapping.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/aero/inflow.hpp"
+#include "pinnquad/aero/wake.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/simulation/harder_quadrotor.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 #include "support/naive_eigen_network.hpp"
 #include "support/program.hpp"
@@ -32,10 +38,8 @@ VehicleState<Scalar> low_and_moving() {
 /// Each step starts from the last one's end; every 100 steps (0.1 s) the vehicle is put back, so that it stays in the
 /// ground effect however long the measurement takes.
 template <class Scalar, class... Effects>
-void simulation_step(benchmark::State& state) {
+void steps_of(benchmark::State& state, const Quadrotor<Scalar, Effects...>& quadrotor) {
   constexpr int steps_per_flight = 100;
-  const Quadrotor<Scalar, Effects...> quadrotor(airframe_value<PaperQuadrotor, Scalar>(), paper_site<Scalar>(),
-                                                Effects{}...);
   const VehicleState<Scalar> start = low_and_moving<Scalar>();
   VehicleState<Scalar> vehicle = start;
   Commands<Scalar> commands = {Scalar(0.52), Scalar(0.50), Scalar(0.51), Scalar(0.49)};
@@ -55,6 +59,17 @@ void simulation_step(benchmark::State& state) {
   }
 }
 
+template <class Scalar, class... Effects>
+void simulation_step(benchmark::State& state) {
+  steps_of(state,
+           Quadrotor<Scalar, Effects...>(airframe_value<PaperQuadrotor, Scalar>(), paper_site<Scalar>(), Effects{}...));
+}
+
+void harder_step(benchmark::State& state) {
+  std::mt19937_64 engine(1);
+  steps_of(state, harder_vehicle(engine));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -66,5 +81,10 @@ int main(int argc, char** argv) {
       "SimulationStep/full_float",
       simulation_step<float, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
   benchmark::RegisterBenchmark("SimulationStep/bare", simulation_step<double>);
+  benchmark::RegisterBenchmark("SimulationStep/drag", simulation_step<double, StandardAtmosphere, QuadraticDrag>);
+  benchmark::RegisterBenchmark(
+      "SimulationStep/rotor_air",
+      simulation_step<double, StandardAtmosphere, QuadraticDrag, RotorDrag, Inflow, BladeFlapping, Wake>);
+  benchmark::RegisterBenchmark("SimulationStep/harder", harder_step);
   return run_benchmarks(argc, argv);
 }

@@ -4,9 +4,16 @@
 #pragma once
 
 #include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/battery_sag.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/dryden.hpp"
+#include "pinnquad/aero/flapping.hpp"
+#include "pinnquad/aero/ground_contact.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/aero/inflow.hpp"
+#include "pinnquad/aero/payload.hpp"
+#include "pinnquad/aero/rotor_fault.hpp"
+#include "pinnquad/aero/wake.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/control/bias_estimate.hpp"

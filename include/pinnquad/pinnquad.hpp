@@ -37,6 +37,7 @@
 #include "pinnquad/regression/smoothed_flights.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/simulation/harder_quadrotor.hpp"
 #include "pinnquad/simulation/near_ground_pilot.hpp"
 #include "pinnquad/simulation/random_pilot.hpp"
 #include "pinnquad/simulation/recorded_sticks.hpp"

@@ -22,10 +22,11 @@ using pinnquad::Vector3;
 using pinnquad::test::SmallModel;
 
 template <class Scalar>
-using Everything = pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind,
-                                       pinnquad::PeriodicWind, pinnquad::QuadraticDrag, pinnquad::RotorDrag,
-                                       pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>,
-                                       pinnquad::ConyersGroundEffect, pinnquad::CheesemanBennettGroundEffect>;
+using Everything = pinnquad::Quadrotor<
+    Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind, pinnquad::BatterySag,
+    pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::Inflow, pinnquad::BladeFlapping, pinnquad::Wake,
+    pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>, pinnquad::ConyersGroundEffect,
+    pinnquad::CheesemanBennettGroundEffect, pinnquad::RotorFault, pinnquad::GroundContact, pinnquad::Payload>;
 
 /// Commands that no rotor can do, but a network may ask for.
 struct WideCommands {
@@ -36,7 +37,7 @@ struct WideCommands {
 template <class Scalar>
 Everything<Scalar> everything() noexcept {
   return Everything<Scalar>(pinnquad::airframe_value<pinnquad::PaperQuadrotor, Scalar>(),
-                            pinnquad::paper_site<Scalar>(), {}, {}, {}, {}, {}, {}, {}, {});
+                            pinnquad::paper_site<Scalar>(), {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {});
 }
 
 template <class Scalar>

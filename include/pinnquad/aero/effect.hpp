@@ -60,6 +60,7 @@ struct RotorsNotDeclared {
 template <class Scalar>
 struct AeroCondition {
   Vector3<Scalar> air_relative_velocity_m_s = Vector3<Scalar>::Zero();  ///< R^T (v - wind), FRD
+  Vector3<Scalar> ground_velocity_m_s = Vector3<Scalar>::Zero();        ///< R^T v, FRD: what a foot on the ground feels
   Vector3<Scalar> body_rates_rad_s = Vector3<Scalar>::Zero();           ///< FRD
   Quaternion<Scalar> attitude{};                                        ///< body -> world
   Scalar height_above_ground_m{0};

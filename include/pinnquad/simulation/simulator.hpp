@@ -37,7 +37,7 @@ struct FlightPlan {
 enum class FlightEnd {
   completed,   ///< as planned; of a running simulation: it flies
   bad_status,  ///< controller, inverse or physics declined: the Status says why
-  ground,      ///< the vehicle's centre came down to the ground
+  ground,      ///< the vehicle's centre came down to the ground; on its legs (aero/ground_contact.hpp) it lands
 };
 
 /// Calls `function` with the Quadrotor that a simulated vehicle is; simulation/switchable_quadrotor.hpp has another

@@ -285,10 +285,11 @@ class Quadrotor {
                                                        const ThrustFractions<Scalar>& thrusts,
                                                        const WrenchOf& wrench_of) const noexcept {
     RotorCondition<Scalar> condition;
+    const Axes axes(state.attitude);
+    const Vector3<Scalar>& v = state.velocity_m_s;
     condition.air_relative_velocity_m_s =
-        Axes(state.attitude)
-            .to_body(state.velocity_m_s[0] - air.wind_m_s[0], state.velocity_m_s[1] - air.wind_m_s[1],
-                     state.velocity_m_s[2] - air.wind_m_s[2]);
+        axes.to_body(v[0] - air.wind_m_s[0], v[1] - air.wind_m_s[1], v[2] - air.wind_m_s[2]);
+    condition.ground_velocity_m_s = axes.to_body(v[0], v[1], v[2]);
     condition.body_rates_rad_s = state.body_rates_rad_s;
     condition.attitude = state.attitude;
     condition.height_above_ground_m = site_.ground_z_m - state.position_m[2];

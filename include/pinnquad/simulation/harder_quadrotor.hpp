@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// A harder vehicle than the paper's: rotors that feel the air, gusts, a tired battery, a weak rotor, a payload, legs.
+// Every number has its source here or in the effect's header (docs/simulator.md lists them).
+#pragma once
+
+#include <array>
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/battery_sag.hpp"
+#include "pinnquad/aero/drag.hpp"
+#include "pinnquad/aero/dryden.hpp"
+#include "pinnquad/aero/flapping.hpp"
+#include "pinnquad/aero/ground_contact.hpp"
+#include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/aero/inflow.hpp"
+#include "pinnquad/aero/payload.hpp"
+#include "pinnquad/aero/rotor_fault.hpp"
+#include "pinnquad/aero/wake.hpp"
+#include "pinnquad/aero/wind.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
+#include "pinnquad/vehicle/quadrotor.hpp"
+
+namespace pinnquad {
+
+/// In the order of the contract: the air first, then forces, the payload last, as it scales those before it.
+using HarderQuadrotor =
+    Quadrotor<double, StandardAtmosphere, ConstantWind, DrydenTurbulence<>, BatterySag, QuadraticDrag, RotorDrag,
+              Inflow, BladeFlapping, Wake, RotorGroundEffect<CheesemanBennett>, RotorFault, GroundContact, Payload>;
+
+/// The conditions of one flight; by default a breeze with its gusts, a full battery that sags, nothing broken or picked
+/// up.
+struct HarderConditions {
+  double wind_m_s{4};                         ///< mean, at the flight's height
+  std::array<double, 2> direction{1.0, 0.0};  ///< where it blows to: NED, horizontal, unit length
+  double gust_height_m{35};                   ///< above ground, for the gusts' length and strength: FlightPlan's start
+  BatterySag battery{};
+  RotorFault fault{};
+  Payload payload{};
+};
+
+/// 1 kg: the reference simulator's inertia at that mass, the paper's rotors and drag without its deadband, and a rotor
+/// lag of 20 ms (docs/simulator.md), four times the paper's.
+inline Airframe<double> harder_airframe() noexcept {
+  const Airframe<double> light = ReferenceQuadrotor10::value<double>();
+  Airframe<double> a = PaperQuadrotor::value<double>();
+  a.mass_kg = light.mass_kg;
+  a.inertia_kg_m2 = light.inertia_kg_m2;
+  a.rotor_time_constant_s = 0.020;
+  a.drag_deadband_m_s = 0;
+  return a;
+}
+
+/// The harder vehicle at a site, its gusts drawn from the engine: the same engine state gives the same air. The gusts'
+/// wind at 20 ft is taken as the mean wind.
+template <class Engine>
+HarderQuadrotor harder_vehicle(Engine& engine, const HarderConditions& conditions = {},
+                               const Airframe<double>& airframe = harder_airframe(),
+                               const Site<double>& site = paper_site<double>()) {
+  const DrydenTurbulence<> gusts(engine, DrydenParameters::low_altitude(conditions.wind_m_s, conditions.gust_height_m),
+                                 conditions.wind_m_s, conditions.direction);
+  const ConstantWind wind{
+      {conditions.wind_m_s * conditions.direction[0], conditions.wind_m_s * conditions.direction[1], 0.0}};
+  return HarderQuadrotor(airframe, site, {}, wind, gusts, conditions.battery, {}, {}, {}, {}, {}, {}, conditions.fault,
+                         {}, conditions.payload);
+}
+
+}  // namespace pinnquad
