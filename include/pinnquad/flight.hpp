@@ -23,6 +23,7 @@
 #include "pinnquad/control/tracking_controller.hpp"
 #include "pinnquad/control/trajectory.hpp"
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
+#include "pinnquad/dynamics/airframes/light_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/px4_sih.hpp"
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"

@@ -74,7 +74,7 @@ TEST_CASE("hover has a trim: near the rigid body's in calm air, more with a weak
   const Vector3<double> place = FlightPlan{}.start_m;
   REQUIRE(hover_trim(vehicle(calm), place, trim) == Status::ok);
   using Rigid = pinnquad::Quadrotor<double, pinnquad::StandardAtmosphere>;
-  REQUIRE(hover_trim(Rigid(pinnquad::harder_airframe(), pinnquad::paper_site<double>()), place, rigid) == Status::ok);
+  REQUIRE(hover_trim(Rigid(pinnquad::airframe_value<pinnquad::LightQuadrotor, double>(), pinnquad::paper_site<double>()), place, rigid) == Status::ok);
   CHECK(pinnquad::test::distance(trim.commands, rigid.commands) <= 1e-3);
   HarderConditions still = worst();
   still.wind_m_s = 0;
@@ -90,7 +90,7 @@ TEST_CASE("hover has a trim: near the rigid body's in calm air, more with a weak
 }
 
 TEST_CASE("its airframe: a kilogram, rotors that lag 20 ms, three times the thrust that it needs") {
-  const pinnquad::Airframe<double> airframe = pinnquad::harder_airframe();
+  const pinnquad::Airframe<double> airframe = pinnquad::airframe_value<pinnquad::LightQuadrotor, double>();
   CHECK(check_airframe(airframe) == Status::ok);
   CHECK(airframe.mass_kg == 1.0);
   CHECK(airframe.rise_time_constant_s(0) == 0.020);
@@ -115,7 +115,7 @@ TEST_CASE("a minute of the random pilot: every row is finite, seed by seed") {
 
 TEST_CASE("the effects show: the commands of its flight are not those of a rigid body with drag") {
   using Plain = pinnquad::Quadrotor<double, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag>;
-  const Plain plain(pinnquad::harder_airframe(), pinnquad::paper_site<double>());
+  const Plain plain(pinnquad::airframe_value<pinnquad::LightQuadrotor, double>(), pinnquad::paper_site<double>());
   FlightPlan plan;
   plan.samples = 400;
   const HarderQuadrotor quadrotor = vehicle();
@@ -146,7 +146,7 @@ TEST_CASE("idle rotors land it: it stands within a millimetre of its static dept
   CHECK(simulator.end() == FlightEnd::completed);
   using NoLegs = pinnquad::Quadrotor<double, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag>;
   pinnquad::Simulator<NoLegs, pinnquad::SteadyPilot> falls(
-      NoLegs(pinnquad::harder_airframe(), pinnquad::paper_site<double>()), {}, plan);
+      NoLegs(pinnquad::airframe_value<pinnquad::LightQuadrotor, double>(), pinnquad::paper_site<double>()), {}, plan);
   for (int i = 0; i < 1500; ++i) falls.tick({0, 0, 0, 0});
   CHECK(falls.end() == FlightEnd::ground);
 }

@@ -30,5 +30,8 @@ constexpr const char* airframe_source(AirframeTag<pinnquad::Racer5Inch> /*tag*/)
 constexpr const char* airframe_source(AirframeTag<pinnquad::Px4Sih> /*tag*/) {
   return "the quadrotor of PX4's simulation in hardware, default parameters; its damping is linear";
 }
+constexpr const char* airframe_source(AirframeTag<pinnquad::LightQuadrotor> /*tag*/) {
+  return "the paper's rotors and drag, the reference simulator's inertia at 1 kg, rotor lag 20 ms; flies harder";
+}
 
 }  // namespace programs

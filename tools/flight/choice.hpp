@@ -18,12 +18,13 @@ struct FlightTag {
   using type = PaperFlight;
 };
 
-/// Calls `function(FlightTag<PaperFlight>{})` for each of the paper's flights.
+/// Calls `function(FlightTag<PaperFlight>{})` for each flight.
 template <class Function>
 void each_flight(const Function& function) {
   function(FlightTag<pinnquad::AgileFlight>{});
   function(FlightTag<pinnquad::NearGroundFlight>{});
   function(FlightTag<pinnquad::WindyFlight>{});
+  function(FlightTag<pinnquad::HarderFlight>{});
 }
 
 /// Calls `function(FlightTag<PaperFlight>{})` for the flight of that name. False if there is none.

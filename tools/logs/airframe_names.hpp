@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
+#include "pinnquad/dynamics/airframes/light_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/px4_sih.hpp"
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
@@ -24,8 +25,8 @@ template <class... Vehicles>
 struct AirframeList {};
 
 /// The airframes that are known by name; a new one is added here.
-using Airframes =
-    AirframeList<PaperQuadrotor, ReferenceQuadrotor10, ReferenceQuadrotor15, Crazyflie, Racer5Inch, Px4Sih>;
+using Airframes = AirframeList<PaperQuadrotor, ReferenceQuadrotor10, ReferenceQuadrotor15, Crazyflie, Racer5Inch,
+                               Px4Sih, LightQuadrotor>;
 
 template <class Function, class... Vehicles>
 void each_airframe(const Function& function, AirframeList<Vehicles...> /*list*/) {

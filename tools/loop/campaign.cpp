@@ -11,6 +11,8 @@
 #include <optional>
 #include <random>
 #include <stdexcept>
+#include <tuple>
+#include <type_traits>
 
 #include "command_line/folder_lock.hpp"
 #include "command_line/folders.hpp"
@@ -25,6 +27,7 @@
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/decimal.hpp"
+#include "pinnquad/simulation/harder_quadrotor.hpp"
 
 namespace programs {
 
@@ -101,6 +104,16 @@ const LoopCondition& condition_of(const std::string& name) {
   }
   throw std::out_of_range(name);
 }
+
+/// The effects of a vehicle as they are by default.
+template <class Vehicle>
+struct EffectsOf;
+template <class Scalar, class... Effect>
+struct EffectsOf<Quadrotor<Scalar, Effect...>> {
+  using type = std::tuple<Effect...>;
+};
+template <class Vehicle>
+using Effects = typename EffectsOf<Vehicle>::type;
 
 /// Airframe, trajectories and worlds of one campaign; near the ground or far from it.
 template <class Told, class Flown>
@@ -257,11 +270,16 @@ class Loop {
   template <class Vehicle>
   static Vehicle with_air(const Airframe<double>& airframe, const Site<double>& site, const ConstantWind& wind,
                           const MaybeGusts& gusts) {
-    if constexpr (std::tuple_size_v<std::decay_t<decltype(std::declval<Vehicle>().effects())>> == 5) {
-      return Vehicle(airframe, site, StandardAtmosphere{}, wind, gusts, QuadraticDrag{}, ConyersGroundEffect{});
-    } else {
-      return Vehicle(airframe, site, StandardAtmosphere{}, wind, gusts, QuadraticDrag{});
-    }
+    return std::apply(
+        [&](auto... effect) {
+          ((take(effect, wind), take(effect, gusts)), ...);
+          return Vehicle(airframe, site, effect...);
+        },
+        Effects<Vehicle>());
+  }
+  template <class Effect, class Value>
+  static void take(Effect& effect, const Value& value) {
+    if constexpr (std::is_same_v<Effect, Value>) effect = value;
   }
 
   const LoopCampaign& plan_;
@@ -322,7 +340,7 @@ nlohmann::json plan_of(const LoopCampaign& plan) {
           {"model", plan.model.path()},
           {"contents", hexadecimal(plan.model.contents_hash())},
           {"airframe", plan.airframe_name},
-          {"vehicle", "quadratic drag"},
+          {"vehicle", plan.vehicle},
           {"mass_kg", plan.airframe.mass_kg},
           {"columns", plan.columns},
           {"seeds", plan.seeds},
@@ -445,7 +463,11 @@ nlohmann::json run_campaign(const LoopCampaign& plan) {
   using FarInAir = Quadrotor<double, StandardAtmosphere, ConstantWind, MaybeGusts, QuadraticDrag>;
   using Near = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
   using NearInAir = Quadrotor<double, StandardAtmosphere, ConstantWind, MaybeGusts, QuadraticDrag, ConyersGroundEffect>;
-  return plan.model.features().asks_for_altitude() ? run<Near, NearInAir>(plan) : run<Far, FarInAir>(plan);
+  using Harder = Quadrotor<double, StandardAtmosphere, ConstantWind, MaybeGusts, BatterySag, QuadraticDrag, RotorDrag,
+                           Inflow, BladeFlapping, Wake, RotorGroundEffect<CheesemanBennett>, GroundContact>;
+  const bool near = plan.model.features().asks_for_altitude();
+  if (plan.vehicle == "harder") return near ? run<Near, Harder>(plan) : run<Far, Harder>(plan);
+  return near ? run<Near, NearInAir>(plan) : run<Far, FarInAir>(plan);
 }
 
 }  // namespace programs

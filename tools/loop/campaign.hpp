@@ -15,6 +15,9 @@
 namespace programs {
 
 inline constexpr std::array<const char*, 4> campaign_trajectories = {"eight", "circle", "random", "step"};
+/// What flies: with the drag that the controllers know of; with the effects of simulation/harder_quadrotor.hpp, of which
+/// they know the drag alone.
+inline constexpr std::array<const char*, 2> campaign_vehicles = {"nominal", "harder"};
 inline constexpr std::array<const char*, 2> campaign_gains = {"equal", "tuned"};
 
 struct LoopCampaign {
@@ -23,6 +26,7 @@ struct LoopCampaign {
   pinnquad::Airframe<double> airframe{};  ///< that the controllers are told
   std::string airframe_name{};
   std::vector<std::string> controllers{}, conditions{}, trajectories{}, gains{};
+  std::string vehicle = "nominal";
   int seeds = 5;
   int budget = 40;  ///< evaluations of the search, for each controller
   double duration_s = 40;

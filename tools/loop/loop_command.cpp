@@ -48,7 +48,7 @@ struct LoopOptions {
   int seeds = 5, budget = 40;
   double duration_s = 40, noise = 1, delay_ms = 0;
   unsigned threads = 0;
-  std::string out;
+  std::string vehicle = "nominal", out;
 
   bool compares() const { return !(controllers.empty() && conditions.empty() && out.empty()); }
 };
@@ -153,6 +153,7 @@ int compare(const LoopOptions& options, const BlockModel& model, const std::vect
   plan.conditions = or_usual(options.conditions, {"calm", "wind_8", "gusts", "payload", "weak_rotor", "battery"});
   plan.trajectories = or_usual(options.trajectories, {});
   plan.gains = or_usual(options.gains, {});
+  plan.vehicle = options.vehicle;
   plan.seeds = options.seeds;
   plan.budget = options.budget;
   plan.duration_s = options.duration_s;
@@ -252,6 +253,13 @@ programs::Command programs::loop_command(CLI::App& program) {
   const auto number = [&](const char* name, auto& value, auto least, auto most, const char* text) {
     add_number(*line, name, value, least, most, text)->group("Comparison");
   };
+  line->add_option(
+          "--vehicle", options->vehicle,
+          "nominal: as the controllers know it; harder: with rotor drag, inflow, flapping, wake, a battery that "
+          "sags and legs, of which they know nothing")
+      ->capture_default_str()
+      ->check(CLI::IsMember(std::vector<std::string>(campaign_vehicles.begin(), campaign_vehicles.end())))
+      ->group("Comparison");
   number("--seeds", options->seeds, 1, 1000, "seeds of noise, wind, gusts, random paths, the weak rotor");
   number("--budget", options->budget, 1, 100000, "evaluations of the search, the same for each controller");
   number("--duration", options->duration_s, 15.0, 3600.0, "of a flight, s; errors are of what comes after 10 s");

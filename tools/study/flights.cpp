@@ -35,6 +35,7 @@ void study::draw_flights(const std::string& folder, std::uint64_t seed) {
   double done = 0;
   programs::each_flight([&](auto tag) {
     using PaperFlight = typename decltype(tag)::type;
+    if constexpr (std::is_same_v<PaperFlight, HarderFlight>) return;  // none of the paper's
     const auto vehicle = flight_vehicle<PaperFlight>(airframe, PaperFlight::ground_effect);
     const auto without = flight_vehicle<PaperFlight>(airframe, GroundEffectModel::none);
     std::vector<programs::TraceRow> trace;

@@ -17,8 +17,7 @@
 #include "pinnquad/aero/rotor_fault.hpp"
 #include "pinnquad/aero/wake.hpp"
 #include "pinnquad/aero/wind.hpp"
-#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/light_quadrotor.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace pinnquad {
@@ -39,23 +38,11 @@ struct HarderConditions {
   Payload payload{};
 };
 
-/// 1 kg: the reference simulator's inertia at that mass, the paper's rotors and drag without its deadband, and a rotor
-/// lag of 20 ms (docs/simulator.md), four times the paper's.
-inline Airframe<double> harder_airframe() noexcept {
-  const Airframe<double> light = ReferenceQuadrotor10::value<double>();
-  Airframe<double> a = PaperQuadrotor::value<double>();
-  a.mass_kg = light.mass_kg;
-  a.inertia_kg_m2 = light.inertia_kg_m2;
-  a.rotor_time_constant_s = 0.020;
-  a.drag_deadband_m_s = 0;
-  return a;
-}
-
 /// The harder vehicle at a site, its gusts drawn from the engine: the same engine state gives the same air. The gusts'
 /// wind at 20 ft is taken as the mean wind.
 template <class Engine>
 HarderQuadrotor harder_vehicle(Engine& engine, const HarderConditions& conditions = {},
-                               const Airframe<double>& airframe = harder_airframe(),
+                               const Airframe<double>& airframe = airframe_value<LightQuadrotor, double>(),
                                const Site<double>& site = paper_site<double>()) {
   const DrydenTurbulence<> gusts(engine, DrydenParameters::low_altitude(conditions.wind_m_s, conditions.gust_height_m),
                                  conditions.wind_m_s, conditions.direction);
