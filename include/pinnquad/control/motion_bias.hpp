@@ -23,7 +23,7 @@ struct MotionBiasSettings {
   SignedSums<Scalar> time_constants_s{Scalar(0.1), Scalar(0.2), Scalar(0.2), Scalar(0.3)};
   SignedSums<Scalar> most{Scalar(0.8), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way
   Scalar across_time_constant_s = Scalar(0.1);
-  Scalar most_across_m_s2 = Scalar(3);  ///< its length
+  Scalar most_across_m_s2 = Scalar(6);  ///< its length
   Scalar hold_s = Scalar(0.5);          ///< without a residual it stays this long, then fades
   Scalar fade_s = Scalar(2);            ///< time constant of fading
 };

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""loop compares controllers under conditions: what a bias that learns in flight is worth, the rows of loop.json, the
+search for gains, a comparison that is interrupted and goes on, what it can't fly."""
+import json
+import math
+import signal
+from pathlib import Path
+
+import pytest
+from conftest import SOURCE, until
+
+MODEL = SOURCE / "examples/models/structured_quadrotor.block"
+ROW = {"controller", "condition", "trajectory", "gains", "seed", "rmse_cm", "worst_cm", "recovery_s", "crashed"}
+
+
+def compared(pinnquad, *words, out="c", code=0):
+    pinnquad("loop --model", MODEL, "--out", out, *words, code=code)
+    return json.loads((Path(out) / "loop.json").read_text())
+
+
+def without_times(rows):
+    return [{key: value for key, value in row.items() if key != "step_ns"} for row in rows]
+
+
+def errors_of(result, condition, **others):
+    wanted = {"condition": condition, **others}
+    return {row["controller"]: row["rmse_cm"] for row in result["rows"]
+            if all(row[key] == value for key, value in wanted.items())}
+
+
+def test_the_bias_carries_what_the_model_does_not_know(pinnquad):
+    """The aims: a payload of 20 % and a rotor at 85 % within 1.2 cm on the figure-eight, in calm air 0.8."""
+    result = compared(pinnquad, "--controllers=pid,formula,indi,structured,adaptive,formula_adaptive",
+                      "--conditions=calm,payload,weak_rotor,wind_8", "--trajectories=eight", "--gains=equal", "--seeds=1",
+                      "--duration=20")
+    assert all(ROW <= set(row) and not row["crashed"] for row in result["rows"])
+    assert len(result["rows"]) == 24
+    calm, payload, weak, wind = (errors_of(result, name) for name in ("calm", "payload", "weak_rotor", "wind_8"))
+    for learns in "adaptive", "formula_adaptive":
+        assert calm[learns] <= 0.8 and payload[learns] <= 1.2 and weak[learns] <= 1.2, result["rows"]
+    for does_not in "formula", "structured":
+        assert payload[does_not] > 20 and weak[does_not] > 10
+    assert wind["adaptive"] < 0.5 * wind["structured"] and wind["indi"] < wind["adaptive"]
+    assert all(math.isclose(row["answered_share"], 1, abs_tol=0.05) for row in result["rows"]
+               if row["controller"] == "structured")
+    page = (Path("c") / "loop.html").read_text()
+    assert "Equal gains" in page and "<svg" in page and "{{" not in page
+
+
+def test_the_same_flights_whatever_the_threads(pinnquad):
+    words = ("--controllers=adaptive,pid", "--conditions=gusts,parameters", "--gains=equal", "--seeds=2", "--duration=15")
+    one = compared(pinnquad, *words, "--threads=1", out="one")
+    two = compared(pinnquad, *words, "--threads=2", out="two")
+    assert without_times(one["rows"]) == without_times(two["rows"])
+    assert len({row["rmse_cm"] for row in one["rows"]}) == len(one["rows"]), "seeds and conditions differ"
+
+
+def test_gains_are_searched_and_told(pinnquad):
+    result = compared(pinnquad, "--controllers=pid,structured", "--conditions=calm,payload_half", "--trajectories=eight",
+                      "--seeds=1", "--budget=8", "--duration=15")
+    assert [found["tuned"] for found in result["tuning"]] == ["pid", "structured"]
+    for found in result["tuning"]:
+        assert found["evaluations"] == 8 and found["tuned_rmse_cm"] < found["equal_rmse_cm"], found
+    assert result["tuning"][1]["learning"] == 1, "it learns nothing"
+    tuned, equal = (errors_of(result, "payload_half", gains=gains)["pid"] for gains in ("tuned", "equal"))
+    assert tuned < equal
+    assert {(each["controller"], each["gains"]) for each in result["series"]} == {
+        (name, gains) for name in ("pid", "structured") for gains in ("equal", "tuned")}
+    ratios = [each for each in result["summary"] if each["condition"] == "calm" and each["controller"] == "structured"]
+    assert all(each["over_pid"]["lower"] <= each["over_pid"]["mean"] <= each["over_pid"]["upper"] for each in ratios)
+    assert all(each["over_indi"] is None for each in ratios)
+
+
+def test_goes_on_where_it_was_stopped(pinnquad):
+    words = ("--controllers=adaptive,indi", "--conditions=calm,payload", "--gains=equal", "--seeds=2", "--duration=15")
+    whole = compared(pinnquad, *words, out="whole")
+    process = pinnquad.start("loop --model", MODEL, "--out=stopped", *words, "--threads=1")
+    journal = Path("stopped/loop.journal")
+    until(lambda: journal.exists() and journal.read_text().count("\n") > 3, process)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(60) == 130
+    assert not Path("stopped/loop.json").exists()
+    lines = journal.read_text().splitlines()
+    assert 3 <= len(lines) - 1 < len(whole["rows"])
+    journal.write_text("\n".join(lines) + '\n{"controller":"ada')  # the machine went down while it wrote
+    again = compared(pinnquad, *words, out="stopped")
+    assert without_times(again["rows"]) == without_times(whole["rows"])
+    assert json.loads(lines[1]) in again["rows"], "what was flown is kept"
+    other = compared(pinnquad, *words, "--noise=2", out="stopped")
+    assert errors_of(other, "calm") != errors_of(again, "calm"), "another plan flies anew"
+
+
+def test_harder_vehicle(pinnquad):
+    easy, hard = (errors_of(compared(pinnquad, "--controllers=structured,adaptive", "--conditions=calm", "--gains=equal",
+                                     "--trajectories=eight", "--seeds=1", "--duration=15", f"--vehicle={vehicle}",
+                                     out=vehicle), "calm") for vehicle in ("nominal", "harder"))
+    assert hard["structured"] > 2 * easy["structured"] and hard["adaptive"] < 0.5 * hard["structured"]
+
+
+@pytest.mark.parametrize("words, keyword", [
+    (("--controllers=autopilot", "--out=c"), "--controllers"),
+    (("--conditions=snow", "--out=c"), "--conditions"),
+    (("--controllers=pid",), "--out"),
+    (("--seeds=0", "--out=c"), "--seeds"),
+    (("--duration=5", "--out=c"), "--duration"),
+    (("--delay=-1", "--out=c"), "--delay"),
+])
+def test_refused(pinnquad, words, keyword):
+    pinnquad.refused("loop --model", MODEL, *words, keyword=keyword)
+    assert not Path("c").exists()
+
+
+def test_a_folder_that_is_a_file(pinnquad):
+    Path("c").write_text("mine")
+    pinnquad.refused("loop --model", MODEL, "--out=c", "--seeds=1", keyword="c")
+    assert Path("c").read_text() == "mine"
