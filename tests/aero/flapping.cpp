@@ -45,7 +45,8 @@ TEST_CASE_TEMPLATE("each hub's moment in three dimensions, of tilted rotors too"
     Vector3<double> torque = Vector3<double>::Zero();
     for (std::size_t i = 0; i < 4; ++i) {
       const auto& hub = airframe.rotors[i];
-      const Vector3<double> arm(hub.x_m, hub.y_m, hub.z_m), axis(hub.axis[0], hub.axis[1], hub.axis[2]);
+      const Vector3<double> arm = Vector3<Scalar>(hub.x_m, hub.y_m, hub.z_m).template cast<double>();
+      const Vector3<double> axis = Vector3<Scalar>(hub.axis[0], hub.axis[1], hub.axis[2]).template cast<double>();
       const Vector3<double> w = c.body_rates_rad_s.template cast<double>();
       const Vector3<double> v = c.air_relative_velocity_m_s.template cast<double>() + pinnquad::cross<double>(w, arm);
       torque += pinnquad::cross<double>(v, axis) * (0.003 * static_cast<double>(c.rotor_thrust_N[i]));

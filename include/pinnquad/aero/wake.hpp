@@ -17,10 +17,8 @@ namespace pinnquad {
 /// climbing vehicle leaves its wake sooner. Smooth to the first derivative, also at rest.
 /// The shape is ours. Its numbers follow momentum theory: a wake that sinks by w / x per length and pushes 2 w in its
 /// middle, 2 w / (1 + (sink / R)^2) above it, takes at most 0.27 of the thrust four radii behind, at V = 3 to 4 v_h; at
-/// 1 v_h it passes below. Real wakes diffuse: the default is about half of that. Rear rotors that lose thrust to the
-/// front ones are measured and computed by Luo, Zhu and Yan, Novel quadrotor forward-flight model based on wake
-/// interference (AIAA Journal 2015), and seen in flight by Powers, Mellinger, Kushleyev, Kothmann and Kumar, Influence
-/// of aerodynamics and proximity effects in quadrotor flight (ISER 2012); no number here is theirs.
+/// 1 v_h it passes below. Real wakes diffuse: the default is about half of that. The effect: Luo, Zhu and Yan, Novel
+/// quadrotor forward-flight model based on wake interference (AIAA Journal 2015); no number here is theirs.
 struct Wake {
   static constexpr VariesWith varies_with = VariesWith::motion;
   double depth{0.15};      ///< share of thrust that a rotor right behind another loses at most
