@@ -39,6 +39,9 @@ template <class Scalar, class FeedForward, class Motion = FlownMotion<Scalar>>
 class AdaptiveInverse {
   static_assert(is_feed_forward<FeedForward, Scalar>,
                 "pinnquad: AdaptiveInverse's second argument is no feed-forward policy (control/feed_forward.hpp)");
+  static_assert(!is_feed_forward<FeedForward, Scalar> || is_detected<detail::NoexceptFeedForward, FeedForward, Scalar>,
+                "pinnquad: the inverse of an AdaptiveInverse flies: its operator() must be noexcept "
+                "(control/feed_forward.hpp)");
 
  public:
   AdaptiveInverse(const FeedForward& inverse, const Airframe<Scalar>& airframe,
@@ -111,8 +114,7 @@ class AdaptiveInverse {
     }
     Vector3<Scalar> across = SpecificForce::of<Scalar>(motion);
     across[2] = Scalar(0);
-    return has_output(
-        bias_.learn(residual, body_to_world<Scalar>(motion.attitude, across), motion_.period_s(step_s)));
+    return has_output(bias_.learn(residual, body_to_world<Scalar>(motion.attitude, across), motion_.period_s(step_s)));
   }
 
   FeedForward inverse_;
