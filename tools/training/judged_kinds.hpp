@@ -37,7 +37,7 @@ struct JudgedKind {
   std::string not_applicable;        ///< why there is nothing to judge; empty if there is
   std::vector<std::uint64_t> seeds;  ///< those with a fit on every parting
   std::vector<JudgedFit> fits;       ///< of these seeds: by seed, then parting
-  pinnquad::BiasTrial biases{};  ///< on all rows that did not train and choose time constants
+  pinnquad::BiasTrial biases{};      ///< on all rows that did not train and choose time constants
   /// Those for what is exported; none where there were no such rows.
   std::optional<pinnquad::SignedSums<double>> bias_time_constants_s{};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The flown motion of a window, as a model can be asked about it, and the mean commands that the rotors followed in it.
-// What learns in flight (control/adaptive_inverse.hpp) and the command residual (docs/trust.md) compare motion and
+// An inverse that learns (control/adaptive_inverse.hpp) and the command residual (docs/trust.md) compare motion and
 // commands of one instant.
 #pragma once
 
@@ -131,7 +131,7 @@ class FlownMotion {
     now_.falling.add((period_s_ - t) * step_s, state, then);
   }
 
-  /// What the rotors followed when the state was: the oldest kept that is no older.
+  /// Commands that the rotors followed when the state was: the oldest kept that are no older.
   const Commands<Scalar>& delayed(std::uint64_t now_us) noexcept {
     if (delay_us_ == 0) return rotors_;
     const auto at = [this](std::size_t i) noexcept -> Kept& { return kept_[(oldest_ + i) % kept_.size()]; };

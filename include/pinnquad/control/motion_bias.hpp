@@ -61,8 +61,8 @@ constexpr MotionBiasSettings<Scalar> bias_settings(const ModelRecords<Number>& r
                           : MotionBiasSettings<Scalar>{};
 }
 
-/// Most that the bias changes each command, either way: |A| most, A the inverse of the signs. The bound of a certificate
-/// (docs/certificate.md) widens by it.
+/// Most that the bias changes each command, either way: |A| most, A the inverse of the signs. The bound of a
+/// certificate (docs/certificate.md) widens by it.
 template <class Scalar>
 constexpr Commands<Scalar> largest_bias(const Airframe<Scalar>& airframe,
                                         const MotionBiasSettings<Scalar>& settings = {}) noexcept {

@@ -27,7 +27,8 @@ inline constexpr double untold_delay_s = 0.04;
 inline constexpr double flown_motion_age_s = 0.05;
 
 /// The least time constant that a loop takes. A bias that is faster follows the answer to its own change: twice the
-/// time until that is seen. Measured in closed loops with lags of 5 to 50 ms and delays of 0 to 40 ms (docs/adaptive.md).
+/// time until that is seen. Measured in closed loops with lags of 5 to 50 ms and delays of 0 to 40 ms
+/// (docs/adaptive.md).
 constexpr double least_bias_time_constant_s(double rotor_lag_s) noexcept {
   return 2 * (rotor_lag_s + untold_delay_s + flown_motion_age_s);
 }
@@ -106,7 +107,7 @@ inline std::vector<Commands<double>> with_past_bias(const RowSet& rows,
   return result;
 }
 
-/// What each time constant leaves of each signed sum's residuals. Trials of several row sets are added up.
+/// The residuals of each signed sum that each time constant leaves. Trials of several row sets are added up.
 struct BiasTrial {
   static constexpr std::size_t candidates = bias_time_constants_tried_s.size();
 
@@ -122,8 +123,8 @@ struct BiasTrial {
   }
 
   /// Sum by sum the shortest time constant whose mean absolute residual is within a twentieth of the least of all; 0,
-  /// none, where each of them costs more. Recorded flights seldom have the payload or the weak rotor that a bias is for:
-  /// on them alone the least error would be that of a slow bias, or of none.
+  /// none, where each of them costs more. Recorded flights seldom have the payload or the weak rotor that a bias is
+  /// for: on them alone the least error would be that of a slow bias, or of none.
   SignedSums<double> best_s() const {
     constexpr double most_cost = 0.05;
     SignedSums<double> best{};
