@@ -21,6 +21,7 @@
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/evaluation/judgement.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
+#include "pinnquad/evaluation/past_bias.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/flight.hpp"

@@ -43,6 +43,8 @@
 // CASE SLOPE_SIGNS_MISSING: pinnquad: the model's slope signs are not three per rotor
 // CASE RESIDUAL_LENGTH: pinnquad: the model's range of a residual is not one of numbers per output
 // CASE DISTANCE_LENGTH: pinnquad: the model's statistics of a distance don't have the length of the feature set
+// CASE BIAS_LENGTH: pinnquad: the model's time constants of a bias are not four
+// CASE BIAS_NEGATIVE: pinnquad: a time constant of the model's bias is no time of 0 to 60 s
 #include <array>
 #include <limits>
 
@@ -216,6 +218,13 @@ struct Recorded : RecordedModel {
   static constexpr auto distance_inverse_cholesky = all_ones<136>();
 #endif
   static constexpr float distance_limit = 3;
+#if defined(BIAS_LENGTH)
+  static constexpr std::array<float, 3> bias_time_constants_s{};
+#elif defined(BIAS_NEGATIVE)
+  static constexpr std::array<float, 4> bias_time_constants_s = {0.2f, 0.5f, -0.5f, 0.5f};
+#else
+  static constexpr std::array<float, 4> bias_time_constants_s = {0.2f, 0.5f, 0.5f, 0.0f};
+#endif
 };
 
 /// A header that claims format 3 and has the members of format 2.
@@ -247,7 +256,8 @@ using Model = Undescribed;
 using Model = Unrecorded;
 #elif defined(UNKNOWN_RECORD) || defined(OTHER_ANSWER) || defined(NO_COMMAND_RANGE) || defined(PERIOD_NEGATIVE) || \
     defined(OTHER_WINDOW) || defined(NOT_CAUSAL) || defined(OTHER_COLUMNS) || defined(OTHER_ALLOCATION) ||         \
-    defined(OTHER_BASE) || defined(SLOPE_SIGNS_MISSING) || defined(RESIDUAL_LENGTH) || defined(DISTANCE_LENGTH)
+    defined(OTHER_BASE) || defined(SLOPE_SIGNS_MISSING) || defined(RESIDUAL_LENGTH) || defined(DISTANCE_LENGTH) || \
+    defined(BIAS_LENGTH) || defined(BIAS_NEGATIVE)
 using Model = Recorded;
 #else
 using Model = Changed;

@@ -34,7 +34,7 @@ Airframe<double> airframe() { return airframe_value<StructuredQuadModelAirframe,
 Vehicle known() { return Vehicle(airframe(), paper_site<double>(), {}, {}, {}); }
 Quadrotor<double> without_air() { return Quadrotor<double>(airframe(), paper_site<double>()); }
 
-/// What differs from the vehicle that the inverse knows.
+/// Differences from the vehicle that the inverse knows.
 struct Conditions {
   double mass_scale = 1, rotor_at = 1, wind_m_s = 0, noise = 0, rotor_lag_s = 0;
   int late_ticks = 0;  ///< of the state, 2 ms each

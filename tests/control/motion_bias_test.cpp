@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+
 using namespace pinnquad;
 
 namespace {
@@ -49,6 +51,38 @@ TEST_CASE("a time constant of 0 is the last residual, an infinite one none") {
   Bias bias(extreme);
   REQUIRE(bias.learn({0.3, 0.2, -0.1, 0.4}, none, period_s) == Status::ok);
   CHECK(bias.sums() == SignedSums<double>{0.3, 0, -0.1, 0});
+}
+
+namespace {
+struct Silent {
+  using Scalar = float;
+};
+struct Telling {
+  using Scalar = float;
+  static constexpr std::array<float, 4> bias_time_constants_s = {{0.25f, 0.5f, 1.0f, 0.0f}};
+};
+}  // namespace
+
+TEST_CASE("the settings of a model: its own time constants, else the usual ones; 0 is none of a sum") {
+  constexpr MotionBiasSettings<double> usual;
+  CHECK(bias_settings<Silent, double>().time_constants_s == usual.time_constants_s);
+  constexpr auto own = bias_settings<Telling, double>();
+  CHECK(own.time_constants_s == SignedSums<double>{0.25, 0.5, 1, infinity});
+  CHECK(own.most == usual.most);
+  CHECK(bias_settings<Telling>().time_constants_s[0] == 0.25f);
+  ModelRecords<float> records;
+  CHECK(bias_settings<double>(records).time_constants_s == usual.time_constants_s);
+  records.has_bias = true;
+  for (float& time_s : records.bias_time_constants_s) time_s = 2;
+  CHECK(bias_settings<double>(records).time_constants_s == SignedSums<double>{2, 2, 2, 2});
+}
+
+TEST_CASE("the most that it changes a command: of an X a quarter of the bounds' sum") {
+  const auto airframe = airframe_value<PaperQuadrotor, double>();
+  for (const double most : largest_bias(airframe)) CHECK(most == doctest::Approx(0.25 * (0.8 + 3 * 0.4)));
+  MotionBiasSettings<double> bounded;
+  bounded.most = {0.1, 0, 0.2, 0};
+  for (const double most : largest_bias(airframe, bounded)) CHECK(most == doctest::Approx(0.075));
 }
 
 TEST_CASE("bounds: of each sum, and of the length across; it says that it is limited, and comes off again") {

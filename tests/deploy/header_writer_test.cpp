@@ -325,6 +325,27 @@ TEST_CASE("the opening comment has the verdict in words: figures, what is proven
   CHECK(has("rows: pitch 0.0321 to 0.0456, thrust "));
 }
 
+TEST_CASE("time constants of a bias are one constant more, and nothing else; with proven slopes the comment says so") {
+  const Model model = some_model(6);
+  Provenance from;
+  const std::string without = written(model, {Model::FeatureVector{}}, from);
+  CHECK(without.find("bias") == std::string::npos);
+  from.bias_time_constants_s = {0.2, 0.5, 0, 1};
+  std::string with = written(model, {Model::FeatureVector{}}, from);
+  CHECK(numbers_of(with, "bias_time_constants_s") == std::vector<float>{0.2f, 0.5f, 0.0f, 1.0f});
+  const std::size_t begin = with.find("  // of the bias"), end = with.find(";\n", with.find("bias_time_constants_s"));
+  REQUIRE(end != std::string::npos);
+  with.erase(begin, end + 2 - begin);
+  CHECK(with == without);
+
+  from.proven_slopes = AxisSlopes{0.01, 0.01, 0.3};
+  const std::string proven = written(model, {Model::FeatureVector{}}, from);
+  CHECK(proven.find("// each command widens by 0.5000 at most.\n") != std::string::npos);
+  CHECK(proven.find("they hold as they are, for it is of the past") < proven.find("#pragma once"));
+  from.bias_time_constants_s = {0.2, 0.5, 61, 1};
+  CHECK_THROWS_AS(written(model, {Model::FeatureVector{}}, from), std::invalid_argument);
+}
+
 TEST_CASE("names from outside stay inside their quotes, whatever they hold") {
   Provenance from;
   for (const auto& [name, literal] :

@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pinnquad/control/motion_bias.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/features/windowed.hpp"
@@ -160,7 +162,7 @@ TEST_CASE("a block of other terms than its header's does not open; a shape witho
 
 TEST_CASE("an unknown record is refused if it is mandatory, else skipped") {
   const Bytes block = model_block<RecordedModel>();
-  for (const unsigned type : {0u, 20u, 77u, 0x7fffu}) {
+  for (const unsigned type : {0u, detail::block_record_types + 1, 77u, 0x7fffu}) {
     for (const std::size_t length : {0u, 1u, 8u, 13u, 64u}) {
       auto records = records_of(block);
       records.insert(records.begin() + 1, Record{type, Bytes(length, 0xab)});
@@ -372,7 +374,8 @@ TEST_CASE("a residual on another base does not open, though its outputs have the
   CHECK(opened<ResidualModel<LinearizedBase>>(with_records(block, records)) == Status::block_incompatible);
 }
 
-TEST_CASE("verdict, proven slopes, range of a residual and statistics of a distance go along where they are given") {
+TEST_CASE(
+    "verdict, proven slopes, range of a residual, statistics of a distance and a bias go along where they are given") {
   using Model = ResidualModel<LinearizedBase>;
   const auto model = some_model<Net16, ResidualContext<LinearizedBase>>();
   Provenance from;
@@ -384,6 +387,7 @@ TEST_CASE("verdict, proven slopes, range of a residual and statistics of a dista
   distance.inverse_cholesky.assign(136, 0.25);
   distance.limit = 3;
   from.distance = distance;
+  from.bias_time_constants_s = {0.25, 0.5, 0, 1};
   const std::vector<Model::FeatureVector> golden = {Model::FeatureVector{}};
   const Bytes block = model_block(model, golden, from);
   CHECK(block.size() <= ModelBlockLayout<Model>::length(1) + ModelBlockLayout<Model>::most_record_bytes());
@@ -404,10 +408,31 @@ TEST_CASE("verdict, proven slopes, range of a residual and statistics of a dista
   CHECK(view.records.distance[15] == 0.5f);
   CHECK(view.records.distance[16] == 0.25f);
   CHECK(view.records.distance[16 + 136] == 3.0f);
+  REQUIRE(view.records.has_bias);
+  const auto settings = bias_settings<double>(view.records);
+  CHECK(settings.time_constants_s == SignedSums<double>{0.25, 0.5, std::numeric_limits<double>::infinity(), 1});
+  // values, not places in the block
+  const auto loaded = std::make_unique<LoadedModel<Model>>();
+  REQUIRE(loaded->load(view) == Status::ok);
+  CHECK(bias_settings<float>(loaded->records).time_constants_s[1] == 0.5f);
+  // a reader of before skips the record; without it the block is the same but for the record
+  auto without = records_of(block);
+  without.erase(without.begin() + (&find(without, BlockRecord::bias) - without.data()));
+  Provenance silent = from;
+  silent.bias_time_constants_s.reset();
+  ModelView<Model> other;
+  const BlockBytes bare(with_records(block, without));
+  const Bytes expected = model_block(model, golden, silent);
+  REQUIRE(bare.size() == expected.size());
+  CHECK(std::memcmp(bare.data(), expected.data(), expected.size()) == 0);
+  REQUIRE(opened(bare, other) == Status::ok);
+  CHECK_FALSE(other.records.has_bias);
+  CHECK(bias_settings<double>(other.records).time_constants_s == MotionBiasSettings<double>{}.time_constants_s);
 
   for (const Record& record : records_of(block)) {
     const unsigned type = record.type & 0x7fffu;
-    const bool optional = (7 <= type && type <= 10) || type == static_cast<unsigned>(BlockRecord::provenance);
+    const bool optional = (7 <= type && type <= 10) || type == static_cast<unsigned>(BlockRecord::provenance) ||
+                          type == static_cast<unsigned>(BlockRecord::bias);
     CHECK((record.type < mandatory_record) == optional);
   }
   const auto corrupt = [&](BlockRecord type, std::size_t at, const auto value) {
@@ -419,7 +444,14 @@ TEST_CASE("verdict, proven slopes, range of a residual and statistics of a dista
   CHECK(corrupt(BlockRecord::residual_range, 0, 1.0f));
   CHECK(corrupt(BlockRecord::distance, 4 * 20, std::numeric_limits<float>::infinity()));
   CHECK(corrupt(BlockRecord::distance, 4 * (16 + 136), 0.0f));
+  for (const float time_s : {-0.1f, 61.0f, std::numeric_limits<float>::quiet_NaN()}) {
+    CHECK(corrupt(BlockRecord::bias, 4, time_s));
+  }
 
+  from.bias_time_constants_s = {0.25, 0.5, -1, 1};
+  CHECK_THROWS_WITH_AS(model_block(model, golden, from), "export: a time constant of the bias is not one of 0 to 60 s",
+                       std::invalid_argument);
+  from.bias_time_constants_s.reset();
   from.distance->mean.pop_back();
   CHECK_THROWS_WITH_AS(model_block(model, golden, from),
                        "export: the statistics of a distance are not those of 16 features", std::invalid_argument);

@@ -218,7 +218,7 @@ TEST_CASE("every mandatory record is asked for; what is unknown is refused if it
   auto records = records_of(recorded());
   records.erase(records.begin() + (&find(records, BlockRecord::provenance) - records.data()));
   CHECK(opened(with_records(recorded(), records)).line == "");
-  records.push_back({20, Bytes(13, 1)});
+  records.push_back({detail::block_record_types + 1, Bytes(13, 1)});
   CHECK(opened(with_records(recorded(), records)).line == "");
   records.back().type |= mandatory_record;
   incompatible(with_records(recorded(), records), "records that are known");

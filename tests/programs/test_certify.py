@@ -79,6 +79,29 @@ def test_structured(pinnquad, trained, flight):
         assert wrong == 0 == judged["wrong_derivative_share"][axis]
 
 
+def test_bias(pinnquad, trained):
+    """With a bias that is learnt in flight: header, block, report and certificate say one thing."""
+    report = report_of(trained)
+    times = report["bias_time_constants_s"]
+    least = report["settings"]["bias"]["least_time_constant_s"]
+    tried = report["models"]["structured"]["adaptive"]["tried_s"]
+    assert len(times) == 4 and all(time in tried and (time == 0 or time >= least) for time in times)
+    header = (trained / "model.hpp").read_text()
+    stated = re.search(r"array<float, 4> bias_time_constants_s = \{\{(.*)\}\};", header).group(1)
+    assert [float(time.strip("f ")) for time in stated.split(",")] == pytest.approx(times)
+    assert "bias" in header.split("#pragma once")[0]
+    of_block, certified = (json.loads(pinnquad(f"{command} --json", trained / "model.block").out)
+                           for command in ("block", "certify"))
+    assert of_block["bias_time_constants_s"] == pytest.approx(times)
+    said = pinnquad("certify", trained / "model.hpp").out
+    assert re.search("\nbias +with the bias .*slopes hold as they are.* 0.5000", said), said
+    assert certified["bias"]["time_constants_s"] == pytest.approx(times)
+    assert certified["bias"]["widens_command_bound"] == pytest.approx([0.5] * 4)
+    assert report["certificate"]["bias_widens_command_bound"] == pytest.approx([0.5] * 4)
+    # a model of before says none, and nothing is said of it
+    assert "\nbias" not in pinnquad("block", SOURCE / "tests/models/v4/own_racer.block").out
+
+
 def test_edited(pinnquad, trained):
     """The proof is of these numbers: a byte of them changed is no block any more."""
     block = bytearray((trained / "model.block").read_bytes())

@@ -70,6 +70,15 @@ def test_each_flight_in_turn(pinnquad, logs, fly_export):
         assert re.search(text, report), text
     assert not re.search('"worse_than_mean": *true', report)
     assert all(flight in page for flight in FLIGHTS)
+    assert re.search(r"adaptive: R\^2 .*mean absolute error .*thrust .* s", said), said
+    for model in report_of("each")["models"].values():
+        adaptive, times = model["adaptive"], model["adaptive"]["bias_time_constants_s"]
+        assert 0 < adaptive["mean_absolute_error"]["mean"] and len(times) == 4
+        assert all(set(adaptive["mean_absolute_residual"]) == {"thrust", "roll", "pitch", "yaw"} for _ in times)
+        assert all("r2" in fold["adaptive"] for fold in model["by_fold"].values())
+    constant = report_of("each")["models"]["constant"]
+    assert constant["adaptive"]["mean_absolute_error"]["mean"] < 0.9 * constant["mean_absolute_error"]["mean"]
+    assert "With a bias of the past" in page
     held_out(report_of("each"), page, Path("each/model.hpp").read_text())
     flown = fly_export("each/model.hpp")("--replay each/replay.txt", code=None)
     assert re.search("self test .*: ok", flown.out) and ": agrees" in flown.out, flown
@@ -188,6 +197,8 @@ def test_real_vehicle(pinnquad, recorded, made):
     said = pinnquad(f"train --dataset {nano} --airframe crazyflie_2_1 --hold-out-each trajectory --seeds 1 --out nano "
                     "--models constant,physics,linear,ridge,ridge_centred").out
     assert "looking ahead: for planned trajectories only" in said, "no centred model was ranked apart"
+    ridge = report_of("nano")["models"]["ridge"]
+    assert ridge["adaptive"]["r2"]["mean"] > 0.85 > ridge["r2"]["mean"], "battery, trim: a bias of the past takes them"
 
 
 def effects_of(header):

@@ -13,6 +13,7 @@
 
 #include "model/given_model.hpp"
 #include "pinnquad/io/decimal.hpp"
+#include "training/certificate_words.hpp"
 
 namespace {
 
@@ -61,6 +62,7 @@ nlohmann::json description_of(const BlockModel& model) {
     all["lag_removed_s"] = 1e-9 * records.lag_removed_ns;
     all["training_rows"] = own.training_rows();
     all["training_data_hash"] = hexadecimal(own.training_data_hash());
+    if (records.has_bias) all["bias_time_constants_s"] = records.bias_time_constants_s;
     all["limits_of_trust"] = records.trust != nullptr;
     if (records.has_verdict) {
       all["worse_than_mean"] = records.worse_than_mean;
@@ -101,6 +103,10 @@ void print_text(const nlohmann::json& all) {
               all["commands"]["lower"].get<double>(), all["commands"]["upper"].get<double>());
   if (all.contains("proven")) std::printf("structure   %s\n", all["proven"].get<bool>() ? "proven" : "not proven");
   std::printf("trust       %s\n", all["limits_of_trust"].get<bool>() ? "limits are there" : "no limits");
+  if (all.contains("bias_time_constants_s")) {
+    std::printf("bias        learnt in flight, time constants %s\n",
+                programs::time_constants_in_words(all["bias_time_constants_s"].get<std::vector<double>>()).c_str());
+  }
   if (all.contains("provenance")) {
     for (const auto& [word, value] : all["provenance"].items()) {
       std::printf("%-11s %s\n", printable(word).c_str(), printable(value.get<std::string>()).c_str());

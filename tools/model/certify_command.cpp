@@ -133,6 +133,17 @@ void add_thrust(const BlockModel& model, const Findings& findings, nlohmann::jso
   report["least_thrust_slope"] = least_thrust_slope(findings);  // null where nobody can bound it
 }
 
+/// Time constants of the bias that is learnt in flight; none where the model says none.
+std::optional<std::array<double, 4>> bias_time_constants_s(const BlockModel& model) {
+  return model.with([](const auto& own) {
+    std::optional<std::array<double, 4>> times_s;
+    if (!own.records().has_bias) return times_s;
+    times_s.emplace();
+    for (std::size_t k = 0; k < 4; ++k) (*times_s)[k] = static_cast<double>(own.records().bias_time_constants_s[k]);
+    return times_s;
+  });
+}
+
 void print_json(const BlockModel& model, const Findings& findings) {
   nlohmann::json report = {{"model", model.path()},
                            {"answer", model.answer()},
@@ -149,6 +160,9 @@ void print_json(const BlockModel& model, const Findings& findings) {
     report["residual_lower"] = findings.certificate->residual_lower;
     report["residual_upper"] = findings.certificate->residual_upper;
     report["command_bound"] = findings.certificate->command_bound;
+    if (const auto times_s = bias_time_constants_s(model)) {
+      report["bias"] = {{"time_constants_s", *times_s}, {"widens_command_bound", largest_bias(model.airframe())}};
+    }
     add_thrust(model, findings, report);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto& response = findings.with_rates[axis];
@@ -187,6 +201,13 @@ void print_json(const BlockModel& model, const Findings& findings) {
                                 {"signed_sum_after_step", found.sum_of_more}};
   }
   std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+}
+
+void print_bias(const BlockModel& model) {
+  const auto times_s = bias_time_constants_s(model);
+  if (!times_s) return;
+  std::printf("bias       %s\n           time constants: %s\n", programs::bias_in_words(model.airframe()).c_str(),
+              programs::time_constants_in_words(*times_s).c_str());
 }
 
 void print_thrust(const BlockModel& model, const Findings& findings) {
@@ -275,6 +296,7 @@ void print_text(const BlockModel& model, const Findings& findings) {
     }
     if (findings.certificate) {
       std::printf("bound      %s\n", programs::bound_in_words(*findings.certificate).c_str());
+      print_bias(model);
       print_thrust(model, findings);
       if (findings.taps > 1) print_with_rates(findings);
       print_rounding(findings);

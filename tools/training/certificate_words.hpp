@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/control/motion_bias.hpp"
 #include "pinnquad/deploy/opening_comment.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
@@ -75,6 +76,32 @@ inline std::string bound_in_words(const std::optional<pinnquad::Certificate>& st
   char text[128];
   std::snprintf(text, sizeof text, "the residual changes a command by at most %.4f %.4f %.4f %.4f", bound[0], bound[1],
                 bound[2], bound[3]);
+  return text;
+}
+
+/// "thrust 0.20 s, roll 0.50 s, pitch none, yaw 1.00 s".
+template <class Times>
+std::string time_constants_in_words(const Times& times_s) {
+  std::string words;
+  for (std::size_t k = 0; k < sum_names.size(); ++k) {
+    char text[48];
+    const auto time_s = static_cast<double>(times_s[k]);
+    time_s > 0 ? std::snprintf(text, sizeof text, "%s %.2f s", sum_names[k], time_s)
+               : std::snprintf(text, sizeof text, "%s none", sum_names[k]);
+    words += (k == 0 ? "" : ", ") + std::string(text);
+  }
+  return words;
+}
+
+/// The certificate of a model whose bias is learnt in flight.
+inline std::string bias_in_words(const pinnquad::Airframe<double>& airframe) {
+  const pinnquad::Commands<double> most = pinnquad::largest_bias(airframe);
+  char text[224];
+  std::snprintf(
+      text, sizeof text,
+      "with the bias that is learnt in flight the slopes hold as they are, for it is of the past; it changes a "
+      "command by at most %.4f %.4f %.4f %.4f besides",
+      most[0], most[1], most[2], most[3]);
   return text;
 }
 

@@ -46,6 +46,8 @@ class FitStore : public KnownFits {
     if (!read(file, loaded.guard)) return false;
     loaded.validation_mae = head.validation_mae;
     loaded.fit_s = head.fit_s;
+    loaded.biases = head.biases;
+    loaded.looks_ahead_s = head.looks_ahead_s;
     loaded.derivatives = head.derivatives;
     loaded.altitude = head.altitude;
     loaded.proven = head.proven != 0;
@@ -61,6 +63,8 @@ class FitStore : public KnownFits {
     head.rows = job.held_out.size();
     head.validation_mae = job.validation_mae;
     head.fit_s = job.fit_s;
+    head.biases = job.biases;
+    head.looks_ahead_s = job.looks_ahead_s;
     head.derivatives = job.derivatives;
     head.altitude = job.altitude;
     head.proven = job.proven ? 1 : 0;
@@ -83,9 +87,11 @@ class FitStore : public KnownFits {
  private:
   /// As this machine has it in memory: such a file is read by the program that wrote it.
   struct Head {
-    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '4'};
+    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '5'};
     std::uint64_t key = 0, rows = 0;
     double validation_mae = 0, fit_s = 0;
+    pinnquad::BiasTrial biases;
+    double looks_ahead_s = 0;
     DerivativeFigures derivatives;
     AltitudeChoice altitude;
     std::uint64_t proven = 0;
@@ -157,6 +163,8 @@ class FitStore : public KnownFits {
     }
     for (const std::string& name : plan.absent) fnv.absorb_text(name);
     absorb(fnv, plan.sample_period_s);
+    absorb(fnv, plan.past.delay_s);
+    absorb(fnv, plan.past.least_time_constant_s);
     fnv.absorb_word(static_cast<std::uint64_t>(plan.epochs));
     fnv.absorb_text(plan.selection);
     const FitSettings& asked = plan.settings;

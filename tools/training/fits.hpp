@@ -17,6 +17,7 @@
 
 #include "command_line/interrupt.hpp"
 #include "command_line/parallel.hpp"
+#include "pinnquad/evaluation/past_bias.hpp"
 #include "pinnquad/loss/context.hpp"
 #include "training/hold_out.hpp"
 #include "training/model_kind.hpp"
@@ -36,6 +37,7 @@ struct FitPlan {
   int epochs = 0;
   unsigned threads = 1;
   FitSettings settings{};
+  pinnquad::PastRows past{};  ///< how a bias is made of rows
 
   FitTask task(const Fold& fold, std::uint64_t seed) const {
     return {airframe, fold.split.train, fold.split.validation, absent, sample_period_s, seed, epochs, settings};
@@ -50,6 +52,8 @@ struct FinishedFit {
   /// Mean absolute error of the commands on the validation rows that it answers; NaN if it was fitted to them.
   double validation_mae = pinnquad::not_a_number;
   double fit_s = 0;
+  pinnquad::BiasTrial biases;     ///< on validation rows that it was not fitted to; none where there are none
+  double looks_ahead_s = 0;       ///< TrainedNetwork::looks_ahead_s()
   DerivativeFigures derivatives;  ///< over the rows held out
   GuardCounts guard;              ///< of the rows held out
   AltitudeChoice altitude;
@@ -94,6 +98,12 @@ inline double mean_absolute_error(const pinnquad::RowSet& rows, const Prediction
   return count > 0 ? sum / static_cast<double>(count) : pinnquad::not_a_number;
 }
 
+/// A row that reads ahead is known so much later.
+inline pinnquad::PastRows past_of(pinnquad::PastRows past, double looks_ahead_s) {
+  past.delay_s += looks_ahead_s;
+  return past;
+}
+
 inline Predictions predictions_of(const ModelKind& kind, const TrainedNetwork& model, const pinnquad::RowSet& rows) {
   Predictions predictions = model.predictions(rows);
   if (predictions.size() != rows.size()) {
@@ -112,12 +122,15 @@ inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) 
   const ModelKind& kind = plan.kinds[job.kind];
   const Fold& fold = plan.folds[job.fold];
   const auto error_of = [&](const TrainedNetwork& model) {
-    return detail::mean_absolute_error(fold.split.validation,
-                                       detail::predictions_of(kind, model, fold.split.validation));
+    const Predictions predictions = detail::predictions_of(kind, model, fold.split.validation);
+    job.biases = pinnquad::try_biases(fold.split.validation, predictions, plan.airframe.value,
+                                      detail::past_of(plan.past, model.looks_ahead_s()));
+    return detail::mean_absolute_error(fold.split.validation, predictions);
   };
   const auto start = std::chrono::steady_clock::now();
   job.model = kind.fit(task);
   job.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  job.looks_ahead_s = job.model->looks_ahead_s();
   job.altitude = job.model->altitude();
   job.proven = job.model->is_proven();
   if (!kind.takes_validation(plan.settings)) {

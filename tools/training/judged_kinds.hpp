@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct JudgedFit {
   FlightErrors errors;
   std::vector<double> by_flight;  ///< error_by_flight() of the parting's held-out flights
   Judgement judged;
+  /// With a bias of the past (evaluation/past_bias.hpp), whose time constants other rows chose.
+  FlightErrors adaptive;
+  pinnquad::SignedSums<double> bias_time_constants_s{};
   double validation_mae = pinnquad::not_a_number;
   double fit_s = 0;
   bool proven = false;
@@ -33,6 +37,9 @@ struct JudgedKind {
   std::string not_applicable;        ///< why there is nothing to judge; empty if there is
   std::vector<std::uint64_t> seeds;  ///< those with a fit on every parting
   std::vector<JudgedFit> fits;       ///< of these seeds: by seed, then parting
+  pinnquad::BiasTrial biases{};      ///< on all rows that did not train and choose time constants
+  /// Those for what is exported; none where there were no such rows.
+  std::optional<pinnquad::SignedSums<double>> bias_time_constants_s{};
 
   bool applicable() const { return not_applicable.empty(); }
   std::size_t folds() const { return seeds.empty() ? 0 : fits.size() / seeds.size(); }
@@ -101,6 +108,52 @@ inline Judgement judgement_of(const FitPlan& plan, const pinnquad::RowSet& rows,
 
 }  // namespace detail
 
+namespace detail {
+
+/// Errors with a bias of the past. Its time constants are those of other rows: of a rotation the ones held out in the
+/// other partings; of one parting the validation rows that did not fit the model.
+inline void judge_biases(const FitPlan& plan, const Fits& fits, JudgedKinds& result) {
+  std::map<const FinishedFit*, pinnquad::BiasTrial> held_out;
+  const bool rotated = plan.folds.size() > 1;
+  for (const FinishedFit& fit : fits.finished) {
+    if (!rotated || !result.kinds[fit.kind].applicable()) continue;
+    held_out[&fit] = pinnquad::try_biases(plan.folds[fit.fold].split.test, fit.held_out, plan.airframe.value,
+                                          past_of(plan.past, fit.looks_ahead_s));
+  }
+  // of the fits of a kind, but for one parting
+  const auto tried = [&](std::size_t kind, std::size_t without) {
+    pinnquad::BiasTrial all;
+    for (const FinishedFit& fit : fits.finished) {
+      if (fit.kind != kind) continue;
+      if (!rotated) all += fit.biases;
+      if (rotated && fit.fold != without) all += held_out[&fit];
+    }
+    return all;
+  };
+  for (std::size_t k = 0; k < result.kinds.size(); ++k) {
+    JudgedKind& kind = result.kinds[k];
+    if (!kind.applicable()) continue;
+    const pinnquad::BiasTrial all = tried(k, plan.folds.size());
+    kind.biases = all;
+    if (all.rows > 0) kind.bias_time_constants_s = all.best_s();
+    for (JudgedFit& judged : kind.fits) {
+      judged.bias_time_constants_s = tried(k, judged.fold).best_s();
+      for (const FinishedFit& fit : fits.finished) {
+        if (fit.kind != k || fit.fold != judged.fold || fit.seed != judged.seed) continue;
+        const pinnquad::RowSet& rows = plan.folds[fit.fold].split.test;
+        judged.adaptive = flight_errors(
+            rows,
+            pinnquad::with_past_bias(rows, fit.held_out, plan.airframe.value,
+                                     pinnquad::detail::bias_settings_of<double>(judged.bias_time_constants_s),
+                                     past_of(plan.past, fit.looks_ahead_s).delay_s),
+            result.counts[fit.fold]);
+      }
+    }
+  }
+}
+
+}  // namespace detail
+
 /// Rows that a kind leaves without an answer (a window that is not complete) count for no kind. A kind that leaves more
 /// than half of a parting's rows without one is not judged.
 inline JudgedKinds judge_fits(const FitPlan& plan, const Fits& fits) {
@@ -152,13 +205,21 @@ inline JudgedKinds judge_fits(const FitPlan& plan, const Fits& fits) {
       for (const FinishedFit* fit : of_seed) {
         const pinnquad::RowSet& rows = plan.folds[fit->fold].split.test;
         const std::vector<bool>& counts = result.counts[fit->fold];
-        kind.fits.push_back(
-            {fit->fold, seed, flight_errors(rows, fit->held_out, counts), error_by_flight(rows, fit->held_out, counts),
-             detail::judgement_of(plan, rows, *fit, counts), fit->validation_mae, fit->fit_s, fit->proven});
+        kind.fits.push_back({fit->fold,
+                             seed,
+                             flight_errors(rows, fit->held_out, counts),
+                             error_by_flight(rows, fit->held_out, counts),
+                             detail::judgement_of(plan, rows, *fit, counts),
+                             {},
+                             {},
+                             fit->validation_mae,
+                             fit->fit_s,
+                             fit->proven});
       }
     }
     if (kind.seeds.empty()) kind.not_applicable = "not finished: interrupted before every parting had a fit";
   }
+  detail::judge_biases(plan, fits, result);
   return result;
 }
 

@@ -39,6 +39,13 @@ inline std::vector<double> over_seeds(const JudgedKind& kind, const ErrorFigure&
   return per_seed(kind, [&](const JudgedFit& fit) { return (fit.errors.*figure.of)[motor]; });
 }
 
+/// The same with a bias of the past.
+inline std::vector<double> over_seeds_adaptive(const JudgedKind& kind, const ErrorFigure& figure) {
+  return per_seed(kind, [&](const JudgedFit& fit) { return mean_over_motors(fit.adaptive.*figure.of); });
+}
+/// Those that a bias of the past changes.
+inline constexpr std::array<std::size_t, 3> adaptive_figures = {0, 3, 4};
+
 /// A figure of the axes over the seeds, means over the partings.
 inline std::vector<double> over_seeds(const JudgedKind& kind, const ModelFigure& figure, std::size_t axis) {
   return per_seed(kind, [&](const JudgedFit& fit) { return figure.of(fit.judged, axis); });

@@ -100,7 +100,8 @@ class Training {
                                                                                       : programs::recipe_epochs,
               options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()),
               {vehicle.given && !programs::is_airframe_file(options.airframe), options.altitude, options.pinned_slopes,
-               options.flights.empty()}},
+               options.flights.empty()},
+              past_of(options, dataset, vehicle.airframe.value)},
         report_(options.out + "/report.json", plan_, dataset, facts_of_recipe()) {
     report_.vehicle(programs::vehicle_json(vehicle));
   }
@@ -129,6 +130,14 @@ class Training {
   }
 
  private:
+  /// Rows of logs have derivatives that an import's filter made, which look ahead.
+  static PastRows past_of(const TrainOptions& options, const pinnquad::logs::ImportedDataset& dataset,
+                          const Airframe<double>& airframe) {
+    constexpr double filter_s = 0.05;
+    return {flown_motion_age_s + (options.flights.empty() ? filter_s : 0),
+            least_bias_time_constant_s(std::max(airframe.rotor_time_constant_s, dataset.lag_removed_s))};
+  }
+
   nlohmann::json facts_of_recipe() const {
     if (!recipe_) return nlohmann::json::object();
     nlohmann::json facts = recipe_->settings;
@@ -417,6 +426,8 @@ class Training {
       from.signs_unproven = true;
     }
     from.slopes = made.model->slopes();
+    const std::optional<SignedSums<double>>& bias = judged_.kinds[*chosen_].bias_time_constants_s;
+    from.bias_time_constants_s = bias;
     from.airframe_known = vehicle_.is_known();
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
@@ -439,6 +450,12 @@ class Training {
     std::printf("  %s: the same weights as a block of %zu bytes\n", block.c_str(), written.block_bytes);
     report_.trusted(trusted ? trust : "", written.no_trust_because);
     tell_certificate(*made.model->block(), made.model->slopes());
+    if (bias) {
+      std::printf(
+          "  learnt in flight: a bias of its signed sums (AdaptiveInverse, docs/adaptive.md); time constants %s\n",
+          programs::time_constants_in_words(*bias).c_str());
+      report_.bias(*bias, plan_.airframe.value);
+    }
     tell_flight(made.flown);
     report_.write_exported(kind, made.seed, header, block);
     told_ = "Exported as " + header + ", struct " + options_.model_name + ", " +

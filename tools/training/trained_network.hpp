@@ -57,6 +57,8 @@ class TrainedNetwork {
   virtual GuardCounts guard_counts(const pinnquad::RowSet& rows) const;
   /// See derivative_figures().
   virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
+  /// How far beyond a row's own time it reads, s: of a window that is centred.
+  virtual double looks_ahead_s() const { return 0; }
   virtual AltitudeChoice altitude() const { return {}; }
   /// How well the training rows know its slopes; unknown of other kinds.
   virtual pinnquad::SlopesOfSums slopes() const { return {}; }
@@ -115,6 +117,10 @@ class BlockNetwork : public TrainedNetwork {
   Predictions guarded_predictions(const pinnquad::RowSet& rows) const override;
   GuardCounts guard_counts(const pinnquad::RowSet& rows) const override;
   DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override;
+  double looks_ahead_s() const override {
+    const pinnquad::RunTimeWindow& window = block_.features().window();
+    return window.causal ? 0 : window.period_s * (window.taps - 1) / 2;
+  }
   const pinnquad::BlockModel* block() const override { return &block_; }
 
  private:

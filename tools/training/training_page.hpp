@@ -80,6 +80,21 @@ inline const char* badge_of(Standing standing) {
   }
 }
 
+/// Without and with a bias of the past; false where no rows chose its time constants.
+inline nlohmann::json adaptive_json(const JudgedKind& kind) {
+  if (!kind.bias_time_constants_s) return false;
+  const ErrorFigure &r2 = error_figures[0], &absolute = error_figures[4];
+  nlohmann::json times = nlohmann::json::array();
+  for (const double time_s : *kind.bias_time_constants_s) {
+    times.push_back(time_s > 0 ? shown::number(time_s, 2) : std::string("none"));
+  }
+  return {{"r2", shown_figure(over_seeds(kind, r2), 1, 3)},
+          {"r2_with", shown_figure(over_seeds_adaptive(kind, r2), 1, 3)},
+          {"error", shown_figure(over_seeds(kind, absolute), 1e3, 1)},
+          {"error_with", shown_figure(over_seeds_adaptive(kind, absolute), 1e3, 1)},
+          {"times", std::move(times)}};
+}
+
 inline nlohmann::json table_rows(const TrainingPage& in, bool centred) {
   nlohmann::json rows = nlohmann::json::array();
   for (const std::size_t k : ranking(in.judged, centred)) {
@@ -99,6 +114,7 @@ inline nlohmann::json table_rows(const TrainingPage& in, bool centred) {
           {{"text", shown_figure(over_seeds(kind, error_figures[i]), i < 3 ? 1 : 1e3, i < 3 ? 3 : 1)},
            {"label", label}});
     }
+    row["adaptive"] = adaptive_json(kind);
     const auto mean_of = [&](double (*of)(const Judgement&, std::size_t)) { return axis_means(kind, of); };
     const AxisFigures wrong = mean_of([](const Judgement& j, std::size_t i) { return j.derivatives.wrong_share[i]; });
     const AxisFigures least =
@@ -258,6 +274,7 @@ inline nlohmann::json certificate_json(const nlohmann::json& report) {
   const nlohmann::json& proven = report["certificate"];
   if (!proven.is_object()) return false;
   nlohmann::json told = {{"rows", nlohmann::json::array()}, {"bound", proven["in_words"]}};
+  told["bias"] = proven.contains("bias_in_words") ? proven["bias_in_words"] : nlohmann::json(false);
   const auto row = [&told, &proven](const std::string& name, double slope, double own, const char* unit) {
     const nlohmann::json& known = proven["known"][name];
     std::string interval = "unknown", by = "";
@@ -416,6 +433,8 @@ inline std::string training_page(const TrainingPage& in) {
       {"can_decide", in.judged.flights.size() >= fewest_pairs},
       {"export_sentence", in.export_sentence},
       {"airframe", in.plan.airframe.name},
+      {"bias_delay", shown::number(1e3 * in.plan.past.delay_s, 0)},
+      {"bias_least", shown::number(in.plan.past.least_time_constant_s, 2)},
       {"causal", detail::table_rows(in, false)},
       {"centred", detail::table_rows(in, true)},
       {"not_applicable", nlohmann::json::array()},

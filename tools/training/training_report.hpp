@@ -49,6 +49,18 @@ inline nlohmann::json figures_of(const FitPlan& plan, const JudgedKind& kind) {
       motors["u" + std::to_string(motor + 1)][figure.name] = described(over_seeds(kind, figure, motor));
     }
   }
+  for (const std::size_t i : adaptive_figures) {
+    result["adaptive"][error_figures[i].name] = described(over_seeds_adaptive(kind, error_figures[i]));
+  }
+  result["adaptive"]["bias_time_constants_s"] =
+      kind.bias_time_constants_s ? nlohmann::json(*kind.bias_time_constants_s) : nlohmann::json();
+  if (kind.biases.rows > 0) {
+    result["adaptive"]["tried_s"] = pinnquad::bias_time_constants_tried_s;
+    for (std::size_t k = 0; k < sum_names.size(); ++k) {
+      nlohmann::json& residual = result["adaptive"]["mean_absolute_residual"][sum_names[k]];
+      for (const auto& of_candidate : kind.biases.absolute) residual.push_back(of_candidate[k] / kind.biases.rows);
+    }
+  }
   result["per_motor"] = std::move(motors);
   result["by_fold"] = nlohmann::json::object();
   for (std::size_t fold = 0; fold < kind.folds(); ++fold) {
@@ -60,6 +72,14 @@ inline nlohmann::json figures_of(const FitPlan& plan, const JudgedKind& kind) {
       }
       of_fold[figure.name] = described(values);
     }
+    for (const std::size_t i : adaptive_figures) {
+      std::vector<double> values;
+      for (std::size_t seed = 0; seed < kind.seeds.size(); ++seed) {
+        values.push_back(mean_over_motors(kind.at(seed, fold).adaptive.*error_figures[i].of));
+      }
+      of_fold["adaptive"][error_figures[i].name] = described(values);
+    }
+    of_fold["adaptive"]["bias_time_constants_s"] = kind.at(0, fold).bias_time_constants_s;
   }
   return result;
 }
@@ -170,6 +190,7 @@ class TrainingReport {
                {"epochs", plan.epochs > 0 ? nlohmann::json(plan.epochs) : nlohmann::json("what suits each kind")},
                {"sample_period_s", dataset.sample_period_s},
                {"lag_removed_s", dataset.lag_removed_s},
+               {"bias", {{"delay_s", plan.past.delay_s}, {"least_time_constant_s", plan.past.least_time_constant_s}}},
                {"absent", dataset.absent},
                {"mapping", pinnquad::printable(dataset.mapping)},
                {"flight", pinnquad::printable(pinnquad::flight_names(dataset.flights))},
@@ -191,6 +212,7 @@ class TrainingReport {
              {"trust", nullptr},
              {"certificate", nullptr},
              {"vehicle", nullptr},
+             {"bias_time_constants_s", nullptr},
              {"altitude", nullptr},
              {"closed_loop", nullptr},
              {"guard", nullptr},
@@ -286,6 +308,13 @@ class TrainingReport {
     json_["certificate"]["command_bound"] = structure->command_bound;
     json_["certificate"]["thrust_slope"] = structure->held_thrust_slope;
     json_["certificate"]["airframe_thrust_slope"] = pinnquad::hover_thrust_slope(airframe);
+  }
+  /// Of the bias that what was exported learns in flight, and the certificate with it.
+  void bias(const pinnquad::SignedSums<double>& time_constants_s, const pinnquad::Airframe<double>& airframe) {
+    json_["bias_time_constants_s"] = time_constants_s;
+    if (!json_["certificate"].is_object()) return;
+    json_["certificate"]["bias_widens_command_bound"] = pinnquad::largest_bias(airframe);
+    json_["certificate"]["bias_in_words"] = bias_in_words(airframe);
   }
   /// Limits of trust: their file, or why there is none.
   void trusted(const std::string& file, const std::string& why_not) {

@@ -10,11 +10,23 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
+#include "training/certificate_words.hpp"
 #include "training/kind_figures.hpp"
 #include "training/kind_verdict.hpp"
 
 namespace programs {
 namespace detail {
+
+/// The same rows with a bias of the past.
+inline void print_adaptive(const JudgedKind& kind) {
+  if (!kind.bias_time_constants_s) return;
+  const ErrorFigure &r2 = error_figures[0], &absolute = error_figures[4];
+  std::printf("      adaptive: R^2 %s, mean absolute error %s (without the bias of the past %s) 1e-3; %s\n",
+              mean_and_deviation(over_seeds_adaptive(kind, r2), 1, 3).c_str(),
+              mean_and_deviation(over_seeds_adaptive(kind, absolute), 1e3, 2).c_str(),
+              mean_and_deviation(over_seeds(kind, absolute), 1e3, 2).c_str(),
+              time_constants_in_words(*kind.bias_time_constants_s).c_str());
+}
 
 inline void print_kind(const JudgedKinds& judged, const std::vector<KindVerdict>& verdicts, std::size_t k) {
   const JudgedKind& kind = judged.kinds[k];
@@ -35,6 +47,7 @@ inline void print_kind(const JudgedKinds& judged, const std::vector<KindVerdict>
   } else {
     std::printf("  %7s\n", "-");
   }
+  print_adaptive(kind);
   std::printf("      %s\n", verdicts[k].sentence.c_str());
 }
 

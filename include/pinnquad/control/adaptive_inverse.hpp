@@ -59,6 +59,9 @@ template <class Scalar, class FeedForward, class Motion = FlownMotion<Scalar>>
 class AdaptiveInverse {
   static_assert(is_feed_forward<FeedForward, Scalar>,
                 "pinnquad: AdaptiveInverse's second argument is no feed-forward policy (control/feed_forward.hpp)");
+  static_assert(!is_feed_forward<FeedForward, Scalar> || is_detected<detail::NoexceptFeedForward, FeedForward, Scalar>,
+                "pinnquad: the inverse of an AdaptiveInverse flies: its operator() must be noexcept "
+                "(control/feed_forward.hpp)");
 
  public:
   AdaptiveInverse(const FeedForward& inverse, const Airframe<Scalar>& airframe,

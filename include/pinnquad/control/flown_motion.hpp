@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The flown motion of a window, as a model can be asked about it, and the mean commands that the rotors followed in it.
-// What learns in flight (control/adaptive_inverse.hpp) and the command residual (docs/trust.md) compare motion and
+// An inverse that learns (control/adaptive_inverse.hpp) and the command residual (docs/trust.md) compare motion and
 // commands of one instant.
 #pragma once
 

@@ -6,10 +6,13 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
+#include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 
 namespace pinnquad {
 
@@ -27,6 +30,51 @@ struct MotionBiasSettings {
   Scalar hold_s = Scalar(0.5);          ///< without a residual it stays this long, then fades
   Scalar fade_s = Scalar(2);            ///< time constant of fading
 };
+
+namespace detail {
+/// Times as a model says them; 0: no bias of this sum.
+template <class Scalar, class Times>
+constexpr MotionBiasSettings<Scalar> bias_settings_of(const Times& times_s) noexcept {
+  MotionBiasSettings<Scalar> settings;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto time_s = static_cast<Scalar>(times_s[i]);
+    settings.time_constants_s[i] = time_s > Scalar(0) ? time_s : std::numeric_limits<Scalar>::infinity();
+  }
+  return settings;
+}
+}  // namespace detail
+
+/// With the time constants that a model's training chose, and the usual ones of a model that does not say any. Of an
+/// exported header, in the loop's own Scalar.
+template <class Model, class Scalar = typename Model::Scalar>
+constexpr MotionBiasSettings<Scalar> bias_settings() noexcept {
+  if constexpr (is_detected<detail::BiasTimeConstantsOf, Model>) {
+    return detail::bias_settings_of<Scalar>(Model::bias_time_constants_s);
+  } else {
+    return {};
+  }
+}
+/// Of a block's records: those of a ModelView, a LoadedModel, a RunTimeModel.
+template <class Scalar, class Number>
+constexpr MotionBiasSettings<Scalar> bias_settings(const ModelRecords<Number>& records) noexcept {
+  return records.has_bias ? detail::bias_settings_of<Scalar>(records.bias_time_constants_s)
+                          : MotionBiasSettings<Scalar>{};
+}
+
+/// Most that the bias changes each command, either way: |A| most, A the inverse of the signs. The bound of a
+/// certificate (docs/certificate.md) widens by it.
+template <class Scalar>
+constexpr Commands<Scalar> largest_bias(const Airframe<Scalar>& airframe,
+                                        const MotionBiasSettings<Scalar>& settings = {}) noexcept {
+  const detail::SignedMix<Scalar> mix = detail::signed_mix(airframe);
+  Commands<Scalar> largest{};
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      largest[i] += (mix.by[i][k] < Scalar(0) ? -mix.by[i][k] : mix.by[i][k]) * settings.most[k];
+    }
+  }
+  return largest;
+}
 
 /// b <- b + T / (T + time constant) (r - b) of each signed sum of commands, |b| <= most. T: the period of r; r: the
 /// residual, commands flown - commands that the inverse gives for the motion flown. And the same of d, the acceleration

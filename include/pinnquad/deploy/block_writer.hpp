@@ -148,6 +148,7 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
     add(proven->command_bound);
     record(BlockRecord::certificate, optional, numbers);
   }
+  if (records.bias_time_constants_s) record(BlockRecord::bias, optional, *records.bias_time_constants_s);
   const std::vector<unsigned char> provenance = closed(provenance_texts(records));
   if (provenance.size() > longest_provenance) {
     throw std::invalid_argument("export: name, training data and loss of a model are too long together");

@@ -143,6 +143,11 @@ void write_header_records(std::ostream& out, ConstantWriter& write, const Writte
     const auto limit = static_cast<Scalar>(records.distance->limit);
     write.constant(scalar.c_str(), "distance_limit", literal(limit), limit);
   }
+  if (records.bias_time_constants_s) {
+    out << "  // of the bias that is learnt in flight (control/motion_bias.hpp): sum of the commands, roll, pitch, "
+           "yaw\n";
+    write.list(scalar, "bias_time_constants_s", converted<Scalar>(*records.bias_time_constants_s));
+  }
 }
 
 /// All numbers of a model but its golden vectors.

@@ -3,6 +3,7 @@
 // judged.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstddef>
@@ -10,6 +11,7 @@
 #include <ostream>
 #include <string>
 
+#include "pinnquad/control/motion_bias.hpp"
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"
@@ -69,6 +71,12 @@ inline void write_opening_comment(std::ostream& out, const WrittenRecords& recor
            "input\n// (pinnquad certify). Slopes"
         << (over_own ? " over the airframe's own in hover" : " in s^2/rad") << ": roll " << share(0) << ", pitch "
         << share(1) << ", yaw " << share(2) << ".\n";
+    if (records.bias_time_constants_s) {
+      const Commands<double> most = largest_bias(own);
+      out << "// With the bias that AdaptiveInverse learns in flight they hold as they are, for it is of the past; the "
+             "bound of\n// each command widens by "
+          << fixed_text(*std::max_element(most.begin(), most.end()), 4) << " at most.\n";
+    }
   }
   const std::string known =
       known_slopes_in_words(records.slopes, over_own ? hover_thrust_slope(own) : 1, own_slopes, decimals);

@@ -64,6 +64,8 @@ struct Provenance {
   std::optional<detail::TorqueSigns> slope_signs = std::nullopt;  ///< proven signs of du/d(ang. acc.)
   std::optional<ResidualRange> residual_range = std::nullopt;
   std::optional<DistanceStatistics> distance = std::nullopt;
+  /// Of the bias that an inverse of this model learns in flight, sum by sum; 0: none of this sum.
+  std::optional<std::array<double, 4>> bias_time_constants_s = std::nullopt;
 };
 
 namespace detail {
@@ -207,6 +209,9 @@ void require_provenance(const Provenance& from) {
       if (!(range->lower[i] <= range->upper[i])) refuse("a lower bound of the residual lies above the upper one");
     }
   }
+  if (from.bias_time_constants_s && !are_bias_time_constants(*from.bias_time_constants_s)) {
+    refuse("a time constant of the bias is not one of 0 to 60 s");
+  }
   if (const auto& distance = from.distance) {
     constexpr auto size = static_cast<std::size_t>(Features::size);
     if (distance->mean.size() != size || distance->inverse_cholesky.size() != triangle(size)) {
@@ -304,6 +309,12 @@ WrittenRecords records_of_header() {
   if constexpr (is_detected<ResidualRangeOf, M>) {
     records.residual_range =
         Provenance::ResidualRange{converted<double>(M::residual_lower), converted<double>(M::residual_upper)};
+  }
+  if constexpr (is_detected<BiasTimeConstantsOf, M>) {
+    records.bias_time_constants_s.emplace();
+    for (std::size_t i = 0; i < 4; ++i) {
+      (*records.bias_time_constants_s)[i] = static_cast<double>(M::bias_time_constants_s[i]);
+    }
   }
   if constexpr (is_detected<DistanceStatisticsOf, M>) {
     records.distance = Provenance::DistanceStatistics{converted<double>(M::distance_mean),

@@ -26,6 +26,8 @@ struct ModelRecords {
   bool has_verdict = false;
   bool worse_than_mean = false;  ///< than the mean of the commands, and exported all the same
   bool beats_linear_regression = false;
+  bool has_bias = false;              ///< the next is said
+  Scalar bias_time_constants_s[4]{};  ///< sum by sum, of a bias learnt in flight; 0: none of this sum
   // In the block, or null; as BlockRecord describes them. A LoadedModel has none.
   const signed char* slope_signs = nullptr;
   const Scalar* residual_range = nullptr;
@@ -139,6 +141,11 @@ struct BlockRecords : ModelRecords<Scalar> {
       case BlockRecord::trust: trust = bytes; break;
       case BlockRecord::certificate: certificate = bytes; break;
       case BlockRecord::provenance: provenance = text; break;
+      case BlockRecord::bias:
+        this->has_bias = true;
+        for (std::size_t i = 0; i < 4; ++i) this->bias_time_constants_s[i] = scalars[i];
+        sound = are_bias_time_constants(scalars);
+        break;
       case BlockRecord::affine:
         affine = scalars;
         sound = all_finite(scalars, static_cast<int>(length / sizeof(Scalar)));

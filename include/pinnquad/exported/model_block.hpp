@@ -82,6 +82,7 @@ enum class BlockRecord : std::uint16_t {
   certificate = 17,  ///< f64 slope (3), held slope (3), thrust slope, held thrust slope, command bound (4); optional
   provenance = 18,   ///< name and value in turn, every text closed by a 0; optional
   affine = 19,       ///< scalars: commands at outputs 0, then by each output, of a schema that no library has; optional
+  bias = 20,         ///< scalars: time constants of the bias of the four signed sums, s, 0 none is learnt; optional
 };
 
 /// Bit of a record's type: a reader that does not know the record refuses the block.
@@ -94,7 +95,7 @@ PINNQUAD_ALWAYS_INLINE constexpr bool is_block_version(std::uint32_t version) no
   return version >= oldest_model_block_version && version <= model_block_version && version != 3;
 }
 
-inline constexpr std::uint32_t block_record_types = 19;
+inline constexpr std::uint32_t block_record_types = 20;
 
 /// The most bytes of a block's provenance.
 inline constexpr std::uint32_t longest_provenance = 4096;
@@ -141,7 +142,8 @@ constexpr RecordLengths record_lengths(std::uint32_t scalar, std::uint32_t input
            5 * 8 + distance,
            12 * 8,
            0,
-           rotors * (1 + outputs) * scalar}};
+           rotors * (1 + outputs) * scalar,
+           4 * scalar}};
 }
 
 /// The bytes of texts, each closed by a 0.

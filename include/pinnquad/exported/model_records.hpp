@@ -200,10 +200,14 @@ using StatedVerdictOf = std::void_t<decltype(M::worse_than_mean), decltype(M::be
 ///   residual_lower, residual_upper  the bounds of a residual's outputs
 ///   distance_mean, distance_inverse_cholesky, distance_limit: z = L^-1 (x - mean), rows of the triangle one after the
 ///     other; |z| no larger than the limit is near the training features
+///   bias_time_constants_s           sum by sum (of all commands, about roll, pitch, yaw): of the bias that an inverse
+///     learns in flight (control/motion_bias.hpp), 0: none of this sum. It may be edited: no hash is over it
 template <class M>
 using SlopeSignsOf = decltype(M::slope_signs);
 template <class M>
 using ResidualRangeOf = std::void_t<decltype(M::residual_lower), decltype(M::residual_upper)>;
+template <class M>
+using BiasTimeConstantsOf = decltype(M::bias_time_constants_s);
 template <class M>
 using DistanceStatisticsOf =
     std::void_t<decltype(M::distance_mean), decltype(M::distance_inverse_cholesky), decltype(M::distance_limit)>;
@@ -232,6 +236,19 @@ constexpr double header_period_s() noexcept {
   } else {
     return WindowOf<typename M::Features>::period_s;
   }
+}
+
+/// The longest time constant of a bias that is one.
+inline constexpr double longest_bias_time_constant_s = 60;
+
+/// True for four times of 0 to the longest; false for NaN.
+template <class Times>
+constexpr bool are_bias_time_constants(const Times& times_s) noexcept {
+  bool sound = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    sound = sound && times_s[i] >= 0 && static_cast<double>(times_s[i]) <= longest_bias_time_constant_s;
+  }
+  return sound;
 }
 
 /// Numbers in the lower triangle of a Size x Size matrix.
@@ -295,6 +312,14 @@ constexpr void require_optional_records() noexcept {
       static_assert(true_residual_range<M>(),
                     "pinnquad: the model's range of a residual is upside down, or not that of the bounds among its "
                     "parameters (residual_lower, residual_upper)");
+    }
+  }
+  if constexpr (is_detected<BiasTimeConstantsOf, M>) {
+    constexpr bool four = M::bias_time_constants_s.size() == 4;
+    static_assert(four, "pinnquad: the model's time constants of a bias are not four (bias_time_constants_s)");
+    if constexpr (four) {
+      static_assert(are_bias_time_constants(M::bias_time_constants_s),
+                    "pinnquad: a time constant of the model's bias is no time of 0 to 60 s (bias_time_constants_s)");
     }
   }
   if constexpr (is_detected<DistanceStatisticsOf, M>) {

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+// The bias that an inverse learns in flight (control/motion_bias.hpp), on rows that were flown: what it leaves of a
+// model's errors, and which time constants leave least. A row's bias is of earlier rows alone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pinnquad/control/motion_bias.hpp"
+#include "pinnquad/data/row_set.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
+
+namespace pinnquad {
+
+/// Time constants that are tried, s, sum by sum. 0: no bias.
+inline constexpr std::array<double, 9> bias_time_constants_tried_s = {0, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2, 5};
+
+/// The delay of a state beside its commands that nobody has told the loop: with it the bias must still be stable.
+inline constexpr double untold_delay_s = 0.04;
+/// Between the middle of the flown motion that a bias is learnt from and the use of it, at most: two periods of a
+/// FlownMotion.
+inline constexpr double flown_motion_age_s = 0.05;
+
+/// The least time constant that a loop takes. A bias that is faster follows the answer to its own change: twice the
+/// time until that is seen. Measured in closed loops with lags of 5 to 50 ms and delays of 0 to 40 ms
+/// (docs/adaptive.md).
+constexpr double least_bias_time_constant_s(double rotor_lag_s) noexcept {
+  return 2 * (rotor_lag_s + untold_delay_s + flown_motion_age_s);
+}
+
+/// How a bias is made of rows.
+struct PastRows {
+  double delay_s = flown_motion_age_s;  ///< rows younger than this have no part in it
+  double least_time_constant_s = 0;     ///< of those that are tried
+};
+
+namespace detail {
+
+/// Signed sums of flown - predicted commands.
+class ResidualSums {
+ public:
+  explicit ResidualSums(const Airframe<double>& airframe) : mix_(signed_mix(airframe)) {}
+
+  SignedSums<double> of(const Commands<double>& flown, const Commands<double>& predicted) const {
+    SignedSums<double> sums{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t i = 0; i < flown.size(); ++i) sums[k] += mix_.signs[k][i] * (flown[i] - predicted[i]);
+    }
+    return sums;
+  }
+  void add(const SignedSums<double>& bias, Commands<double>& commands) const {
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      for (std::size_t k = 0; k < 4; ++k) commands[i] += mix_.by[i][k] * bias[k];
+    }
+  }
+
+ private:
+  SignedMix<double> mix_;
+};
+
+/// Calls `use(row, bias)` for each row, counted through all pieces, with the bias that stands there. A row without a
+/// prediction teaches nothing. Throws std::invalid_argument for a count that is none.
+template <class Use>
+void each_past_bias(const RowSet& rows, const std::vector<Commands<double>>& predictions, const ResidualSums& sums,
+                    const MotionBiasSettings<double>& settings, double delay_s, const Use& use) {
+  if (predictions.size() != rows.size()) {
+    throw std::invalid_argument("past bias: expected " + std::to_string(rows.size()) + " predictions, found " +
+                                std::to_string(predictions.size()));
+  }
+  constexpr double rounding_s = 1e-6;
+  std::size_t first = 0;
+  for (const FlightRows& piece : rows.pieces()) {
+    MotionBias<double> bias(settings);
+    std::size_t taught = piece.rows.begin;
+    for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
+      const Flight& flight = *piece.flight;
+      for (; taught < row && flight[taught].time_s <= flight[row].time_s - delay_s + rounding_s; ++taught) {
+        const double step_s = taught > piece.rows.begin ? flight[taught].time_s - flight[taught - 1].time_s : 0.0;
+        const SignedSums<double> residual =
+            sums.of(flight[taught].commands, predictions[first + taught - piece.rows.begin]);
+        const bool gap = step_s > settings.hold_s;
+        if (gap || !all_finite(residual)) bias.wait(step_s);
+        if (!gap && step_s > 0) static_cast<void>(bias.learn(residual, Vector3<double>::Zero(), step_s));
+      }
+      use(first + row - piece.rows.begin, bias.sums());
+    }
+    first += piece.rows.size();
+  }
+}
+
+}  // namespace detail
+
+/// Predictions with the bias of the past; NaN stays. Throws std::invalid_argument for a count that is none.
+inline std::vector<Commands<double>> with_past_bias(const RowSet& rows,
+                                                    const std::vector<Commands<double>>& predictions,
+                                                    const Airframe<double>& airframe,
+                                                    const MotionBiasSettings<double>& settings, double delay_s) {
+  const detail::ResidualSums sums(airframe);
+  std::vector<Commands<double>> result = predictions;
+  detail::each_past_bias(rows, predictions, sums, settings, delay_s,
+                         [&](std::size_t row, const SignedSums<double>& bias) { sums.add(bias, result[row]); });
+  return result;
+}
+
+/// The residuals of each signed sum that each time constant leaves. Trials of several row sets are added up.
+struct BiasTrial {
+  static constexpr std::size_t candidates = bias_time_constants_tried_s.size();
+
+  double rows = 0;
+  std::array<SignedSums<double>, candidates> absolute{};  ///< sums over the rows; infinite: not to be taken
+
+  BiasTrial& operator+=(const BiasTrial& other) {
+    rows += other.rows;
+    for (std::size_t c = 0; c < candidates; ++c) {
+      for (std::size_t k = 0; k < 4; ++k) absolute[c][k] += other.absolute[c][k];
+    }
+    return *this;
+  }
+
+  /// Sum by sum the shortest time constant whose mean absolute residual is within a twentieth of the least of all; 0,
+  /// none, where each of them costs more. Recorded flights seldom have the payload or the weak rotor that a bias is
+  /// for: on them alone the least error would be that of a slow bias, or of none.
+  SignedSums<double> best_s() const {
+    constexpr double most_cost = 0.05;
+    SignedSums<double> best{};
+    if (!(rows > 0)) return best;
+    for (std::size_t k = 0; k < 4; ++k) {
+      double least = absolute[0][k];
+      for (const SignedSums<double>& of_candidate : absolute) least = std::min(least, of_candidate[k]);
+      for (std::size_t c = candidates; c-- > 1;) {
+        if (absolute[c][k] <= (1 + most_cost) * least) best[k] = bias_time_constants_tried_s[c];
+      }
+    }
+    return best;
+  }
+};
+
+/// Tries them on rows that did not train the model. Rows without a prediction count for none. Throws
+/// std::invalid_argument for a count that is none.
+inline BiasTrial try_biases(const RowSet& rows, const std::vector<Commands<double>>& predictions,
+                            const Airframe<double>& airframe, const PastRows& past) {
+  const detail::ResidualSums sums(airframe);
+  BiasTrial trial;
+  for (std::size_t c = 0; c < BiasTrial::candidates; ++c) {
+    const double time_s = bias_time_constants_tried_s[c];
+    if (time_s > 0 && time_s < past.least_time_constant_s) {
+      trial.absolute[c].fill(std::numeric_limits<double>::infinity());
+      continue;
+    }
+    const auto settings = detail::bias_settings_of<double>(SignedSums<double>{time_s, time_s, time_s, time_s});
+    detail::each_past_bias(rows, predictions, sums, settings, past.delay_s,
+                           [&](std::size_t row, const SignedSums<double>& bias) {
+                             const SignedSums<double> residual = sums.of(rows[row].commands, predictions[row]);
+                             if (!all_finite(residual)) return;
+                             trial.rows += c == 0 ? 1 : 0;
+                             for (std::size_t k = 0; k < 4; ++k)
+                               trial.absolute[c][k] += std::abs(residual[k] - bias[k]);
+                           });
+  }
+  return trial;
+}
+
+}  // namespace pinnquad
