@@ -30,12 +30,12 @@ def test_same_rows_and_features(pinnquad, flown):
         flights.append(Path(shutil.copy(flown(f"--seed {seed} --samples 2400"), f"flight{seed}.csv")))
     for of in flights[:1], flights:
         pinnquad("train --models constant,ridge --out run --flight", *of)
-        done = boosting("run", *of)
+        done = boosting("run", *of, "--trees=60")
         own, report = figures(done.out)
         assert own["ridge"] == pytest.approx(report["ridge"], rel=0.03), done
         assert own["ridge"][0] < own["boosting"][0] < 0.3 * report["constant"][0], done
         assert 0.9 < own["boosting"][1] < 1, done
-    force = figures(boosting("run", *flights, "--features=inverse", "--altitude").out)[0]
+    force = figures(boosting("run", *flights, "--features=inverse", "--altitude", "--trees=1").out)[0]
     assert force["ridge"] != own["ridge"] and force["ridge"] == pytest.approx(own["ridge"], rel=0.1)
 
 
@@ -52,4 +52,5 @@ def test_refusals(pinnquad, flown):
     boosting.refused("run", flight, at="flight.csv", keyword="column u1")
     Path("run/report.json").write_text(json.dumps({"folds": []}))
     boosting.refused("run", flight, at="run/report.json", keyword="folds")
+    assert "--trees" in boosting("run", flight, "--trees=0", code=2).err
     assert "report.json" in boosting("--help").out

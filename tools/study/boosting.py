@@ -7,7 +7,7 @@
     pinnquad train --dataset my_logs --hold-out-each trajectory --out my_model
     tools/study/boosting.py my_model my_logs [--window]
 
-Offline baselines. Flights that train, validate and judge are those of my_model/report.json. Features are PhysicsFeatures
+Offline baselines. Flights that train, validate and judge are those of my_model/report.json. Features: PhysicsFeatures
 (features/motion_parts.hpp) and the battery's voltage where it was logged. A model for each motor: scikit-learn's
 HistGradientBoostingRegressor and ridge. The validation rows count its trees and choose its penalty; of whole flights
 both are then fitted to these rows too, as pinnquad's closed forms are. Printed: mean absolute error and R^2 of the rows
@@ -32,7 +32,6 @@ GRAVITY_M_S2 = 9.80665
 TAPS, PERIOD_S = 9, 0.02  # LogWindow of tools/training/log_features.hpp
 MOTORS = ("u1", "u2", "u3", "u4")
 BATTERY = "battery_voltage [V]"
-MOST_TREES = 500
 PENALTIES = 10.0 ** np.arange(-6, 5)  # times the rows, of standardised features
 
 
@@ -124,7 +123,7 @@ def parts_of(fold, rows_of):
     return train, validation, [(name, 0, rows_of[name]) for name in fold["held_out"]]
 
 
-def fit_ridge(x, u, validating, refit):
+def fit_ridge(x, u, validating, refit, _options):
     mean, scale = x.mean(axis=0), x.std(axis=0)
     scale[scale < 1e-9] = 1
 
@@ -140,14 +139,14 @@ def fit_ridge(x, u, validating, refit):
     return solved(*refit, penalty)
 
 
-def fit_boosting(x, u, validating, refit):
+def fit_boosting(x, u, validating, refit, options):
     models = []
     for motor in range(u.shape[1]):
         def fitted(x, u, trees):
             model = HistGradientBoostingRegressor(max_iter=trees, early_stopping=False, random_state=1)
             return model.fit(x, u[:, motor])
 
-        model = fitted(x, u, MOST_TREES)
+        model = fitted(x, u, options.trees)
         errors = [np.mean((said - validating[1][:, motor]) ** 2) for said in model.staged_predict(validating[0])]
         models.append(fitted(*refit, int(np.argmin(errors)) + 1))
     return lambda of: np.stack([model.predict(of) for model in models], axis=1)
@@ -173,7 +172,7 @@ def judged(report, flights, options):
         training, validating, (x, u) = rows(train), rows(validation), rows(test)
         refit = training if fold["by_time"] else rows(train + validation)
         for name, fit in (("ridge", fit_ridge), ("boosting", fit_boosting)):
-            error = fit(*training, validating, refit)(x) - u
+            error = fit(*training, validating, refit, options)(x) - u
             found[name][0].append(np.abs(error).mean(axis=0))
             found[name][1].append(1 - (error ** 2).sum(axis=0) / ((u - u.mean(axis=0)) ** 2).sum(axis=0))
     return found
@@ -187,7 +186,10 @@ def main():
                         help="inverse: of the specific force the part along the thrust axis alone, as `structured`")
     parser.add_argument("--altitude", action="store_true", help="the altitude is a feature")
     parser.add_argument("--window", action="store_true", help="the accelerations of the last 160 ms are features")
+    parser.add_argument("--trees", type=int, default=500, help="the most of a model (default: 500)")
     options = parser.parse_args()
+    if options.trees < 1:
+        parser.error("--trees needs at least 1")
     try:
         report = read_json(options.run / "report.json")
         if not report.get("folds"):
