@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -181,19 +180,7 @@ class StructuredFitter {
     slopes_.of[0] = thrust;
     shape_.held_thrust = thrust.slope;
     slopes_.noisy = shape_.thrusts;
-    const RegressionSums all = total(instrumented_blocks(context_, fitted_, slopes_.noisy));
-    const int taps = static_cast<int>(slopes_.noisy.size());
-    const auto time_s = [](int tap) { return tap == 0 ? 0.0 : Features::Window::offset_s(tap - 1); };
-    for (int tap = 0; tap < taps; ++tap) {  // by what the neighbours' windows have instrument_lag_s off this tap
-      std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
-      for (int i = 0; i < 2 * taps; ++i) {
-        const double lag_s = i < taps ? -instrument_lag_s : instrument_lag_s;
-        told[static_cast<std::size_t>(shape_.inputs + i)] =
-            std::abs(time_s(i % taps) + lag_s - time_s(tap)) > instrument_lag_s - Features::Window::tolerance_s;
-      }
-      const int place = slopes_.noisy[static_cast<std::size_t>(tap)];
-      slopes_.denoised.push_back({place, by_neighbours(shape_, slopes_.noisy, all, place, told)});
-    }
+    slopes_.denoised = denoised_taps<Features>(shape_, total(instrumented_blocks(context_, fitted_, slopes_.noisy)));
   }
 
   template <class GoesOn>

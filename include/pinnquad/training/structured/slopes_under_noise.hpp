@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "pinnquad/features/windowed.hpp"
 #include "pinnquad/regression/block_regression.hpp"
 #include "pinnquad/regression/instrumental_variables.hpp"
 #include "pinnquad/training/structured/closed_form.hpp"
@@ -129,6 +130,27 @@ inline AffineMap by_neighbours(const MonotoneShape& shape, const std::vector<int
     for (int i = 0; i < 3; ++i) told[static_cast<std::size_t>(first + i)] = false;
   }
   return fit_ridge(all.of_input(place), smallest_penalty(), told);
+}
+
+/// The specific force along the thrust axis at each tap of a window, as what the neighbours' windows have
+/// instrument_lag_s off this tap tells it. `all`: of instrumented_blocks(), MonotoneShape::thrusts the noisy ones.
+template <class Features>
+std::vector<DenoisedFeature> denoised_taps(const MonotoneShape& shape, const RegressionSums& all) {
+  using Window = typename Features::Window;
+  const int taps = static_cast<int>(shape.thrusts.size());
+  const auto time_s = [](int tap) { return tap == 0 ? 0.0 : Window::offset_s(tap - 1); };
+  std::vector<DenoisedFeature> denoised;
+  for (int tap = 0; tap < taps; ++tap) {
+    std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
+    for (int i = 0; i < 2 * taps; ++i) {
+      const double lag_s = i < taps ? -instrument_lag_s : instrument_lag_s;
+      told[static_cast<std::size_t>(shape.inputs + i)] =
+          std::abs(time_s(i % taps) + lag_s - time_s(tap)) > instrument_lag_s - Window::tolerance_s;
+    }
+    const int place = shape.thrusts[static_cast<std::size_t>(tap)];
+    denoised.push_back({place, by_neighbours(shape, shape.thrusts, all, place, told)});
+  }
+  return denoised;
 }
 
 }  // namespace detail
