@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -130,7 +131,7 @@ TEST_CASE("of a quiet flight least squares are kept to the bit, with intervals")
       fit.model);
 }
 
-TEST_CASE("pinned slopes are not measured, nor those of a window, nor of few rows") {
+TEST_CASE("pinned slopes are not measured, nor those about the axes of a window, nor of few rows") {
   const StructuredFits::Fit pinned = fitted(flown(0.03, 1500), true);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CHECK_FALSE(pinned.slopes.of[1 + axis].known);
@@ -144,7 +145,55 @@ TEST_CASE("pinned slopes are not measured, nor those of a window, nor of few row
   const RowSet rows(flight, {0, flight.size()});
   CHECK(monotone_shape(make_context<Context<Window, PaperQuadrotor, AxisCommandOutputs>>(rows)).noisy.empty());
   CHECK(monotone_shape(make_context<Setting>(rows)).noisy == std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
-  CHECK(monotone_shape(make_context<Setting>(rows)).thrust == 0);
+  CHECK(monotone_shape(make_context<Setting>(rows)).thrusts == std::vector<int>{0});
+}
+
+TEST_CASE("a window's thrust slope, all taps together, is held where noise bends that of the present") {
+  using Window = PartlyWindowed<InverseFeatures, InverseAccelerations, 5, PeriodMicroseconds<50000>>;
+  constexpr int taps = Window::Window::taps;
+  const auto fit_of = [](const Flight& flight) {
+    StructuredSettings settings;
+    settings.residual.epochs = 3;
+    settings.seeds = 1;
+    const Dataset dataset(flight);
+    const GivenAirframe airframe(PaperQuadrotor::name, airframe_value<PaperQuadrotor, double>());
+    return fit_structured<StructuredFitsOf<Window, Window>>(split_for_training(dataset), airframe, settings).best();
+  };
+  const auto certificate_of = [](const auto& fit) {
+    return std::visit([](const auto& model) { return certificate_of_trained(model); }, fit.model);
+  };
+  CHECK_FALSE(fit_of(quiet()).slopes.of[0].known);
+
+  Flight shaken = quiet();
+  std::mt19937_64 engine(5);
+  for (Sample& sample : shaken) sample.linear_acceleration_m_s2[2] += 5 * standard_normal(engine);
+  const auto fit = fit_of(shaken);
+  const Certificate certificate = certificate_of(fit);
+  CHECK(fit.slopes.of[0].by_instruments);
+  CHECK(fit.slopes.of[0].least_squares < 0.8 * own_thrust);
+  CHECK_FALSE(fit.slopes.of[1].known);
+  CHECK(certificate.held_thrust_slope == doctest::Approx(fit.slopes.of[0].slope).epsilon(1e-4));
+  CHECK(certificate.held_thrust_slope == doctest::Approx(own_thrust).epsilon(0.1));
+  CHECK(certificate.residual_upper[0] == certificate.residual_lower[0]);
+
+  const RowSet rows(shaken, {100, 600});
+  std::array<double, taps> denoised{}, measured{};
+  std::visit(
+      [&](const auto& model) {
+        const auto context = make_context<Context<Window, PaperQuadrotor, AxisCommandOutputs>>(rows);
+        const std::vector<int> places = monotone_shape(context).thrusts;
+        REQUIRE(places.size() == taps);
+        each_denoised<Window>(model.input, fit.slopes, rows, [&](std::size_t row, const std::vector<double>& x) {
+          for (std::size_t tap = 0; tap < places.size(); ++tap) {
+            const auto at = 100 + row - tap;
+            const double truth = sample_features<InverseFeatures, double>(quiet()[at])[0];
+            denoised[tap] += std::pow(x[static_cast<std::size_t>(places[tap])] - truth, 2);
+            measured[tap] += std::pow(sample_features<InverseFeatures, double>(shaken[at])[0] - truth, 2);
+          }
+        });
+      },
+      fit.model);
+  for (std::size_t tap = 0; tap < denoised.size(); ++tap) CHECK(denoised[tap] < 0.8 * measured[tap]);
 }
 
 TEST_CASE("a sum by instruments has no residual, the others keep theirs") {

@@ -136,10 +136,11 @@ struct MonotoneShape {
   std::vector<int> places;  ///< of each tap's angular acceleration among the features, the present first
   std::vector<double> input_deviation, output_deviation;
   AxisSlopes airframe_slopes{};  ///< hover_slopes()
-  /// Features that a gyro's or an accelerometer's noise is in, by their units, and the specific force along the thrust
-  /// axis among them. None of a window: its taps would be their own instruments.
+  /// Features that a gyro's or an accelerometer's noise is in, by their units. None of a window: its taps would be
+  /// their own instruments.
   std::vector<int> noisy;
-  int thrust = -1;
+  std::vector<int> thrusts;  ///< places of each tap's specific force along the thrust axis, the present first
+  double held_thrust = 0;    ///< what a window's thrust slope, the sum over all taps, is held at, s^2/m; 0: learnt
 };
 
 /// The places and scales of a context's features, as the equations of the fit read them.
@@ -154,9 +155,9 @@ MonotoneShape monotone_shape(const ContextType& context) {
   shape.input_deviation.assign(context.input.standard_deviation.begin(), context.input.standard_deviation.end());
   shape.output_deviation.assign(context.output.standard_deviation.begin(), context.output.standard_deviation.end());
   shape.airframe_slopes = hover_slopes(context.template airframe<double>());
+  constexpr auto thrusts = detail::thrust_places<Features>();
+  shape.thrusts.assign(thrusts.place, thrusts.place + thrusts.count);
   if constexpr (!is_windowed<Features>) {
-    constexpr auto thrusts = detail::thrust_places<Features>();
-    if (thrusts.count > 0) shape.thrust = thrusts.place[0];
     for (int i = 0; i < Features::size; ++i) {
       const std::string_view unit = Features::units[static_cast<std::size_t>(i)];
       if (unit == "m/s^2" || unit == "rad/s" || unit == "rad/s^2" || unit == "rad^2/s^2") shape.noisy.push_back(i);
@@ -176,12 +177,21 @@ inline std::vector<bool> features_of_output(const MonotoneShape& shape, int outp
   return taken;
 }
 
-/// Of an axis command: none of the sum of the commands. See fit_monotone_base().
+/// Of an axis command; of the sum of the commands where a window's is held. See fit_monotone_base().
 inline std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, int output,
                                              const std::optional<AxisSlopes>& pinned) {
   constexpr double least_share = 0.01;
   const int axis = output - 1;
-  if (axis < 0) return {};
+  const auto factor = [&](int place) {
+    return shape.output_deviation[static_cast<std::size_t>(output)] /
+           shape.input_deviation[static_cast<std::size_t>(place)];
+  };
+  if (axis < 0) {
+    if (!(shape.held_thrust > 0)) return {};
+    WeightBound held{{}, -shape.held_thrust, true};  // the specific force of thrust is below 0
+    for (const int place : shape.thrusts) held.terms.emplace_back(place, factor(place));
+    return {held};
+  }
   const auto of_axis = static_cast<std::size_t>(axis);
   const double least = least_share * shape.airframe_slopes[of_axis];
   if (!(least > 0) || (pinned && !((*pinned)[of_axis] > least))) {
@@ -189,10 +199,8 @@ inline std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, int out
   }
   WeightBound present, held;
   for (const int place : shape.places) {
-    const auto feature = static_cast<std::size_t>(place + axis);
-    const double factor = shape.output_deviation[static_cast<std::size_t>(output)] / shape.input_deviation[feature];
-    if (held.terms.empty()) present.terms.emplace_back(place + axis, factor);
-    held.terms.emplace_back(place + axis, factor);
+    if (held.terms.empty()) present.terms.emplace_back(place + axis, factor(place + axis));
+    held.terms.emplace_back(place + axis, factor(place + axis));
   }
   present.least = held.least = least;
   if (pinned) {

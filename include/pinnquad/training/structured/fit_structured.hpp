@@ -127,7 +127,8 @@ class StructuredFitter {
       : split_(split),
         settings_(settings),
         fitted_(settings.fit_validation ? rows_of({split.train, split.validation}) : split.train),
-        context_(make_context<ContextType>(fitted_, airframe)) {
+        context_(make_context<ContextType>(fitted_, airframe)),
+        shape_(monotone_shape(context_)) {
     if (settings.pinned_slopes) pinned_ = hover_slopes(airframe.template airframe<double>());
     for (const RowSet& group : left_out_groups(fitted_)) {
       RegressionSums sums = regression_sums(context_, group);
@@ -135,10 +136,10 @@ class StructuredFitter {
       groups_.push_back(group);
       sums_.push_back(std::move(sums));
     }
-    const MonotoneShape shape = monotone_shape(context_);
-    measured_ = map_ = fit_monotone_base(shape, sums_, pinned_);
-    if (!shape.noisy.empty()) {
-      slopes_ = measure_slopes(shape, instrumented_blocks(context_, fitted_, shape.noisy), pinned_, measured_);
+    if constexpr (is_windowed<Features>) hold_thrust(airframe);
+    measured_ = map_ = fit_monotone_base(shape_, sums_, pinned_);
+    if (!shape_.noisy.empty()) {
+      slopes_ = measure_slopes(shape_, instrumented_blocks(context_, fitted_, shape_.noisy), pinned_, measured_);
     }
     whole_flights_ = whole_flight_groups(fitted_).size() > 1 && groups_.size() > 1;
   }
@@ -165,6 +166,23 @@ class StructuredFitter {
   }
 
  private:
+  /// A window's taps would be their own instruments. What a held force takes is the same without a window: where noise
+  /// bends it there, the sum over all taps is held at what instruments say there.
+  void hold_thrust(const GivenAirframe& airframe) {
+    using Present = Context<typename Features::TapFeatures, GivenAirframe, AxisCommandOutputs>;
+    const auto present = make_context<Present>(fitted_, airframe);
+    const MonotoneShape shape = monotone_shape(present);
+    if (shape.thrusts.size() != 1) return;
+    AffineMap map = fit_monotone_base(present, fitted_);
+    const MeasuredSlope thrust =
+        measure_slopes(shape, instrumented_blocks(present, fitted_, shape.noisy), {}, map).of[0];
+    if (!thrust.by_instruments) return;
+    slopes_.of[0] = thrust;
+    shape_.held_thrust = thrust.slope;
+    slopes_.noisy = shape_.thrusts;
+    slopes_.denoised = denoised_taps<Features>(shape_, total(instrumented_blocks(context_, fitted_, slopes_.noisy)));
+  }
+
   template <class GoesOn>
   auto fitted(const RowSet& training, const AffineMap& map, std::uint64_t seed, const GoesOn& goes_on) const {
     std::mt19937_64 engine(seed);
@@ -203,7 +221,7 @@ class StructuredFitter {
       std::vector<RegressionSums> sums = sums_;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
       sums.erase(sums.begin() + static_cast<std::ptrdiff_t>(out));
-      use(rows_of(others), fit_monotone_base(monotone_shape(context_), sums, pinned_), groups_[out]);
+      use(rows_of(others), fit_monotone_base(shape_, sums, pinned_), groups_[out]);
     }
   }
 
@@ -303,6 +321,7 @@ class StructuredFitter {
   const StructuredSettings& settings_;
   RowSet fitted_;
   ContextType context_;
+  MonotoneShape shape_;
   std::optional<AxisSlopes> pinned_;
   std::vector<RowSet> groups_;
   std::vector<RegressionSums> sums_;  ///< of the groups

@@ -9,8 +9,8 @@ namespace pinnquad {
 /// How much one signed sum rises with what is asked of it: the sum of the commands with the thrust, s^2/m; those about
 /// the axes with the angular acceleration, s^2/rad.
 struct MeasuredSlope {
-  bool known = false;  ///< false: pinned, of a window, of features without it, or of too few rows
-  double slope = 0;    ///< of the base
+  bool known = false;  ///< false: pinned, about an axis of a window, of features without it, or of too few rows
+  double slope = 0;    ///< of the base; of a window the sum over all taps
   double standard_error = 0;
   double lower = 0, upper = 0;  ///< 95 %
   bool by_instruments = false;  ///< least squares bend it

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "pinnquad/features/windowed.hpp"
 #include "pinnquad/regression/block_regression.hpp"
 #include "pinnquad/regression/instrumental_variables.hpp"
 #include "pinnquad/training/structured/closed_form.hpp"
@@ -120,6 +121,38 @@ inline InstrumentRoles instrument_roles(const MonotoneShape& shape, const std::v
   return roles;
 }
 
+/// A noisy feature as the others that `told` names, and the noisy ones of the neighbours, tell it:
+/// DenoisedFeature::by_neighbours. `all`: of instrumented_blocks().
+inline AffineMap by_neighbours(const MonotoneShape& shape, const std::vector<int>& noisy, const RegressionSums& all,
+                               int place, std::vector<bool> told) {
+  for (const int feature : noisy) told[static_cast<std::size_t>(feature)] = false;
+  for (const int first : shape.places) {
+    for (int i = 0; i < 3; ++i) told[static_cast<std::size_t>(first + i)] = false;
+  }
+  return fit_ridge(all.of_input(place), smallest_penalty(), told);
+}
+
+/// The specific force along the thrust axis at each tap of a window, as what the neighbours' windows have
+/// instrument_lag_s off this tap tells it. `all`: of instrumented_blocks(), MonotoneShape::thrusts the noisy ones.
+template <class Features>
+std::vector<DenoisedFeature> denoised_taps(const MonotoneShape& shape, const RegressionSums& all) {
+  using Window = typename Features::Window;
+  const int taps = static_cast<int>(shape.thrusts.size());
+  const auto time_s = [](int tap) { return tap == 0 ? 0.0 : Window::offset_s(tap - 1); };
+  std::vector<DenoisedFeature> denoised;
+  for (int tap = 0; tap < taps; ++tap) {
+    std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
+    for (int i = 0; i < 2 * taps; ++i) {
+      const double lag_s = i < taps ? -instrument_lag_s : instrument_lag_s;
+      told[static_cast<std::size_t>(shape.inputs + i)] =
+          std::abs(time_s(i % taps) + lag_s - time_s(tap)) > instrument_lag_s - Window::tolerance_s;
+    }
+    const int place = shape.thrusts[static_cast<std::size_t>(tap)];
+    denoised.push_back({place, by_neighbours(shape, shape.thrusts, all, place, told)});
+  }
+  return denoised;
+}
+
 }  // namespace detail
 
 /// Calls `visit(row, x)` for each row whose neighbours are at hand, counted through the set: features in physical
@@ -157,8 +190,8 @@ inline MeasuredSlopes measure_slopes(const MonotoneShape& shape, const std::vect
   const RegressionSums all = detail::total(blocks);
   const double half = student_t_975(static_cast<double>(blocks.size()) - 1);
   for (int output = 0; output < map.outputs; ++output) {
-    const int place = output == 0 ? shape.thrust : shape.places.front() + output - 1;
-    if (place < 0 || (pinned && output > 0)) continue;
+    if (output == 0 ? shape.thrusts.empty() : pinned.has_value()) continue;
+    const int place = output == 0 ? shape.thrusts.front() : shape.places.front() + output - 1;
     const auto roles = detail::instrument_roles(shape, detail::features_of_output(shape, output));
     if (std::find(roles.noisy.begin(), roles.noisy.end(), place) == roles.noisy.end()) continue;
     const InstrumentedWeight found = instrumented_weight(blocks, output, roles, place);
@@ -172,10 +205,8 @@ inline MeasuredSlopes measure_slopes(const MonotoneShape& shape, const std::vect
           fit_instrumented(all.of_output(output), roles, place, detail::slope_bounds(shape, output, pinned));
       std::copy_n(one.weights.begin(), map.inputs, map.weights.begin() + static_cast<std::ptrdiff_t>(row));
       map.intercept[static_cast<std::size_t>(output)] = one.intercept.front();
-      std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
-      for (const int noisy : shape.noisy) told[static_cast<std::size_t>(noisy)] = false;
-      for (int i = 0; i < 3; ++i) told[static_cast<std::size_t>(shape.places.front() + i)] = false;
-      slopes.denoised.push_back({place, fit_ridge(all.of_input(place), detail::smallest_penalty(), told)});
+      const std::vector<bool> every(static_cast<std::size_t>(all.inputs()), true);
+      slopes.denoised.push_back({place, detail::by_neighbours(shape, shape.noisy, all, place, every)});
     }
     slope.known = true;
     slope.slope = map.weights[row + static_cast<std::size_t>(place)] * scale;
