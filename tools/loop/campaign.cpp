@@ -172,7 +172,8 @@ class Loop {
     limits.max_horizontal_speed_m_s = 12;
     limits.max_climb_m_s = 5;
     limits.max_descent_m_s = 3;
-    const LoopKnowledge<Told> known{plan_.model, plan_.columns, told_, {}, plan_.sensors.delay_s};
+    const auto bias = plan_.model.with([](const auto& model) { return bias_settings<double>(model.records()); });
+    const LoopKnowledge<Told> known{plan_.model, plan_.columns, told_, bias, plan_.sensors.delay_s};
     const AnyPolicy policy = loop_policy(cell.controller, known, gains);
     Errors errors;
     errors.period_s = period_s;

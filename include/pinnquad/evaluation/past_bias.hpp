@@ -18,7 +18,7 @@
 namespace pinnquad {
 
 /// Time constants that are tried, s, sum by sum. 0: no bias.
-inline constexpr std::array<double, 9> bias_time_constants_tried_s = {0, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2, 5};
+inline constexpr std::array<double, 7> bias_time_constants_tried_s = {0, 0.05, 0.1, 0.2, 0.3, 0.5, 1};
 
 /// The delay of a state beside its commands that nobody has told the loop: with it the bias must still be stable.
 inline constexpr double untold_delay_s = 0.04;
@@ -122,13 +122,14 @@ struct BiasTrial {
     return *this;
   }
 
-  /// Sum by sum the shortest time constant whose mean absolute residual is within a twentieth of the least of all; 0,
-  /// none, where each of them costs more. Recorded flights seldom have the payload or the weak rotor that a bias is
-  /// for: on them alone the least error would be that of a slow bias, or of none.
+  /// Sum by sum the shortest time constant whose mean absolute residual is within a twentieth of the least of all; the
+  /// longest where each of them costs more. Recorded flights seldom have the payload or the weak rotor that a bias is
+  /// for: on them alone the least error would be that of a slow bias, or of none. 0 without rows.
   SignedSums<double> best_s() const {
     constexpr double most_cost = 0.05;
     SignedSums<double> best{};
     if (!(rows > 0)) return best;
+    best.fill(bias_time_constants_tried_s.back());
     for (std::size_t k = 0; k < 4; ++k) {
       double least = absolute[0][k];
       for (const SignedSums<double>& of_candidate : absolute) least = std::min(least, of_candidate[k]);
