@@ -9,7 +9,6 @@
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/control/adaptive_inverse.hpp"
-#include "pinnquad/control/bias_estimate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/filtered_motion.hpp"
 #include "pinnquad/control/tracking_controller.hpp"

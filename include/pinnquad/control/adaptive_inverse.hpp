@@ -14,8 +14,6 @@
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flown_motion.hpp"
 #include "pinnquad/control/motion_bias.hpp"
-#include "pinnquad/features/motion_parts.hpp"
-#include "pinnquad/outputs/axis_command_outputs.hpp"
 
 namespace pinnquad {
 
@@ -42,8 +40,8 @@ class AdaptiveInverse {
 
  public:
   AdaptiveInverse(const FeedForward& inverse, const Airframe<Scalar>& airframe,
-                  const MotionBiasSettings<Scalar>& settings = {}, const Motion& motion = Motion{}) noexcept
-      : inverse_(inverse), mix_(detail::signed_mix(airframe)), bias_(settings), motion_(motion) {}
+                  const BiasSettings<Scalar>& settings = {}, const Motion& motion = Motion{}) noexcept
+      : inverse_(inverse), bias_(airframe, settings), motion_(motion) {}
 
   const FeedForward& inverse() const noexcept { return inverse_; }
   const MotionBias<Scalar>& bias() const noexcept { return bias_; }
@@ -60,7 +58,7 @@ class AdaptiveInverse {
     Commands<Scalar> said{};
     const Status status = inverse_(state, wanted, time_us, said);
     if (!has_output(status)) return status;
-    add_bias(said);
+    bias_.add_to(said);
     commands = said;
     return status;
   }
@@ -85,12 +83,6 @@ class AdaptiveInverse {
   const Vector3<Scalar>& acceleration_bias_m_s2() const noexcept { return bias_.across_m_s2(); }
 
  private:
-  void add_bias(Commands<Scalar>& commands) const noexcept {
-    for (std::size_t i = 0; i < commands.size(); ++i) {
-      for (std::size_t k = 0; k < 4; ++k) commands[i] += mix_.by[i][k] * bias_.sums()[k];
-    }
-  }
-
   PINNQUAD_NOINLINE void compare(std::uint64_t now_us, const Vector3<Scalar>& position_m, Scalar step_s) noexcept {
     const MotionInputs<Scalar>& motion = motion_.motion();
     State<Scalar> state;
@@ -107,17 +99,10 @@ class AdaptiveInverse {
       status = inverse_(state, flown, now_us, said);
     }
     if (status != Status::ok) return;
-    SignedSums<Scalar> residual{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t i = 0; i < rotor_count; ++i) residual[k] += mix_.signs[k][i] * (motion_.flown()[i] - said[i]);
-    }
-    Vector3<Scalar> across = SpecificForce::of<Scalar>(motion);
-    across[2] = Scalar(0);
-    static_cast<void>(bias_.learn(residual, body_to_world<Scalar>(motion.attitude, across), motion_.period_s(step_s)));
+    static_cast<void>(bias_.learn(motion, motion_.flown(), said, motion_.period_s(step_s)));
   }
 
   FeedForward inverse_;
-  detail::SignedMix<Scalar> mix_;
   MotionBias<Scalar> bias_;
   Motion motion_;
   std::uint64_t before_us_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The bias of an inverse: what its commands and the forces that it knows of lack, from a payload, a weak rotor or battery,
-// wind. It is learnt from the past alone: the answer to a motion asked for shifts, and rises with it as before.
+// The bias of an inverse: commands and forces that it does not know of, from a payload, a weak rotor or battery, wind.
+// It is learnt from the past alone: the answer to a motion asked for shifts, and rises with it as before.
 #pragma once
 
 #include <array>
@@ -9,6 +9,8 @@
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
+#include "pinnquad/features/motion_parts.hpp"
+#include "pinnquad/outputs/axis_command_outputs.hpp"
 
 namespace pinnquad {
 
@@ -18,41 +20,68 @@ using SignedSums = std::array<Scalar, 4>;
 
 /// Settings of a MotionBias.
 template <class Scalar>
-struct MotionBiasSettings {
+struct BiasSettings {
   SignedSums<Scalar> time_constants_s{Scalar(0.2), Scalar(0.45), Scalar(0.45), Scalar(0.45)};
-  SignedSums<Scalar> most{Scalar(0.8), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way
+  SignedSums<Scalar> most{Scalar(0.8), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way; 0: no bias
   Scalar across_time_constant_s = Scalar(0.2);
-  Scalar most_across_m_s2 = Scalar(3);  ///< its length
+  Scalar most_across_m_s2 = Scalar(3);  ///< its length; 0: none
   Scalar hold_s = Scalar(0.5);          ///< without a residual it stays this long, then fades
   Scalar fade_s = Scalar(2);            ///< time constant of fading
 };
 
-/// b <- b + T / (T + time constant) (r - b) of each signed sum of commands, |b| <= most. T: the period of r; r: the residual, commands flown - commands that
-/// the inverse gives for the motion flown. And the same of d, the acceleration across the thrust (NED, m/s^2) that no
-/// rotor makes.
+/// b <- b + T / (T + time constant) (r - b) of each signed sum of commands, |b| <= most. T: the period of r.
+/// r: the residual, commands flown - commands that the inverse gives for the motion flown.
+/// The same of d, the acceleration across the thrust (NED, m/s^2) that no rotor makes.
+/// A b is added to the inverse's commands; A: the inverse of the signs.
 template <class Scalar>
 class MotionBias {
  public:
-  explicit constexpr MotionBias(const MotionBiasSettings<Scalar>& settings = {}) noexcept : settings_(settings) {}
+  /// A vehicle whose signs do not distinguish the axes has no bias of its sums.
+  explicit constexpr MotionBias(const Airframe<Scalar>& airframe, const BiasSettings<Scalar>& settings = {}) noexcept
+      : settings_(settings), mix_(detail::signed_mix(airframe)) {
+    if (!is_finite(mix_.by[0][0])) mix_ = {};
+  }
 
-  constexpr const MotionBiasSettings<Scalar>& settings() const noexcept { return settings_; }
+  constexpr const BiasSettings<Scalar>& settings() const noexcept { return settings_; }
   constexpr const SignedSums<Scalar>& sums() const noexcept { return sums_; }
   const Vector3<Scalar>& across_m_s2() const noexcept { return across_; }
   /// `ok`: it learns. `limited`: at a bound. `warming_up`: nothing has been learnt yet, or for longer than `hold_s`.
   /// `not_finite`: the last residual was no number.
   Status status() const noexcept { return status_; }
-
-  /// One residual. `not_finite`: nothing changes.
-  Status learn(const SignedSums<Scalar>& residual, const Vector3<Scalar>& across_m_s2, Scalar period_s) noexcept {
-    if (!(all_finite(residual) && all_finite(across_m_s2))) return status_ = Status::not_finite;
-    bool bound = false;
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-      const Scalar wanted = sums_[i] + share(settings_.time_constants_s[i], period_s) * (residual[i] - sums_[i]);
-      const Scalar most = settings_.most[i];
-      sums_[i] = wanted > most ? most : (wanted < -most ? -most : wanted);
-      bound = bound || wanted > most || wanted < -most;
+  /// The greatest share of its bound that a sum has, 0 to 1.
+  Scalar share_of_bound() const noexcept {
+    Scalar greatest(0);
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      const Scalar length = sums_[k] < Scalar(0) ? -sums_[k] : sums_[k];
+      if (length > greatest * settings_.most[k]) greatest = length / settings_.most[k];
     }
-    across_ += share(settings_.across_time_constant_s, period_s) * (across_m_s2 - across_);
+    return greatest;
+  }
+
+  /// u + A b.
+  void add_to(Commands<Scalar>& commands) const noexcept {
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      for (std::size_t k = 0; k < sums_.size(); ++k) commands[i] += mix_.by[i][k] * sums_[k];
+    }
+  }
+
+  /// A motion that was flown, the commands that the rotors followed in it, and those that the inverse gives for it.
+  /// `not_finite`: nothing changes.
+  Status learn(const MotionInputs<Scalar>& motion, const Commands<Scalar>& flown, const Commands<Scalar>& said,
+               Scalar period_s) noexcept {
+    SignedSums<Scalar> residual{};
+    for (std::size_t k = 0; k < residual.size(); ++k) {
+      for (std::size_t i = 0; i < rotor_count; ++i) residual[k] += mix_.signs[k][i] * (flown[i] - said[i]);
+    }
+    Vector3<Scalar> across = SpecificForce::of<Scalar>(motion);
+    across[2] = Scalar(0);
+    across = body_to_world<Scalar>(motion.attitude, across);
+    if (!(all_finite(residual) && all_finite(across))) return status_ = Status::not_finite;
+    bool bound = false;
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      bound |= move(k, share(settings_.time_constants_s[k], period_s) * (residual[k] - sums_[k]));
+    }
+    across_ += share(settings_.across_time_constant_s, period_s) * (across - across_);
     const Scalar length = across_.norm();
     if (length > settings_.most_across_m_s2) {
       across_ *= settings_.most_across_m_s2 / length;
@@ -72,24 +101,46 @@ class MotionBias {
     across_ *= kept;
     if (status_ != Status::not_finite) status_ = Status::warming_up;
   }
+  /// Time in flight that says nothing of it, as with commands at their ends: it stays.
+  void freeze() noexcept { waited_s_ = Scalar(0); }
+  /// A motion that its inverse does not answer for: it moves with the bias of another inverse, as the vehicle has
+  /// changed for both.
+  void follow(const SignedSums<Scalar>& before, const SignedSums<Scalar>& now) noexcept {
+    for (std::size_t k = 0; k < sums_.size(); ++k) move(k, now[k] - before[k]);
+    freeze();
+  }
 
   /// Forgets: for another model, on the ground.
-  void reset() noexcept { *this = MotionBias(settings_); }
+  void reset() noexcept {
+    sums_ = {};
+    across_.setZero();
+    waited_s_ = Scalar(0);
+    status_ = Status::warming_up;
+  }
   /// Goes on from what was logged.
-  void resume(const SignedSums<Scalar>& sums, const Vector3<Scalar>& across_m_s2, Scalar waited_s) noexcept {
+  void resume(const SignedSums<Scalar>& sums, const Vector3<Scalar>& across_m_s2, Scalar waited_s,
+              Status status) noexcept {
     if (!(all_finite(sums) && all_finite(across_m_s2) && is_finite(waited_s))) return;
     sums_ = sums;
     across_ = across_m_s2;
     waited_s_ = waited_s;
+    status_ = status;
   }
   Scalar waited_s() const noexcept { return waited_s_; }
 
  private:
+  /// True where the bound limits it.
+  bool move(std::size_t k, Scalar by) noexcept {
+    const Scalar wanted = sums_[k] + by, most = settings_.most[k];
+    sums_[k] = wanted > most ? most : (wanted < -most ? -most : wanted);
+    return wanted > most || wanted < -most;
+  }
   static Scalar share(Scalar time_constant_s, Scalar period_s) noexcept {
     return period_s / (period_s + time_constant_s);
   }
 
-  MotionBiasSettings<Scalar> settings_;
+  BiasSettings<Scalar> settings_;
+  detail::SignedMix<Scalar> mix_;
   SignedSums<Scalar> sums_{};
   Vector3<Scalar> across_ = Vector3<Scalar>::Zero();
   Scalar waited_s_{0};

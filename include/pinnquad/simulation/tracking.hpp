@@ -30,7 +30,7 @@ struct TrackingResult {
   FallbackCount fallback{};            ///< of a policy that has one, else zero
 };
 
-/// What flies as it is modelled, seen as it is. Another world has the same functions:
+/// A world that flies as it is modelled, seen as it is. Another world has the same functions:
 ///   Status step(VehicleState<Scalar>&, const Commands<Scalar>&, Scalar step_s) noexcept   as Quadrotor::step()
 ///   State<Scalar> sense(const VehicleState<Scalar>&) noexcept                              what the controller sees
 template <class Vehicle>
