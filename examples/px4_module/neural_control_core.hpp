@@ -114,6 +114,7 @@ struct PinnquadStatus {
   std::uint8_t status{0};        ///< pinnquad::Status
   std::uint8_t cause{0};         ///< pinnquad::Status of the network alone
   std::uint8_t stale_inputs{0};  ///< bit 0 body rates, 1 attitude, 2 local position, 3 set point, 4 battery voltage
+  std::uint8_t bias_status{0};   ///< pinnquad::Status of the network's bias
 };
 
 /// `Model` is an exported header; the weights come as a model block. `Controller`: one that records its inputs

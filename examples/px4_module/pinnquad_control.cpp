@@ -88,8 +88,12 @@ pinnquad::autopilot::CoreSettings PinnquadControl::controller_settings() const {
   settings.climb_m_s = _param_speed_up.get();
   settings.descent_m_s = _param_speed_down.get();
   settings.take_off_s = _param_take_off.get();
-  settings.bias_bandwidth_1_s = _param_bias_bandwidth.get();
-  settings.most_bias_m_s2 = _param_bias_most.get();
+  for (size_t k = 0; k < 4; ++k) {  // the commands' sum; roll, pitch and yaw, whose sums are half as great
+    settings.bias_time_constants_s[k] = k == 0 ? _param_bias_thrust.get() : _param_bias_rotation.get();
+    settings.most_bias[k] = k == 0 ? _param_bias_most.get() : _param_bias_most.get() / 2;
+  }
+  settings.most_across_m_s2 = _param_bias_across.get();
+  settings.state_delay_s = _param_bias_delay.get();
   return settings;
 }
 
@@ -315,6 +319,7 @@ void PinnquadControl::publish(const pinnquad_px4::PinnquadStatus& status) {
   message.status = status.status;
   message.cause = status.cause;
   message.stale_inputs = status.stale_inputs;
+  message.bias_status = status.bias_status;
   _publications.status.publish(message);
 }
 

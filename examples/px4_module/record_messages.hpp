@@ -31,8 +31,11 @@ void copy_record(const pinnquad::autopilot::CoreRecord& from, Message& to) {
   to.wanted_yaw_rad = from.wanted_yaw_rad;
   to.wanted_yaw_rate_rad_s = from.wanted_yaw_rate_rad_s;
   to.battery_voltage = from.battery_voltage;
-  memcpy(to.bias_m_s2, from.bias_m_s2, sizeof to.bias_m_s2);
-  memcpy(to.predicted_velocity_m_s, from.predicted_velocity_m_s, sizeof to.predicted_velocity_m_s);
+  memcpy(to.bias_sums, from.bias_sums, sizeof to.bias_sums);
+  memcpy(to.analytic_bias_sums, from.analytic_bias_sums, sizeof to.analytic_bias_sums);
+  memcpy(to.bias_across_m_s2, from.bias_across_m_s2, sizeof to.bias_across_m_s2);
+  to.bias_waited_s = from.bias_waited_s;
+  to.analytic_bias_waited_s = from.analytic_bias_waited_s;
   memcpy(to.jump_position_m, from.jump_position_m, sizeof to.jump_position_m);
   memcpy(to.jump_velocity_m_s, from.jump_velocity_m_s, sizeof to.jump_velocity_m_s);
   to.jump_yaw_rad = from.jump_yaw_rad;
@@ -51,6 +54,8 @@ void copy_record(const pinnquad::autopilot::CoreRecord& from, Message& to) {
   to.cause = from.cause;
   to.stale_inputs = from.stale_inputs;
   to.trusted = from.trusted;
+  to.bias_status = from.bias_status;
+  to.analytic_bias_status = from.analytic_bias_status;
 }
 
 /// `Message`: pinnquad_settings_s.
@@ -75,8 +80,13 @@ void copy_settings(const pinnquad::autopilot::CoreSettings& from, Message& to) {
   to.climb_m_s = from.climb_m_s;
   to.descent_m_s = from.descent_m_s;
   to.take_off_s = from.take_off_s;
-  to.bias_bandwidth_1_s = from.bias_bandwidth_1_s;
-  to.most_bias_m_s2 = from.most_bias_m_s2;
+  memcpy(to.bias_time_constants_s, from.bias_time_constants_s, sizeof to.bias_time_constants_s);
+  memcpy(to.most_bias, from.most_bias, sizeof to.most_bias);
+  to.across_time_constant_s = from.across_time_constant_s;
+  to.most_across_m_s2 = from.most_across_m_s2;
+  to.bias_hold_s = from.bias_hold_s;
+  to.bias_fade_s = from.bias_fade_s;
+  to.state_delay_s = from.state_delay_s;
   to.effects = from.effects;
   to.drag_n_s_m = from.drag_n_s_m;
   to.rate_damping_n_m_s = from.rate_damping_n_m_s;

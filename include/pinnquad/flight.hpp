@@ -16,7 +16,6 @@
 #include "pinnquad/aero/wake.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/control/adaptive_inverse.hpp"
-#include "pinnquad/control/bias_estimate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/filtered_motion.hpp"
 #include "pinnquad/control/known_drag.hpp"

@@ -117,7 +117,7 @@ Structured structured() {
 
 using Indi = AdaptiveInverse<double, RigidBody, FilteredMotion<double>>;
 Indi indi() {
-  MotionBiasSettings<double> settings;
+  BiasSettings<double> settings;
   settings.time_constants_s = {};  // the last residual
   settings.across_time_constant_s = 0;
   settings.most_across_m_s2 = 9;
@@ -162,7 +162,7 @@ TEST_CASE("stable with a rotor lag of 50 ms, and with states 40 ms late that are
   CHECK(rmse_cm(adaptive(structured(), late), late) <= 1.1 * without_cm);
   CHECK(rmse_cm(adaptive(structured(), late_payload), late_payload) <= 1.15 * without_cm);  // 37.5 without
   // unaligned, quick time constants diverge
-  MotionBiasSettings<double> quick;
+  BiasSettings<double> quick;
   quick.time_constants_s = {0.05, 0.06, 0.06, 0.06};
   const auto rate = [&](double delay_s) {
     const FlownMotionSettings<double> motion{25'000, airframe().rotor_time_constant_s, delay_s};
@@ -207,7 +207,7 @@ void hover(Policy& policy, double flown, double duration_s, std::uint64_t& now_u
 
 TEST_CASE("the bias is of the past: what the motion asked for changes is the inverse's own, to the bit") {
   // numbers that no sum rounds: commands of 24 bits, a bias that is a power of two
-  MotionBiasSettings<double> settings;
+  BiasSettings<double> settings;
   settings.time_constants_s = {};
   AdaptiveInverse<double, Scripted> policy({}, airframe(), settings);
   std::uint64_t now_us = 1'000'000;

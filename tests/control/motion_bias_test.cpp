@@ -18,9 +18,10 @@ constexpr double period_s = 0.025, rounding = 1e-12;
 const double no_number = std::numeric_limits<double>::quiet_NaN();
 const double infinity = std::numeric_limits<double>::infinity();
 const Vector3<double> none = Vector3<double>::Zero();
+const auto airframe = airframe_value<PaperQuadrotor, double>();
 
-MotionBiasSettings<double> settings() {
-  MotionBiasSettings<double> result;
+BiasSettings<double> settings() {
+  BiasSettings<double> result;
   result.time_constants_s = {0.2, 0.4, 0.8, 1.6};
   result.across_time_constant_s = 0.3;
   return result;
@@ -31,7 +32,7 @@ MotionBiasSettings<double> settings() {
 TEST_CASE("a constant residual is found as first order finds it: r (1 - (c / (c + T))^n)") {
   const SignedSums<double> residual{0.3, -0.2, 0.1, 0.05};
   const Vector3<double> across(1, -0.5, 0.2);
-  Bias bias(settings());
+  Bias bias(airframe, settings());
   CHECK(bias.status() == Status::warming_up);
   for (int n = 1; n <= 200; ++n) {
     REQUIRE(bias.learn(residual, across, period_s) == Status::ok);
@@ -46,9 +47,9 @@ TEST_CASE("a constant residual is found as first order finds it: r (1 - (c / (c 
 }
 
 TEST_CASE("a time constant of 0 is the last residual, an infinite one none") {
-  MotionBiasSettings<double> extreme = settings();
+  BiasSettings<double> extreme = settings();
   extreme.time_constants_s = {0, infinity, 0, infinity};
-  Bias bias(extreme);
+  Bias bias(airframe, extreme);
   REQUIRE(bias.learn({0.3, 0.2, -0.1, 0.4}, none, period_s) == Status::ok);
   CHECK(bias.sums() == SignedSums<double>{0.3, 0, -0.1, 0});
 }
@@ -64,7 +65,7 @@ struct Telling {
 }  // namespace
 
 TEST_CASE("the settings of a model: its own time constants, else the usual ones; 0 is none of a sum") {
-  constexpr MotionBiasSettings<double> usual;
+  constexpr BiasSettings<double> usual;
   CHECK(bias_settings<Silent, double>().time_constants_s == usual.time_constants_s);
   constexpr auto own = bias_settings<Telling, double>();
   CHECK(own.time_constants_s == SignedSums<double>{0.25, 0.5, 1, infinity});
@@ -80,13 +81,13 @@ TEST_CASE("the settings of a model: its own time constants, else the usual ones;
 TEST_CASE("the most that it changes a command: of an X a quarter of the bounds' sum") {
   const auto airframe = airframe_value<PaperQuadrotor, double>();
   for (const double most : largest_bias(airframe)) CHECK(most == doctest::Approx(0.25 * (0.8 + 3 * 0.4)));
-  MotionBiasSettings<double> bounded;
+  BiasSettings<double> bounded;
   bounded.most = {0.1, 0, 0.2, 0};
   for (const double most : largest_bias(airframe, bounded)) CHECK(most == doctest::Approx(0.075));
 }
 
 TEST_CASE("bounds: of each sum, and of the length across; it says that it is limited, and comes off again") {
-  Bias bias(settings());
+  Bias bias(airframe, settings());
   for (int i = 0; i < 400; ++i) static_cast<void>(bias.learn({5, -5, 0.1, 0}, {6, 8, 0}, period_s));
   CHECK(bias.status() == Status::limited);
   CHECK(bias.sums()[0] == settings().most[0]);
@@ -100,7 +101,7 @@ TEST_CASE("bounds: of each sum, and of the length across; it says that it is lim
 }
 
 TEST_CASE("without a residual it holds, then fades; a residual ends the waiting") {
-  Bias bias(settings());
+  Bias bias(airframe, settings());
   for (int i = 0; i < 400; ++i) static_cast<void>(bias.learn({0.3, 0.1, 0, 0}, {1, 0, 0}, period_s));
   const double before = bias.sums()[0];
   constexpr double step_s = 0.002;
@@ -133,7 +134,7 @@ TEST_CASE("without a residual it holds, then fades; a residual ends the waiting"
 }
 
 TEST_CASE("what is no number is not learnt, and said; nor from a period that is none") {
-  Bias bias(settings());
+  Bias bias(airframe, settings());
   REQUIRE(bias.learn({0.3, 0.1, 0, 0}, {1, 0, 0}, period_s) == Status::ok);
   const SignedSums<double> before = bias.sums();
   CHECK(bias.learn({0.3, no_number, 0, 0}, none, period_s) == Status::not_finite);
@@ -148,10 +149,10 @@ TEST_CASE("what is no number is not learnt, and said; nor from a period that is 
 }
 
 TEST_CASE("it goes on from what was logged, within its bounds, and forgets when told so") {
-  Bias flown(settings()), replayed(settings());
+  Bias flown(airframe, settings()), replayed(airframe, settings());
   for (int i = 0; i < 20; ++i) static_cast<void>(flown.learn({0.3, -0.1, 0.02, 0}, {1, 2, 0}, period_s));
   flown.wait(0.3);
-  replayed.resume(flown.sums(), flown.across_m_s2(), flown.waited_s());
+  replayed.resume(flown.sums(), flown.across_m_s2(), flown.waited_s(), flown.status());
   for (int i = 0; i < 20; ++i) {
     flown.wait(0.05);
     replayed.wait(0.05);
@@ -159,9 +160,9 @@ TEST_CASE("it goes on from what was logged, within its bounds, and forgets when 
     CHECK(replayed.across_m_s2() == flown.across_m_s2());
   }
   const SignedSums<double> before = replayed.sums();
-  replayed.resume({no_number, 0, 0, 0}, none, 0);
-  replayed.resume({0, 0, 0, 0}, {no_number, 0, 0}, 0);
-  replayed.resume({0, 0, 0, 0}, none, no_number);
+  replayed.resume({no_number, 0, 0, 0}, none, 0, Status::ok);
+  replayed.resume({0, 0, 0, 0}, {no_number, 0, 0}, 0, Status::ok);
+  replayed.resume({0, 0, 0, 0}, none, no_number, Status::ok);
   CHECK(replayed.sums() == before);
   replayed.reset();
   CHECK(replayed.sums() == SignedSums<double>{});

@@ -30,7 +30,7 @@ Flight flight_of(std::size_t rows, const Flown& flown, std::size_t gap_at = 0, d
 }
 
 std::vector<Commands<double>> half(std::size_t rows) { return {rows, {0.5, 0.5, 0.5, 0.5}}; }
-MotionBiasSettings<double> all_of(double time_s) {
+BiasSettings<double> all_of(double time_s) {
   return detail::bias_settings_of<double>(SignedSums<double>{time_s, time_s, time_s, time_s});
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("each signed sum has its own: a weak rotor is thrust, roll, pitch and 
   const RowSet rows(flight, {0, 400});
   const auto with = with_past_bias(rows, half(400), airframe, all_of(0.2), 0.05);
   for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(with[399][i] - flight[399].commands[i]) <= 1e-6);
-  MotionBiasSettings<double> thrust_alone = detail::bias_settings_of<double>(SignedSums<double>{0.2, 0, 0, 0});
+  BiasSettings<double> thrust_alone = detail::bias_settings_of<double>(SignedSums<double>{0.2, 0, 0, 0});
   const auto of_thrust = with_past_bias(rows, half(400), airframe, thrust_alone, 0.05);
   for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(of_thrust[399][i] - 0.53) <= 1e-6);
 }

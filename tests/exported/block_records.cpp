@@ -427,7 +427,7 @@ TEST_CASE(
   CHECK(std::memcmp(bare.data(), expected.data(), expected.size()) == 0);
   REQUIRE(opened(bare, other) == Status::ok);
   CHECK_FALSE(other.records.has_bias);
-  CHECK(bias_settings<double>(other.records).time_constants_s == MotionBiasSettings<double>{}.time_constants_s);
+  CHECK(bias_settings<double>(other.records).time_constants_s == BiasSettings<double>{}.time_constants_s);
 
   for (const Record& record : records_of(block)) {
     const unsigned type = record.type & 0x7fffu;

@@ -23,9 +23,15 @@ enum class FaultKind {
   model_corrupt,     ///< offered, with a flipped bit
   model_wrong,       ///< offered, with a weight that is wrong under a right checksum
   model_too_narrow,  ///< a sound one whose envelope holds hardly any motion: all is the analytic inverse's
-  model_soft,        ///< a sound one whose thrust makes 40 % of what is asked beyond hover
+  model_low,         ///< a sound one whose commands are all too low
   payload,           ///< the vehicle weighs `value` times what it did
   bent_rotor,        ///< rotor 1 makes `value` of its thrust
+  rotor_flutters,    ///< the same, for 0.2 s of every 0.4 s
+  weak_battery,      ///< all rotors make `value` of their thrust
+  wind,              ///< to the north, `value` m/s
+  velocity_nan,
+  velocity_frozen,  ///< it and the position repeat themselves under new time stamps
+  local_late,       ///< time stamps of position and velocity `value` seconds old
   battery_stops,
   flown_by_hand,  ///< the pilot has it, or it is disarmed: nothing is asked of the module
 };

@@ -28,6 +28,7 @@ struct FlightFigures {
   double max_tilt_rad = 0;
   double max_error_m = 0;  ///< position, over the whole flight from 3 s on
   double rmse_m = 0;       ///< the same
+  double late_rmse_m = 0;  ///< from 8 s on
   double flown_s = 0;
   double module_share = 0;  ///< of the ticks
   int takeovers = 0;
@@ -45,7 +46,8 @@ template <class Stack>
 class FaultyFlight {
  public:
   using Model = typename Stack::Model;
-  using Vehicle = pinnquad::AgileFlight::Vehicle;
+  using Vehicle =
+      pinnquad::Quadrotor<double, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::QuadraticDrag>;
 
   static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20, battery_period_ms = 200;
 
@@ -79,8 +81,8 @@ class FaultyFlight {
     figures_.asked.assign(faults.size(), 0);
     std::vector<bool> began(faults.size(), false), ended(faults.size(), false);
     start(target(0.0));
-    double squares = 0;
-    long counted = 0, ticks = 0, by_module = 0;
+    double squares = 0, late_squares = 0;
+    long counted = 0, late = 0, ticks = 0, by_module = 0;
     for (long ms = 0; static_cast<double>(ms) < 1000 * duration_s; ms += Stack::period_ms, ++ticks) {
       time_s_ = 1e-3 * static_cast<double>(ms);
       const auto now_us = static_cast<std::uint64_t>(boot_us + ms * 1000);
@@ -104,11 +106,14 @@ class FaultyFlight {
         figures_.crashed = true;
         break;
       }
+      const double before = squares;
       measure(target(time_s_), squares, counted);
+      if (time_s_ > 8) late_squares += squares - before, ++late;
       if (figures_.crashed) break;
     }
     figures_.flown_s = time_s_;
     figures_.rmse_m = counted > 0 ? std::sqrt(squares / static_cast<double>(counted)) : 0;
+    figures_.late_rmse_m = late > 0 ? std::sqrt(late_squares / static_cast<double>(late)) : 0;
     figures_.module_share = static_cast<double>(by_module) / static_cast<double>(ticks);
     figures_.fallback_share = last_.fallback_share;
     figures_.refused_samples = last_.refused_samples;
@@ -156,8 +161,9 @@ class FaultyFlight {
       case FaultKind::model_corrupt: offer(corrupt_); break;
       case FaultKind::model_wrong: offer(wrong_); break;
       case FaultKind::model_too_narrow: offer(narrow_); break;
-      case FaultKind::model_soft: offer(soft_); break;
+      case FaultKind::model_low: offer(low_); break;
       case FaultKind::payload: weigh(fault.value); break;
+      case FaultKind::wind: blow(fault.value); break;
       default: break;
     }
   }
@@ -167,6 +173,7 @@ class FaultyFlight {
                     std::to_string(figures_.fell_back[i]) + " of " + std::to_string(figures_.asked[i]) +
                     " answers by the analytic inverse");
     if (fault.kind == FaultKind::payload) weigh(1);
+    if (fault.kind == FaultKind::wind) blow(0);
     if (fault.kind == FaultKind::model_swapped || fault.kind == FaultKind::model_too_narrow) offer(sound_);
   }
 
@@ -174,6 +181,11 @@ class FaultyFlight {
     auto airframe = pinnquad::airframe_value<typename Model::Vehicle, double>();
     airframe.mass_kg *= share;
     vehicle_ = Vehicle(airframe, pinnquad::paper_site<double>());
+  }
+
+  void blow(double north_m_s) {
+    vehicle_ =
+        Vehicle(vehicle_.airframe(), pinnquad::paper_site<double>(), {}, pinnquad::ConstantWind{{north_m_s, 0, 0}}, {});
   }
 
   bool faulty(FaultKind kind) const {
@@ -215,7 +227,12 @@ class FaultyFlight {
     }
     if (!faulty(FaultKind::rates_stop)) stack_.rates(stamp_us, rates);
     if (due(attitude_period_ms) && !faulty(FaultKind::attitude_stops)) stack_.attitude(stamp_us, q);
-    if (due(local_period_ms) && !faulty(FaultKind::local_stops)) stack_.local(stamp_us, position, velocity);
+    if (faulty(FaultKind::velocity_nan)) velocity[1] = nan;
+    if (!faulty(FaultKind::velocity_frozen)) estimated_ = {position, velocity};
+    const auto late_us = static_cast<std::uint64_t>(1e6 * value_of(FaultKind::local_late, 0));
+    if (due(local_period_ms) && !faulty(FaultKind::local_stops)) {
+      stack_.local(stamp_us - late_us, estimated_[0], estimated_[1]);
+    }
     if (due(set_point_period_ms) && !faulty(FaultKind::set_point_stops)) stack_.set_point(stamp_us, point);
     if (due(battery_period_ms)) stack_.battery(stamp_us, faulty(FaultKind::battery_stops) ? 0 : 15);
   }
@@ -277,6 +294,8 @@ class FaultyFlight {
   bool step_vehicle() {
     pinnquad::Commands<double> made = commands_;
     made[0] *= value_of(FaultKind::bent_rotor, 1);
+    if (std::fmod(time_s_, 0.4) < 0.2) made[0] *= value_of(FaultKind::rotor_flutters, 1);
+    for (double& u : made) u *= value_of(FaultKind::weak_battery, 1);
     for (int i = 0; i < Stack::period_ms; ++i) {
       if (vehicle_.step(body_, made, 1e-3) != Status::ok) return false;
     }
@@ -301,7 +320,7 @@ class FaultyFlight {
   }
 
   const Block sound_ = sound_block<Model>(), other_ = other_block<Model>(), narrow_ = narrow_block<Model>(),
-              soft_ = soft_block<Model>(), corrupt_ = corrupt_block<Model>(), wrong_ = wrong_block<Model>();
+              low_ = low_block<Model>(), corrupt_ = corrupt_block<Model>(), wrong_ = wrong_block<Model>();
   Stack stack_;
   Vehicle vehicle_;
   pinnquad::FlightController<double> own_;
@@ -310,6 +329,7 @@ class FaultyFlight {
   long own_since_ms_ = 0;
   pinnquad::VehicleState<double> body_{};
   pinnquad::Commands<double> commands_{};
+  std::array<Vector3<double>, 2> estimated_{Vector3<double>::Zero(), Vector3<double>::Zero()};
   std::mt19937_64 engine_{7};
   double time_s_ = 0;
   std::vector<const Fault*> active_;

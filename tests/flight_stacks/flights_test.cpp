@@ -81,12 +81,12 @@ void calm(const std::string& path, const Target& target, double most_rmse_m, flo
   CHECK(analytic.fallback_share > 0.97f);
 }
 
-/// A model that is soft in thrust (soft_block) hovers; then the vehicle is 30 % heavier for a while.
+/// A model whose commands are too low (low_block) hovers; then the vehicle is 30 % heavier for a while.
 template <class Stack>
 void carries_a_payload() {
   constexpr double loaded_s = 6, relieved_s = 16, ends_s = 26;
   const std::array<Fault, 2> faults = {
-      {{0.1, 100, FaultKind::model_soft, 0, "a model of 40 % of the thrust", Reaction::flies},
+      {{0.1, 100, FaultKind::model_low, 0, "a model of too low commands", Reaction::flies},
        {loaded_s, relieved_s - loaded_s, FaultKind::payload, 1.3, "30 % heavier", Reaction::flies}}};
   FaultyFlight<Stack> flight;
   REQUIRE(flight.boot());
@@ -106,7 +106,8 @@ void carries_a_payload() {
     if (late) late_error_m = std::max(late_error_m, std::abs(below_m));
   });
   std::printf(
-      "%s, 30 %% heavier under a soft model: the analytic inverse flies from %.2f s after to %.2f s after the load is "
+      "%s, 30 %% heavier under a model of too low commands: the analytic inverse flies from %.2f s after to %.2f s "
+      "after the load is "
       "gone; "
       "%.2f m "
       "too low at worst, %.3f m late\n",
@@ -117,13 +118,13 @@ void carries_a_payload() {
   CHECK(taken_back_s > relieved_s);
   CHECK(taken_back_s < relieved_s + 4);
   CHECK_FALSE(by_analytic);
-  CHECK(deepest_m < 1.5);
+  CHECK(deepest_m < 0.5);
   CHECK(late_error_m < 0.1);
 }
 
 }  // namespace
 
-TEST_CASE("a bias at its bound hands over: a model too soft to carry a payload sinks no more than 1.5 m") {
+TEST_CASE("a bias at its bound hands over to the analytic inverse with its own") {
   carries_a_payload<Px4Stack>();
   carries_a_payload<CrazyflieStack>();
 }
@@ -156,8 +157,10 @@ TEST_CASE("without faults the network flies, and tracks") {
   calm<CrazyflieStack>("random_places", RandomPlaces(1), 0.8, 0.06f);
 }
 
-/// The proof of these flights: with the age limits out of reach the same outage, alone, ends on the ground.
+/// The proof of these flights: with the age limits out of reach the same outage, alone, ends on the ground or upside
+/// down.
 TEST_CASE("without the age limits a module falls") {
+  constexpr double upside_down_rad = 1.6;
   CoreSettings none;
   none.body_rates_us = none.attitude_us = none.local_us = none.set_point_us = 1'000'000'000;
   for (const FaultKind kind : {FaultKind::attitude_stops, FaultKind::rates_stop}) {
@@ -172,9 +175,9 @@ TEST_CASE("without the age limits a module falls") {
     for (const FlightFigures* f : {&a, &b, &c, &d}) std::printf("%s\n", f->log.back().c_str());
     CHECK_FALSE(a.crashed);
     CHECK(a.max_tilt_rad < steepest_rad);
-    CHECK(b.crashed);
+    CHECK((b.crashed || b.max_tilt_rad > upside_down_rad));
     CHECK_FALSE(c.crashed);
     CHECK(c.max_tilt_rad < steepest_rad);
-    CHECK(d.crashed);
+    CHECK((d.crashed || d.max_tilt_rad > upside_down_rad));
   }
 }

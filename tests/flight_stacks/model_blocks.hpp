@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <cstring>
-#include <string_view>
 #include <vector>
 
 #include "pinnquad/deploy/weight_file.hpp"
@@ -79,17 +78,11 @@ Block narrow_block() {
   return pinnquad::model_block(model, {golden}, {});
 }
 
-/// A sound model of PaperFeatures whose thrust makes 40 % of the acceleration asked for along the body's z axis, as one
-/// makes that has seen hardly any.
+/// A sound model whose commands are 0.09 too low, each: in hover it needs 45 % of the greatest bias.
 template <class Model>
-Block soft_block() {
-  constexpr float share = 0.4f;
+Block low_block() {
   Trained<Model> model = trained_model<Model>();
-  for (std::size_t i = 0; i < Model::feature_names.size(); ++i) {
-    if (std::string_view(Model::feature_names[i]) != "vdot_bz") continue;
-    model.input.mean[i] /= share;
-    model.input.standard_deviation[i] /= share;
-  }
+  for (float& mean : model.output.mean) mean -= 0.09f;
   return pinnquad::model_block(model, {Model::golden_features.begin(), Model::golden_features.end()}, {});
 }
 

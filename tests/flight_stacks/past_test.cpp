@@ -189,6 +189,20 @@ TEST_CASE_TEMPLATE("through the fault script, blocks swapped at run time among t
   CHECK(by_analytic_inverse < silent_ticks / 2);
 }
 
+TEST_CASE("the bias of a model of a window and the voltage carries a payload") {
+  FaultyFlight<Px4Past> flight;
+  REQUIRE(flight.boot());
+  const std::vector<Fault> faults = {{0, 100, FaultKind::payload, 1.2, "20 % heavier", Reaction::flies}};
+  pinnquad::autopilot::CoreRecord last;
+  const FlightFigures flown =
+      flight.fly(hover, 12, faults, [&](const pinnquad::autopilot::CoreRecord& tick) { last = tick; });
+  CHECK_FALSE(flown.crashed);
+  CHECK(flown.late_rmse_m < 0.02);
+  CHECK(static_cast<Status>(last.cause) == Status::ok);
+  CHECK(last.bias_sums[0] > 0.3f);
+  CHECK(static_cast<Status>(last.bias_status) == Status::ok);
+}
+
 TEST_CASE("a model of the motion alone has nothing of it") {
   using Plain = NeuralController<DemoQuadModel>;
   static_assert(!Plain::asks_for_voltage && NeuralController<PastModel>::asks_for_voltage);

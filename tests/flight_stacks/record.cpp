@@ -3,7 +3,7 @@
 // flew, for `pinnquad replay`.
 //   flight_stacks_record px4|crazyflie|structured|payload hover|eight|random_places FOLDER
 // `structured`: PX4's core with a structured model, other effects in the analytic inverse and limits of trust, in a
-// flight with a payload. `payload`: a model too soft to carry one, without limits of trust.
+// flight with a payload. `payload`: a model that needs much of its bias without one, without limits of trust.
 #include <cstdio>
 #include <cstring>
 
@@ -27,7 +27,7 @@ void write(const std::string& path, const Block& block) {
 }
 
 constexpr std::array<Fault, 2> payload = {
-    {{0.1, 100, FaultKind::model_soft, 0, "a model of 40 % of the thrust", Reaction::flies},
+    {{0.1, 100, FaultKind::model_low, 0, "a model of too low commands", Reaction::flies},
      {6, 8, FaultKind::payload, 1.3, "30 % heavier", Reaction::flies}}};
 
 template <class Stack>
@@ -49,7 +49,7 @@ int record(const std::string& folder, const Target& target, const std::vector<Fa
   write(folder + "/other.block", other_block<Model>());
   write(folder + "/narrow.block", narrow_block<Model>());
   write(folder + "/bit.block", bit_block<Model>());
-  write(folder + "/soft.block", soft_block<Model>());
+  write(folder + "/low.block", low_block<Model>());
   FaultyFlight<Stack> flight;
   if (!flight.boot()) return 1;
   std::ofstream settings = record_file<CoreSettings>(folder, "flight");

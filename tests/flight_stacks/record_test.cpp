@@ -124,6 +124,7 @@ TEST_CASE("a recorded core answers as a plain one, and its record says what it a
     CHECK(record.stale_inputs == other.stale_inputs);
     CHECK(record.refused_samples == other.refused_samples);
     CHECK(record.envelope_feature == other.envelope_feature);
+    CHECK(record.bias_status == other.bias_status);
     CHECK(std::memcmp(&record.envelope_excess, &other.envelope_excess, sizeof(float)) == 0);
     if (has_commands) {
       CHECK(std::memcmp(motors.control, others.control, sizeof motors.control) == 0);

@@ -3,6 +3,7 @@
 // answers as the compiled model would, to the bit of the portable kernel, behind the guard that is given.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -40,12 +41,11 @@ class InputHistory<programs::FlightFeatures, Scalar, MostSamples, void> {
     return inputs_.complete ? Status::ok : Status::warming_up;
   }
   const Inputs& inputs() const noexcept { return inputs_; }
-  Inputs lasting(const Present& present) const {
-    Inputs inputs = inputs_;
-    static_cast<MotionInputsWithAltitude<Scalar>&>(inputs) = present;
-    inputs.taps.assign(inputs.taps.size(), present);
-    inputs.complete = true;
-    return inputs;
+  const Inputs& lasting(const Present& present) noexcept {
+    static_cast<MotionInputsWithAltitude<Scalar>&>(inputs_) = present;
+    std::fill(inputs_.taps.begin(), inputs_.taps.end(), present);
+    inputs_.complete = true;
+    return inputs_;
   }
   void clear() noexcept {
     past_.clear();

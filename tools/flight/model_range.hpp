@@ -96,7 +96,7 @@ ModelRange range_of_header() {
     static_cast<pinnquad::MotionInputs<double>&>(present) = motion;
     if constexpr (std::is_base_of_v<ModelRange::Motion, decltype(present)>) present.altitude_m = motion.altitude_m;
     std::vector<double> x(static_cast<std::size_t>(Features::size));
-    Features::extract(pinnquad::InputHistory<Features, double>::lasting(present), x.data());
+    Features::extract(pinnquad::InputHistory<Features, double>{}.lasting(present), x.data());
     return x;
   };
   return range;

@@ -172,7 +172,9 @@ class Loop {
     limits.max_horizontal_speed_m_s = 12;
     limits.max_climb_m_s = 5;
     limits.max_descent_m_s = 3;
-    const auto bias = plan_.model.with([](const auto& model) { return bias_settings<double>(model.records()); });
+    auto bias = plan_.model.with([](const auto& model) { return bias_settings<double>(model.records()); });
+    bias.across_time_constant_s = 0.1;  // the delay is told
+    bias.most_across_m_s2 = 6;
     const LoopKnowledge<Told> known{plan_.model, plan_.columns, told_, bias, plan_.sensors.delay_s};
     const AnyPolicy policy = loop_policy(cell.controller, known, gains);
     Errors errors;

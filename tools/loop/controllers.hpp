@@ -59,7 +59,7 @@ struct LoopKnowledge {
   const pinnquad::BlockModel& model;
   const std::vector<double>& columns;  ///< of the model, in their order
   const Vehicle& vehicle;              ///< with its effects
-  pinnquad::MotionBiasSettings<double> bias{};
+  pinnquad::BiasSettings<double> bias{};
   double delay_s = 0;  ///< by which states come late
 };
 
@@ -79,7 +79,7 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& kno
   low_pass.rotor_lag_s = lag_s;
   low_pass.delay_s = known.delay_s;
   const FilteredMotion<double> filtered(low_pass);
-  MotionBiasSettings<double> bias = known.bias, at_once = known.bias, slower = known.bias;
+  BiasSettings<double> bias = known.bias, at_once = known.bias, slower = known.bias;
   for (std::size_t i = 0; i < bias.time_constants_s.size(); ++i) {
     bias.time_constants_s[i] /= gains.learning;
     at_once.time_constants_s[i] = 0;
@@ -95,7 +95,7 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& kno
   const auto adaptive = [&](const auto& inverse) {
     return AdaptiveInverse<double, std::decay_t<decltype(inverse)>>(inverse, airframe, bias, flown);
   };
-  const auto incremental = [&](const auto& inverse, const MotionBiasSettings<double>& settings) {
+  const auto incremental = [&](const auto& inverse, const BiasSettings<double>& settings) {
     return AdaptiveInverse<double, std::decay_t<decltype(inverse)>, FilteredMotion<double>>(inverse, airframe, settings,
                                                                                             filtered);
   };

@@ -76,13 +76,28 @@ void add_core_columns(logs::LogTopic& topic, const Names& names) {
   });
 }
 
+/// Throws InputError for ticks of a core before, whose bias this one does not have.
+inline void refuse_earlier_core(const logs::LogTopic& topic) {
+  const std::string removed = pinnquad::autopilot::CoreRecord::removed;
+  if (topic.column(removed + "[0]") == nullptr) return;
+  throw pinnquad::InputError(topic.file, topic.places_are_lines ? 1 : 0, 0,
+                             "ticks of a core whose bias is one of commands, bias_sums",
+                             removed + ": a core before flew, and the pinnquad that it was built of replays it");
+}
+
 /// A Crazyflie's events (examples/crazyflie_app/src/core_log.h) say times in ms, under names of their own, and leave
 /// out what it does not know: that is as a record is made, or 0 of its settings. Columns are added to the topic.
 template <class Record>
 void complete_core_topic(logs::LogTopic& topic) {
   Record layout{};
   if constexpr (std::is_same_v<Record, pinnquad::autopilot::CoreSettings>) {  // a setting that is left out was none
-    Record::each_number(layout, [](const char*, const char*, auto& number) { number = {}; });
+    Record::each_number(layout, [](const char*, const char*, auto& value) {
+      if constexpr (std::is_array_v<std::remove_reference_t<decltype(value)>>) {
+        for (auto& number : value) number = {};
+      } else {
+        value = {};
+      }
+    });
   }
   const auto add = [&topic](const std::string& name, double value) {
     if (topic.column(name) != nullptr) return;

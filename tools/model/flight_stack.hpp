@@ -140,16 +140,19 @@ class InputHistory<programs::PastCoreFeatures, Scalar, MostSamples, void> {
 
   InputHistory() : past_(*programs::PastCoreFeatures::of) {}
 
-  Status take(const Present& present, double time_s) noexcept {
-    typename All::Present all;
-    static_cast<MotionInputs<Scalar>&>(all) = present;
-    all.columns[0] = present.columns[0];
-    return past_.take(all, time_s);
-  }
+  Status take(const Present& present, double time_s) noexcept { return past_.take(all(present), time_s); }
+  const Inputs& lasting(const Present& present) noexcept { return past_.lasting(all(present)); }
   const Inputs& inputs() const noexcept { return past_.inputs(); }
   void clear() noexcept { past_.clear(); }
 
  private:
+  static typename All::Present all(const Present& present) noexcept {
+    typename All::Present result;
+    static_cast<MotionInputs<Scalar>&>(result) = present;
+    result.columns[0] = present.columns[0];
+    return result;
+  }
+
   All past_;
 };
 

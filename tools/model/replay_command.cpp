@@ -55,8 +55,8 @@ void apply_setting(const std::string& text, pinnquad::autopilot::CoreSettings& s
   const std::string name = text.substr(0, equals);
   bool found = false;
   std::string known;
-  pinnquad::autopilot::CoreSettings::each_number(settings, [&](const char* of, const char* unit, auto& number) {
-    if (std::string(of) == "timestamp") return;
+  const auto take = [&](const std::string& of, const char* unit, auto& number) {
+    if (of == "timestamp") return;
     programs::add_to_list(known, of);
     if (name != of) return;
     found = true;
@@ -71,6 +71,13 @@ void apply_setting(const std::string& text, pinnquad::autopilot::CoreSettings& s
           (std::string(unit) == "1" ? "" : std::string(" in ") + unit) + ", found '" + text + "'");
     }
     number = static_cast<Number>(value);
+  };
+  pinnquad::autopilot::CoreSettings::each_number(settings, [&](const char* of, const char* unit, auto& value) {
+    if constexpr (std::is_array_v<std::remove_reference_t<decltype(value)>>) {
+      for (std::size_t i = 0; i < std::size(value); ++i) take(of + ("[" + std::to_string(i) + "]"), unit, value[i]);
+    } else {
+      take(of, unit, value);
+    }
   });
   if (!found) throw std::invalid_argument("--set: no setting named '" + name + "'; known: " + known);
 }

@@ -82,6 +82,7 @@ class CoreReplayOf : public CoreReplay {
     take_gap(record);
     take_model(model);
     take_jump(record);
+    if (record.timestamp < bias_known_us_) controller_->give_biases(record);
     ReplayedRow row;
     row.row = record.tick;
     row.time_s = static_cast<double>(record.timestamp) / 1e6;
@@ -133,6 +134,7 @@ class CoreReplayOf : public CoreReplay {
     refused_base_ = 0;
     refused_base_known_ = true;
     unknown_inputs_ = 0;
+    bias_known_us_ = 0;
     holding_unknown_ = answer_unknown_ = past_unknown_ = false;
   }
 
@@ -144,8 +146,9 @@ class CoreReplayOf : public CoreReplay {
     if (from_the_start) return;
     holding_unknown_ = answer_unknown_ = true;
     past_unknown_ = has_past_;
-    window_known_us_ = record.timestamp + 2 * Controller::residual_window_us;
-    alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * Controller::alarm_clear_s);
+    bias_known_us_ = record.timestamp + Controller::Biases::motion_settles_us(vehicle_.airframe(), options_.settings);
+    window_known_us_ = bias_known_us_ + 2 * Controller::Biases::residual_window_us;
+    alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * Controller::Biases::alarm_clear_s);
     controller_->resume(record);
     take_inputs(record, static_cast<std::uint8_t>(~record.came & 31));
     for (int i = 0; i < 5; ++i) {  // what was refused hides the good one before it
@@ -256,8 +259,7 @@ class CoreReplayOf : public CoreReplay {
 
   std::string distrust_in_words(const pinnquad::autopilot::StepReport& report) const {
     if (report.cause == pinnquad::Status::distrusted && controller_->trusted()) {
-      return in_words("the bias stood at its bound, %.4g m/s^2: the model does not make the acceleration asked for",
-                      static_cast<double>(options_.settings.most_bias_m_s2));
+      return "the bias stood at its bound: it does not carry what the model lacks";
     }
     if constexpr (trusts) {
       if (report.cause == pinnquad::Status::distrusted) {
@@ -323,14 +325,7 @@ class CoreReplayOf : public CoreReplay {
       say(in_words("%u samples refused, logged %u", refused + refused_base_, record.refused_samples));
       refused_base_ = record.refused_samples - refused;
     }
-    const pinnquad::Vector3<float>& bias = controller_->bias().acceleration_m_s2();
-    for (int i = 0; i < 3; ++i) {
-      constexpr float rounding_m_s2 = 1e-4f;
-      if (!(std::fabs(bias[i] - record.bias_m_s2[i]) <= rounding_m_s2)) {
-        say(in_words("bias[%d] %.6g m/s^2, logged %.6g", i, static_cast<double>(bias[i]),
-                     static_cast<double>(record.bias_m_s2[i])));
-      }
-    }
+    compare_biases(record, say);
     if (has_trust_ && record.timestamp >= window_known_us_) compare_trust(record, say);
     for (std::size_t i = 0; i < 4; ++i) {
       const double mine = row.commands[i], theirs = row.logged[i];
@@ -340,6 +335,24 @@ class CoreReplayOf : public CoreReplay {
     if (!row.differs.empty() && at_the_edge(record, report)) {
       ++replayed.at_the_edge;
       row.differs.clear();
+    }
+  }
+
+  template <class Say>
+  void compare_biases(const Record& record, const Say& say) {
+    constexpr float rounding = 1e-5f, rounding_m_s2 = 1e-4f;
+    const auto compare = [&say](const char* name, std::size_t i, float mine, float logged, float most) {
+      if (std::fabs(mine - logged) <= most) return;
+      say(in_words("%s[%zu] %.6g, logged %.6g", name, i, static_cast<double>(mine), static_cast<double>(logged)));
+    };
+    const auto &own = controller_->bias(), &analytic = controller_->analytic_bias();
+    for (std::size_t k = 0; k < own.sums().size(); ++k) {
+      compare("bias_sums", k, own.sums()[k], record.bias_sums[k], rounding);
+      compare("analytic_bias_sums", k, analytic.sums()[k], record.analytic_bias_sums[k], rounding);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      compare("bias_across_m_s2", i, analytic.across_m_s2()[Eigen::Index(i)], record.bias_across_m_s2[i],
+              rounding_m_s2);
     }
   }
 
@@ -378,7 +391,8 @@ class CoreReplayOf : public CoreReplay {
   std::optional<Controller> controller_;
   std::optional<std::size_t> flown_;
   std::uint32_t last_tick_ = 0;
-  std::uint64_t window_known_us_ = 0;  ///< behind a gap: from then on its windows of flown motion are those of the core
+  std::uint64_t bias_known_us_ = 0;    ///< behind a gap: from then on its flown motion is that of the core
+  std::uint64_t window_known_us_ = 0;  ///< the same of the windows of the command residual
   std::uint64_t alarm_known_us_ = 0;   ///< the same of how long its bias had stood at its bound
   std::uint32_t refused_base_ = 0;
   bool refused_base_known_ = true;

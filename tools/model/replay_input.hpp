@@ -106,8 +106,9 @@ inline void take_settings(const logs::LogTopic& topic, ReplayInput& input) {
 
 inline ReplayInput read_core_topics(const std::string& path, logs::FlightLog& log) {
   for (logs::LogTopic& topic : log.topics) {
-    if (topic.name == pinnquad::autopilot::CoreRecord::topic)
-      add_core_columns(topic, pinnquad::autopilot::CoreRecord::added);
+    if (topic.name != pinnquad::autopilot::CoreRecord::topic) continue;
+    refuse_earlier_core(topic);
+    add_core_columns(topic, pinnquad::autopilot::CoreRecord::added);
   }
   const logs::LogTopic* ticks = log.topic(pinnquad::autopilot::CoreRecord::topic);
   if (ticks == nullptr || ticks->size() == 0) {

@@ -29,8 +29,11 @@
   ONE(float, wanted_yaw_rad)                  \
   ONE(float, wanted_yaw_rate_rad_s)           \
   ONE(float, battery_voltage)                 \
-  MANY(3, float, bias_m_s2)                   \
-  MANY(3, float, predicted_velocity_m_s)      \
+  MANY(4, float, bias_sums)                   \
+  MANY(4, float, analytic_bias_sums)          \
+  MANY(3, float, bias_across_m_s2)            \
+  ONE(float, bias_waited_s)                   \
+  ONE(float, analytic_bias_waited_s)          \
   ONE(float, lift)                            \
   MANY(4, float, commands)                    \
   ONE(float, envelope_excess)                 \
@@ -45,7 +48,9 @@
   ONE(uint8, status)                          \
   ONE(uint8, cause)                           \
   ONE(uint8, stale_inputs)                    \
-  ONE(uint8, trusted)
+  ONE(uint8, trusted)                         \
+  ONE(uint8, bias_status)                     \
+  ONE(uint8, analytic_bias_status)
 
 #define PINNQUAD_SETTINGS_LIST(ONE, MANY, TIME) \
   TIME(timestamp, timestamp_ms)                 \
@@ -67,8 +72,13 @@
   ONE(float, climb_m_s)                         \
   ONE(float, descent_m_s)                       \
   ONE(float, take_off_s)                        \
-  ONE(float, bias_bandwidth_1_s)                \
-  ONE(float, most_bias_m_s2)                    \
+  MANY(4, float, bias_time_constants_s)         \
+  MANY(4, float, most_bias)                     \
+  ONE(float, across_time_constant_s)            \
+  ONE(float, most_across_m_s2)                  \
+  ONE(float, bias_hold_s)                       \
+  ONE(float, bias_fade_s)                       \
+  ONE(float, state_delay_s)                     \
   ONE(uint32, effects)                          \
   ONE(float, drag_n_s_m)                        \
   ONE(float, rate_damping_n_m_s)                \

@@ -55,6 +55,7 @@ struct CrazyflieReport {
   uint8_t status;       /* pinnquad::Status */
   uint8_t cause;        /* pinnquad::Status of the network alone */
   uint8_t stale_inputs; /* bit 0 gyro, 1 attitude, 2 position, 3 set point, 4 battery voltage */
+  uint8_t bias_status;  /* pinnquad::Status of the network's bias: limited at a bound, warming_up where it fades */
 };
 
 /* Opens and tests a model block; its address is a multiple of 8 and it stays there. 0, or a pinnquad::Status.

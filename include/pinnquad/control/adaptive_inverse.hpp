@@ -14,8 +14,6 @@
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flown_motion.hpp"
 #include "pinnquad/control/motion_bias.hpp"
-#include "pinnquad/features/motion_parts.hpp"
-#include "pinnquad/outputs/axis_command_outputs.hpp"
 
 namespace pinnquad {
 
@@ -65,8 +63,8 @@ class AdaptiveInverse {
 
  public:
   AdaptiveInverse(const FeedForward& inverse, const Airframe<Scalar>& airframe,
-                  const MotionBiasSettings<Scalar>& settings = {}, const Motion& motion = Motion{}) noexcept
-      : inverse_(inverse), mix_(detail::signed_mix(airframe)), bias_(settings), motion_(motion) {}
+                  const BiasSettings<Scalar>& settings = {}, const Motion& motion = Motion{}) noexcept
+      : inverse_(inverse), bias_(airframe, settings), motion_(motion) {}
 
   const FeedForward& inverse() const noexcept { return inverse_; }
   const MotionBias<Scalar>& bias() const noexcept { return bias_; }
@@ -83,7 +81,7 @@ class AdaptiveInverse {
     Commands<Scalar> said{};
     const Status status = inverse_(state, wanted, time_us, said);
     if (!has_output(status)) return status;
-    add_bias(said);
+    bias_.add_to(said);
     commands = said;
     return status;
   }
@@ -109,12 +107,6 @@ class AdaptiveInverse {
   FallbackCount count() const noexcept { return fallback_count(inverse_); }
 
  private:
-  void add_bias(Commands<Scalar>& commands) const noexcept {
-    for (std::size_t i = 0; i < commands.size(); ++i) {
-      for (std::size_t k = 0; k < 4; ++k) commands[i] += mix_.by[i][k] * bias_.sums()[k];
-    }
-  }
-
   /// False where the inverse has no answer of its own, or the residual is no number.
   PINNQUAD_NOINLINE bool compare(std::uint64_t now_us, const Vector3<Scalar>& position_m, Scalar step_s) noexcept {
     const MotionInputs<Scalar>& motion = motion_.motion();
@@ -131,19 +123,11 @@ class AdaptiveInverse {
     } else {
       status = inverse_(state, flown, now_us, said);
     }
-    if (status != Status::ok) return false;
-    SignedSums<Scalar> residual{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t i = 0; i < rotor_count; ++i) residual[k] += mix_.signs[k][i] * (motion_.flown()[i] - said[i]);
-    }
-    Vector3<Scalar> across = SpecificForce::of<Scalar>(motion);
-    across[2] = Scalar(0);
-    across = body_to_world<Scalar>(motion.attitude, across) - across_of(inverse_, state);
-    return has_output(bias_.learn(residual, across, motion_.period_s(step_s)));
+    return status == Status::ok &&
+           has_output(bias_.learn(motion, motion_.flown(), said, motion_.period_s(step_s), across_of(inverse_, state)));
   }
 
   FeedForward inverse_;
-  detail::SignedMix<Scalar> mix_;
   MotionBias<Scalar> bias_;
   Motion motion_;
   std::uint64_t before_us_ = 0;

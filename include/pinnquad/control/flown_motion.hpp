@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The flown motion of a window, as a model can be asked about it, and the mean commands that the rotors followed in it.
-// An inverse that learns (control/adaptive_inverse.hpp) and the command residual (docs/trust.md) compare motion and
+// A bias that is learnt in flight (control/motion_bias.hpp) and the command residual (docs/trust.md) compare motion and
 // commands of one instant.
 #pragma once
 
@@ -22,10 +22,11 @@ struct FlownMotionSettings {
 };
 
 /// Means over two periods of length T that follow each other. An acceleration is the difference of the mean velocities
-/// or body rates of the two over the time between them: the weight of the acceleration at time t rises to the border
-/// of the two and falls from there. State and commands have the same weights, so that all are of one instant. The next
-/// motion shares a period with this one, so that noise of a mean cancels in the sum of the two. The commands are behind
-/// the rotors' lag, and as old as the state. Periods begin at whole multiples of T on the samples' clock, so that a
+/// or body rates of the two over T: the weight of the acceleration at time t rises to the border of the two and falls
+/// from there. State and commands have the same weights, so that all are of one instant. The next motion shares a
+/// period with this one: noise of a mean cancels in the sum of the two. A sample holds until the next one: the time
+/// between two means is T, however the samples lie, or the noise would not cancel. The commands are behind the rotors'
+/// lag, and as old as the state. Periods begin at whole multiples of T on the samples' clock, so that a
 /// replay of a part of the ticks knows where.
 template <class Scalar>
 class FlownMotion {
@@ -37,9 +38,15 @@ class FlownMotion {
 
   const FlownMotionSettings<Scalar>& settings() const noexcept { return settings_; }
 
-  /// Samples with the times at which they were taken. One that is not finite spoils its period.
-  void velocity(std::uint64_t time_us, const Vector3<Scalar>& m_s) noexcept { take(time_us, m_s, now_.velocity); }
-  void body_rates(std::uint64_t time_us, const Vector3<Scalar>& rad_s) noexcept { take(time_us, rad_s, now_.rates); }
+  /// Samples with the times at which they were taken: a period without one of each is none. One that is of an earlier
+  /// period does not count, nor one that repeats the one before to the bit, unless it is 0, a vehicle at rest: a sensor
+  /// that is late or frozen has none.
+  void velocity(std::uint64_t time_us, const Vector3<Scalar>& m_s) noexcept {
+    take(time_us, m_s, velocity_m_s_, now_.has_velocity);
+  }
+  void body_rates(std::uint64_t time_us, const Vector3<Scalar>& rad_s) noexcept {
+    take(time_us, rad_s, rates_rad_s_, now_.has_rates);
+  }
 
   /// Drops the open periods: other commands flew, or the estimator was reset.
   void interrupt() noexcept { now_.whole = before_.whole = false; }
@@ -79,11 +86,6 @@ class FlownMotion {
     return half < 20'000 ? half : 20'000;
   }
 
-  /// Sums over samples (t, v), t from the period's beginning.
-  struct Mean {
-    Scalar count{0}, t{0};
-    Vector3<Scalar> v = Vector3<Scalar>::Zero();
-  };
   /// Weighted sums over ticks.
   struct Weighted {
     Scalar weight{0};
@@ -103,16 +105,19 @@ class FlownMotion {
     }
   };
   struct Period {
-    Mean velocity, rates;
     Weighted rising, falling;  ///< as the earlier of the two, and as the later
-    bool whole = false;        ///< so far, since it began
+    bool has_velocity = false, has_rates = false;
+    bool whole = false;  ///< so far, since it began
+
+    Vector3<Scalar> velocity() const noexcept { return (rising.velocity + falling.velocity) / weight(); }
+    Vector3<Scalar> rates() const noexcept { return (rising.rates + falling.rates) / weight(); }
+    Scalar weight() const noexcept { return rising.weight + falling.weight; }
   };
 
-  void take(std::uint64_t time_us, const Vector3<Scalar>& value, Mean& mean) noexcept {
-    if (time_us / settings_.period_us != number_) return;
-    mean.count += Scalar(1);
-    mean.t += Scalar(1e-6) * static_cast<Scalar>(time_us - number_ * settings_.period_us);
-    mean.v += value;
+  void take(std::uint64_t time_us, const Vector3<Scalar>& value, Vector3<Scalar>& before, bool& has) noexcept {
+    const bool repeated = value == before && !value.isZero(Scalar(0));
+    before = value;
+    if (!repeated && time_us / settings_.period_us == number_) has = true;
   }
 
   void weigh(std::uint64_t now_us, Scalar step_s, const State<Scalar>& state,
@@ -123,20 +128,11 @@ class FlownMotion {
     now_.falling.add((period_s_ - t) * step_s, state, rotors_.then());
   }
 
-  /// False where the samples don't cover the periods, or are no numbers.
-  bool slope(const Mean& earlier, const Mean& later, Vector3<Scalar>& result) const noexcept {
-    if (!(earlier.count > Scalar(0) && later.count > Scalar(0))) return false;
-    const Scalar time_s = period_s_ + later.t / later.count - earlier.t / earlier.count;
-    if (!(time_s > Scalar(0.5) * period_s_)) return false;
-    result = (later.v / later.count - earlier.v / earlier.count) / time_s;
-    return all_finite(result);
-  }
-
   PINNQUAD_NOINLINE bool finish() noexcept {
-    Vector3<Scalar> world_m_s2;
+    if (!(before_.has_velocity && before_.has_rates && now_.has_velocity && now_.has_rates)) return false;
     Accelerations<Scalar> measured;
-    if (!slope(before_.velocity, now_.velocity, world_m_s2)) return false;
-    if (!slope(before_.rates, now_.rates, measured.angular_rad_s2)) return false;
+    const Vector3<Scalar> world_m_s2 = (now_.velocity() - before_.velocity()) / period_s_;
+    measured.angular_rad_s2 = (now_.rates() - before_.rates()) / period_s_;
     const Weighted &a = before_.rising, &b = now_.falling;
     const Quaternion<Scalar>&p = a.attitude, &q = b.attitude;
     const Scalar turn = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < Scalar(0) ? Scalar(-1) : Scalar(1);
@@ -150,7 +146,8 @@ class FlownMotion {
     Commands<Scalar> flown{};
     for (std::size_t i = 0; i < flown.size(); ++i) flown[i] = (a.commands[i] + b.commands[i]) / weight;
     measured.linear_m_s2 = body_derivative<Scalar>(mean, world_m_s2);
-    if (!(all_finite(mean) && all_finite(measured.linear_m_s2) && all_finite(flown))) return false;
+    if (!(all_finite(mean) && all_finite(measured.linear_m_s2) && all_finite(measured.angular_rad_s2))) return false;
+    if (!all_finite(flown)) return false;
     motion_ = motion_inputs(mean, measured);
     flown_ = flown;
     return true;
@@ -162,6 +159,7 @@ class FlownMotion {
   std::uint64_t number_ = 0;  ///< of the period
   Period before_, now_;
   RotorFollower<Scalar> rotors_;
+  Vector3<Scalar> velocity_m_s_ = Vector3<Scalar>::Zero(), rates_rad_s_ = Vector3<Scalar>::Zero();  ///< came last
   MotionInputs<Scalar> motion_{};
   Commands<Scalar> flown_{};
 };

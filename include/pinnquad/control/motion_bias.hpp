@@ -12,6 +12,7 @@
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
 #include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 
 namespace pinnquad {
@@ -22,11 +23,11 @@ using SignedSums = std::array<Scalar, 4>;
 
 /// Settings of a MotionBias.
 template <class Scalar>
-struct MotionBiasSettings {
-  SignedSums<Scalar> time_constants_s{Scalar(0.1), Scalar(0.2), Scalar(0.2), Scalar(0.3)};
-  SignedSums<Scalar> most{Scalar(0.8), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way
-  Scalar across_time_constant_s = Scalar(0.1);
-  Scalar most_across_m_s2 = Scalar(6);  ///< its length
+struct BiasSettings {
+  SignedSums<Scalar> time_constants_s{Scalar(0.2), Scalar(0.45), Scalar(0.45), Scalar(0.45)};
+  SignedSums<Scalar> most{Scalar(0.8), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way; 0: no bias
+  Scalar across_time_constant_s = Scalar(0.2);
+  Scalar most_across_m_s2 = Scalar(3);  ///< its length; 0: none
   Scalar hold_s = Scalar(0.5);          ///< without a residual it stays this long, then fades
   Scalar fade_s = Scalar(2);            ///< time constant of fading
 };
@@ -34,8 +35,8 @@ struct MotionBiasSettings {
 namespace detail {
 /// Times as a model says them; 0: no bias of this sum.
 template <class Scalar, class Times>
-constexpr MotionBiasSettings<Scalar> bias_settings_of(const Times& times_s) noexcept {
-  MotionBiasSettings<Scalar> settings;
+constexpr BiasSettings<Scalar> bias_settings_of(const Times& times_s) noexcept {
+  BiasSettings<Scalar> settings;
   for (std::size_t i = 0; i < 4; ++i) {
     const auto time_s = static_cast<Scalar>(times_s[i]);
     settings.time_constants_s[i] = time_s > Scalar(0) ? time_s : std::numeric_limits<Scalar>::infinity();
@@ -47,7 +48,7 @@ constexpr MotionBiasSettings<Scalar> bias_settings_of(const Times& times_s) noex
 /// With the time constants that a model's training chose, and the usual ones of a model that does not say any. Of an
 /// exported header, in the loop's own Scalar.
 template <class Model, class Scalar = typename Model::Scalar>
-constexpr MotionBiasSettings<Scalar> bias_settings() noexcept {
+constexpr BiasSettings<Scalar> bias_settings() noexcept {
   if constexpr (is_detected<detail::BiasTimeConstantsOf, Model>) {
     return detail::bias_settings_of<Scalar>(Model::bias_time_constants_s);
   } else {
@@ -56,16 +57,15 @@ constexpr MotionBiasSettings<Scalar> bias_settings() noexcept {
 }
 /// Of a block's records: those of a ModelView, a LoadedModel, a RunTimeModel.
 template <class Scalar, class Number>
-constexpr MotionBiasSettings<Scalar> bias_settings(const ModelRecords<Number>& records) noexcept {
-  return records.has_bias ? detail::bias_settings_of<Scalar>(records.bias_time_constants_s)
-                          : MotionBiasSettings<Scalar>{};
+constexpr BiasSettings<Scalar> bias_settings(const ModelRecords<Number>& records) noexcept {
+  return records.has_bias ? detail::bias_settings_of<Scalar>(records.bias_time_constants_s) : BiasSettings<Scalar>{};
 }
 
 /// Most that the bias changes each command, either way: |A| most, A the inverse of the signs. The bound of a
 /// certificate (docs/certificate.md) widens by it.
 template <class Scalar>
 constexpr Commands<Scalar> largest_bias(const Airframe<Scalar>& airframe,
-                                        const MotionBiasSettings<Scalar>& settings = {}) noexcept {
+                                        const BiasSettings<Scalar>& settings = {}) noexcept {
   const detail::SignedMix<Scalar> mix = detail::signed_mix(airframe);
   Commands<Scalar> largest{};
   for (std::size_t i = 0; i < rotor_count; ++i) {
@@ -76,31 +76,68 @@ constexpr Commands<Scalar> largest_bias(const Airframe<Scalar>& airframe,
   return largest;
 }
 
-/// b <- b + T / (T + time constant) (r - b) of each signed sum of commands, |b| <= most. T: the period of r; r: the
-/// residual, commands flown - commands that the inverse gives for the motion flown. And the same of d, the acceleration
-/// across the thrust (NED, m/s^2) that no rotor makes. A time constant of 0 is the last residual, an infinite one none.
+/// b <- b + T / (T + time constant) (r - b) of each signed sum of commands, |b| <= most. T: the period of r.
+/// r: the residual, commands flown - commands that the inverse gives for the motion flown.
+/// The same of d, the acceleration across the thrust (NED, m/s^2) that no rotor makes.
+/// A b is added to the inverse's commands; A: the inverse of the signs. A time constant of 0 is the last residual, an
+/// infinite one none.
 template <class Scalar>
 class MotionBias {
  public:
-  explicit constexpr MotionBias(const MotionBiasSettings<Scalar>& settings = {}) noexcept : settings_(settings) {}
+  /// A vehicle whose signs do not distinguish the axes has no bias of its sums.
+  explicit constexpr MotionBias(const Airframe<Scalar>& airframe, const BiasSettings<Scalar>& settings = {}) noexcept
+      : settings_(settings), mix_(detail::signed_mix(airframe)) {
+    if (!is_finite(mix_.by[0][0])) mix_ = {};
+  }
 
-  constexpr const MotionBiasSettings<Scalar>& settings() const noexcept { return settings_; }
+  constexpr const BiasSettings<Scalar>& settings() const noexcept { return settings_; }
   constexpr const SignedSums<Scalar>& sums() const noexcept { return sums_; }
   const Vector3<Scalar>& across_m_s2() const noexcept { return across_; }
   /// `ok`: it learns. `limited`: at a bound. `warming_up`: nothing has been learnt yet, or for longer than `hold_s`.
   /// `not_finite`: the last residual was no number.
   Status status() const noexcept { return status_; }
+  /// The greatest share of its bound that a sum has, 0 to 1.
+  Scalar share_of_bound() const noexcept {
+    Scalar greatest(0);
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      const Scalar length = sums_[k] < Scalar(0) ? -sums_[k] : sums_[k];
+      if (length > greatest * settings_.most[k]) greatest = length / settings_.most[k];
+    }
+    return greatest;
+  }
 
-  /// One residual, and the period that it is of. `not_finite`: of a residual or period that is none; nothing changes.
+  /// u + A b.
+  void add_to(Commands<Scalar>& commands) const noexcept {
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      for (std::size_t k = 0; k < sums_.size(); ++k) commands[i] += mix_.by[i][k] * sums_[k];
+    }
+  }
+
+  /// Signed sums of the commands that the rotors followed, over those that the inverse gives for that motion.
+  SignedSums<Scalar> residual(const Commands<Scalar>& flown, const Commands<Scalar>& said) const noexcept {
+    SignedSums<Scalar> sums{};
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      for (std::size_t i = 0; i < rotor_count; ++i) sums[k] += mix_.signs[k][i] * (flown[i] - said[i]);
+    }
+    return sums;
+  }
+
+  /// A motion that was flown, the commands that the rotors followed in it, and those that the inverse gives for it.
+  /// `known`: the acceleration across the thrust that somebody accounts for, NED. As learn() of a residual.
+  Status learn(const MotionInputs<Scalar>& motion, const Commands<Scalar>& flown, const Commands<Scalar>& said,
+               Scalar period_s, const Vector3<Scalar>& known = Vector3<Scalar>::Zero()) noexcept {
+    Vector3<Scalar> across = SpecificForce::of<Scalar>(motion);
+    across[2] = Scalar(0);
+    return learn(residual(flown, said), body_to_world<Scalar>(motion.attitude, across) - known, period_s);
+  }
+  /// A residual, what was found across the thrust, and the period that they are of. `not_finite`: of one that is no
+  /// number, or no period; nothing changes.
   Status learn(const SignedSums<Scalar>& residual, const Vector3<Scalar>& across_m_s2, Scalar period_s) noexcept {
     const bool sound = all_finite(residual) && all_finite(across_m_s2) && is_finite(period_s) && period_s > Scalar(0);
     if (!sound) return status_ = Status::not_finite;
     bool bound = false;
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-      const Scalar wanted = sums_[i] + share(settings_.time_constants_s[i], period_s) * (residual[i] - sums_[i]);
-      const Scalar most = settings_.most[i];
-      sums_[i] = wanted > most ? most : (wanted < -most ? -most : wanted);
-      bound = bound || wanted > most || wanted < -most;
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      bound |= move(k, share(settings_.time_constants_s[k], period_s) * (residual[k] - sums_[k]));
     }
     across_ += share(settings_.across_time_constant_s, period_s) * (across_m_s2 - across_);
     const Scalar length = across_.norm();
@@ -122,24 +159,46 @@ class MotionBias {
     across_ *= kept;
     if (status_ != Status::not_finite) status_ = Status::warming_up;
   }
+  /// Time in flight that says nothing of it, as with commands at their ends: it stays.
+  void freeze() noexcept { waited_s_ = Scalar(0); }
+  /// A motion that its inverse does not answer for: it moves with the bias of another inverse, as the vehicle has
+  /// changed for both.
+  void follow(const SignedSums<Scalar>& before, const SignedSums<Scalar>& now) noexcept {
+    for (std::size_t k = 0; k < sums_.size(); ++k) move(k, now[k] - before[k]);
+    freeze();
+  }
 
   /// Forgets: for another model, on the ground.
-  void reset() noexcept { *this = MotionBias(settings_); }
+  void reset() noexcept {
+    sums_ = {};
+    across_.setZero();
+    waited_s_ = Scalar(0);
+    status_ = Status::warming_up;
+  }
   /// Goes on from what was logged.
-  void resume(const SignedSums<Scalar>& sums, const Vector3<Scalar>& across_m_s2, Scalar waited_s) noexcept {
+  void resume(const SignedSums<Scalar>& sums, const Vector3<Scalar>& across_m_s2, Scalar waited_s,
+              Status status) noexcept {
     if (!(all_finite(sums) && all_finite(across_m_s2) && is_finite(waited_s))) return;
     sums_ = sums;
     across_ = across_m_s2;
     waited_s_ = waited_s;
+    status_ = status;
   }
   Scalar waited_s() const noexcept { return waited_s_; }
 
  private:
+  /// True where the bound limits it.
+  bool move(std::size_t k, Scalar by) noexcept {
+    const Scalar wanted = sums_[k] + by, most = settings_.most[k];
+    sums_[k] = wanted > most ? most : (wanted < -most ? -most : wanted);
+    return wanted > most || wanted < -most;
+  }
   static Scalar share(Scalar time_constant_s, Scalar period_s) noexcept {
     return period_s / (period_s + time_constant_s);
   }
 
-  MotionBiasSettings<Scalar> settings_;
+  BiasSettings<Scalar> settings_;
+  detail::SignedMix<Scalar> mix_;
   SignedSums<Scalar> sums_{};
   Vector3<Scalar> across_ = Vector3<Scalar>::Zero();
   Scalar waited_s_{0};

@@ -31,7 +31,9 @@ class RotorFollower {
     const Scalar share = step_s / (lag_s_ + step_s);
     for (std::size_t i = 0; i < commands.size(); ++i) rotors_[i] += share * (commands[i] - rotors_[i]);
     if (delay_us_ == 0) return true;
-    if (stored_ == 0 || now_us - kept(stored_ - 1).time_us >= delay_us_ / (most_kept - 2)) {
+    // at most one in each of the clock's intervals, so that a replay of a part of the ticks keeps the same ones
+    const std::uint64_t interval_us = delay_us_ / (most_kept - 3) + 1;
+    if (stored_ == 0 || now_us / interval_us != kept(stored_ - 1).time_us / interval_us) {
       if (stored_ == most_kept) drop_oldest();
       kept(stored_++) = {now_us, rotors_};
     }

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pinnquad/control/motion_bias.hpp"
@@ -41,33 +42,12 @@ struct PastRows {
 
 namespace detail {
 
-/// Signed sums of flown - predicted commands.
-class ResidualSums {
- public:
-  explicit ResidualSums(const Airframe<double>& airframe) : mix_(signed_mix(airframe)) {}
-
-  SignedSums<double> of(const Commands<double>& flown, const Commands<double>& predicted) const {
-    SignedSums<double> sums{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t i = 0; i < flown.size(); ++i) sums[k] += mix_.signs[k][i] * (flown[i] - predicted[i]);
-    }
-    return sums;
-  }
-  void add(const SignedSums<double>& bias, Commands<double>& commands) const {
-    for (std::size_t i = 0; i < commands.size(); ++i) {
-      for (std::size_t k = 0; k < 4; ++k) commands[i] += mix_.by[i][k] * bias[k];
-    }
-  }
-
- private:
-  SignedMix<double> mix_;
-};
-
 /// Calls `use(row, bias)` for each row, counted through all pieces, with the bias that stands there. A row without a
 /// prediction teaches nothing. Throws std::invalid_argument for a count that is none.
 template <class Use>
-void each_past_bias(const RowSet& rows, const std::vector<Commands<double>>& predictions, const ResidualSums& sums,
-                    const MotionBiasSettings<double>& settings, double delay_s, const Use& use) {
+void each_past_bias(const RowSet& rows, const std::vector<Commands<double>>& predictions,
+                    const Airframe<double>& airframe, const BiasSettings<double>& settings, double delay_s,
+                    const Use& use) {
   if (predictions.size() != rows.size()) {
     throw std::invalid_argument("past bias: expected " + std::to_string(rows.size()) + " predictions, found " +
                                 std::to_string(predictions.size()));
@@ -75,19 +55,19 @@ void each_past_bias(const RowSet& rows, const std::vector<Commands<double>>& pre
   constexpr double rounding_s = 1e-6;
   std::size_t first = 0;
   for (const FlightRows& piece : rows.pieces()) {
-    MotionBias<double> bias(settings);
+    MotionBias<double> bias(airframe, settings);
     std::size_t taught = piece.rows.begin;
     for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
       const Flight& flight = *piece.flight;
       for (; taught < row && flight[taught].time_s <= flight[row].time_s - delay_s + rounding_s; ++taught) {
         const double step_s = taught > piece.rows.begin ? flight[taught].time_s - flight[taught - 1].time_s : 0.0;
         const SignedSums<double> residual =
-            sums.of(flight[taught].commands, predictions[first + taught - piece.rows.begin]);
+            bias.residual(flight[taught].commands, predictions[first + taught - piece.rows.begin]);
         const bool gap = step_s > settings.hold_s;
         if (gap || !all_finite(residual)) bias.wait(step_s);
         if (!gap && step_s > 0) static_cast<void>(bias.learn(residual, Vector3<double>::Zero(), step_s));
       }
-      use(first + row - piece.rows.begin, bias.sums());
+      use(first + row - piece.rows.begin, std::as_const(bias));
     }
     first += piece.rows.size();
   }
@@ -99,11 +79,10 @@ void each_past_bias(const RowSet& rows, const std::vector<Commands<double>>& pre
 inline std::vector<Commands<double>> with_past_bias(const RowSet& rows,
                                                     const std::vector<Commands<double>>& predictions,
                                                     const Airframe<double>& airframe,
-                                                    const MotionBiasSettings<double>& settings, double delay_s) {
-  const detail::ResidualSums sums(airframe);
+                                                    const BiasSettings<double>& settings, double delay_s) {
   std::vector<Commands<double>> result = predictions;
-  detail::each_past_bias(rows, predictions, sums, settings, delay_s,
-                         [&](std::size_t row, const SignedSums<double>& bias) { sums.add(bias, result[row]); });
+  detail::each_past_bias(rows, predictions, airframe, settings, delay_s,
+                         [&](std::size_t row, const MotionBias<double>& bias) { bias.add_to(result[row]); });
   return result;
 }
 
@@ -145,7 +124,6 @@ struct BiasTrial {
 /// std::invalid_argument for a count that is none.
 inline BiasTrial try_biases(const RowSet& rows, const std::vector<Commands<double>>& predictions,
                             const Airframe<double>& airframe, const PastRows& past) {
-  const detail::ResidualSums sums(airframe);
   BiasTrial trial;
   for (std::size_t c = 0; c < BiasTrial::candidates; ++c) {
     const double time_s = bias_time_constants_tried_s[c];
@@ -154,13 +132,13 @@ inline BiasTrial try_biases(const RowSet& rows, const std::vector<Commands<doubl
       continue;
     }
     const auto settings = detail::bias_settings_of<double>(SignedSums<double>{time_s, time_s, time_s, time_s});
-    detail::each_past_bias(rows, predictions, sums, settings, past.delay_s,
-                           [&](std::size_t row, const SignedSums<double>& bias) {
-                             const SignedSums<double> residual = sums.of(rows[row].commands, predictions[row]);
+    detail::each_past_bias(rows, predictions, airframe, settings, past.delay_s,
+                           [&](std::size_t row, const MotionBias<double>& bias) {
+                             const SignedSums<double> residual = bias.residual(rows[row].commands, predictions[row]);
                              if (!all_finite(residual)) return;
                              trial.rows += c == 0 ? 1 : 0;
                              for (std::size_t k = 0; k < 4; ++k)
-                               trial.absolute[c][k] += std::abs(residual[k] - bias[k]);
+                               trial.absolute[c][k] += std::abs(residual[k] - bias.sums()[k]);
                            });
   }
   return trial;

@@ -223,13 +223,12 @@ class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<F
   /// As of the last take(): the present inputs, and the window's taps where it was `ok`.
   const Inputs& inputs() const noexcept { return inputs_; }
 
-  /// The inputs of a motion that has lasted as long as the window.
-  static Inputs lasting(const Present& present) noexcept {
-    Inputs inputs{};
-    static_cast<Present&>(inputs) = present;
-    inputs.others.fill(present);
-    inputs.complete = true;
-    return inputs;
+  /// The inputs of a motion that has lasted as long as the window: in the place of inputs(), until the next take().
+  const Inputs& lasting(const Present& present) noexcept {
+    static_cast<Present&>(inputs_) = present;
+    inputs_.others.fill(present);
+    inputs_.complete = true;
+    return inputs_;
   }
 
   /// Forgets the past, as after a controller was switched off.

@@ -157,8 +157,10 @@ struct pinnquad_record_s {
   float wanted_yaw_rad;
   float wanted_yaw_rate_rad_s;
   float battery_voltage;
-  float bias_m_s2[3];
-  float predicted_velocity_m_s[3];
+  float bias_sums[4];
+  float analytic_bias_sums[4];
+  float bias_across_m_s2[3];
+  float bias_waited_s, analytic_bias_waited_s;
   float jump_position_m[3];
   float jump_velocity_m_s[3];
   float jump_yaw_rad;
@@ -175,6 +177,7 @@ struct pinnquad_record_s {
   uint8_t cause;
   uint8_t stale_inputs;
   uint8_t trusted;
+  uint8_t bias_status, analytic_bias_status;
 };
 struct pinnquad_settings_s {
   uint64_t timestamp;
@@ -196,8 +199,9 @@ struct pinnquad_settings_s {
   float climb_m_s;
   float descent_m_s;
   float take_off_s;
-  float bias_bandwidth_1_s;
-  float most_bias_m_s2;
+  float bias_time_constants_s[4];
+  float most_bias[4];
+  float across_time_constant_s, most_across_m_s2, bias_hold_s, bias_fade_s, state_delay_s;
   uint32_t effects;
   float drag_n_s_m, rate_damping_n_m_s, distance_limit, innovation_limit;
 };
@@ -206,5 +210,5 @@ struct pinnquad_status_s {
   uint32_t inference_time_us, asked, refused_samples;
   float fallback_share, envelope_excess;
   int8_t envelope_feature;
-  uint8_t reaction, status, cause, stale_inputs;
+  uint8_t reaction, status, cause, stale_inputs, bias_status;
 };

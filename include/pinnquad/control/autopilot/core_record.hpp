@@ -9,8 +9,8 @@
 #include <array>
 #include <cstdint>
 
-#include "pinnquad/control/bias_estimate.hpp"
 #include "pinnquad/control/flight_controller.hpp"
+#include "pinnquad/control/motion_bias.hpp"
 
 namespace pinnquad::autopilot {
 
@@ -19,6 +19,8 @@ struct CoreRecord {
   static constexpr const char* topic = "pinnquad_record";
   /// Fields that earlier logs lack.
   static constexpr std::array<const char*, 2> added = {"voltage_us", "battery_voltage"};
+  /// A field of the cores before, whose bias was an acceleration: this one does not answer as they did.
+  static constexpr const char* removed = "bias_m_s2";
 
   std::uint64_t timestamp{0};  ///< of the tick, on the clock of the samples
   std::uint64_t body_rates_us{0};
@@ -39,10 +41,13 @@ struct CoreRecord {
   float wanted_jerk_m_s3[3]{};
   float wanted_yaw_rad{0};
   float wanted_yaw_rate_rad_s{0};
-  float battery_voltage{0};           ///< V; of a model that asks for it
-  float bias_m_s2[3]{};               ///< of the bias estimate, NED
-  float predicted_velocity_m_s[3]{};  ///< of the bias estimate
-  float jump_position_m[3]{};         ///< step of the estimator before this tick, NED; 0: none
+  float battery_voltage{0};       ///< V; of a model that asks for it
+  float bias_sums[4]{};           ///< of the network: MotionBias::sums(), as the tick reckoned with, as all of these
+  float analytic_bias_sums[4]{};  ///< of the analytic inverse
+  float bias_across_m_s2[3]{};    ///< NED, of both
+  float bias_waited_s{0};         ///< time in which nothing could be learnt
+  float analytic_bias_waited_s{0};
+  float jump_position_m[3]{};  ///< step of the estimator before this tick, NED; 0: none
   float jump_velocity_m_s[3]{};
   float jump_yaw_rad{0};
   float lift{1};              ///< share of the thrust that it used: below 1 at take-off and landing
@@ -60,6 +65,8 @@ struct CoreRecord {
   std::uint8_t cause{0};          ///< Status of the network
   std::uint8_t stale_inputs{0};   ///< as bits
   std::uint8_t trusted{1};        ///< by the command residual
+  std::uint8_t bias_status{static_cast<std::uint8_t>(Status::warming_up)};           ///< MotionBias::status()
+  std::uint8_t analytic_bias_status{static_cast<std::uint8_t>(Status::warming_up)};  ///< the same
 
   /// Calls `visit(name, unit, number or array)` for each, in order. It may throw what `visit` throws.
   template <class Self, class Visit>
@@ -84,8 +91,11 @@ struct CoreRecord {
     visit("wanted_yaw_rad", "rad", self.wanted_yaw_rad);
     visit("wanted_yaw_rate_rad_s", "rad/s", self.wanted_yaw_rate_rad_s);
     visit("battery_voltage", "V", self.battery_voltage);
-    visit("bias_m_s2", "m/s^2", self.bias_m_s2);
-    visit("predicted_velocity_m_s", "m/s", self.predicted_velocity_m_s);
+    visit("bias_sums", "1", self.bias_sums);
+    visit("analytic_bias_sums", "1", self.analytic_bias_sums);
+    visit("bias_across_m_s2", "m/s^2", self.bias_across_m_s2);
+    visit("bias_waited_s", "s", self.bias_waited_s);
+    visit("analytic_bias_waited_s", "s", self.analytic_bias_waited_s);
     visit("jump_position_m", "m", self.jump_position_m);
     visit("jump_velocity_m_s", "m/s", self.jump_velocity_m_s);
     visit("jump_yaw_rad", "rad", self.jump_yaw_rad);
@@ -104,6 +114,8 @@ struct CoreRecord {
     visit("cause", "1", self.cause);
     visit("stale_inputs", "bits", self.stale_inputs);
     visit("trusted", "1", self.trusted);
+    visit("bias_status", "1", self.bias_status);
+    visit("analytic_bias_status", "1", self.analytic_bias_status);
   }
 };
 
@@ -137,9 +149,16 @@ struct CoreSettings {
   float climb_m_s{5};
   float descent_m_s{3};
   float take_off_s{1};  ///< time that thrust takes to come at take-off
-  // BiasSettings
-  float bias_bandwidth_1_s{BiasSettings<float>{}.bandwidth_1_s};
-  float most_bias_m_s2{BiasSettings<float>{}.max_bias_m_s2};
+  // BiasSettings, of the network's bias and the analytic inverse's; and the delay of FlownMotionSettings
+  float bias_time_constants_s[4]{BiasSettings<float>{}.time_constants_s[0], BiasSettings<float>{}.time_constants_s[1],
+                                 BiasSettings<float>{}.time_constants_s[2], BiasSettings<float>{}.time_constants_s[3]};
+  float most_bias[4]{BiasSettings<float>{}.most[0], BiasSettings<float>{}.most[1], BiasSettings<float>{}.most[2],
+                     BiasSettings<float>{}.most[3]};
+  float across_time_constant_s{BiasSettings<float>{}.across_time_constant_s};
+  float most_across_m_s2{BiasSettings<float>{}.most_across_m_s2};
+  float bias_hold_s{BiasSettings<float>{}.hold_s};
+  float bias_fade_s{BiasSettings<float>{}.fade_s};
+  float state_delay_s{0};  ///< by which a state comes late beside the commands
   // effects of the analytic inverse's vehicle
   std::uint32_t effects{0};
   float drag_n_s_m{0};          ///< of LinearDamping
@@ -170,8 +189,13 @@ struct CoreSettings {
     visit("climb_m_s", "m/s", self.climb_m_s);
     visit("descent_m_s", "m/s", self.descent_m_s);
     visit("take_off_s", "s", self.take_off_s);
-    visit("bias_bandwidth_1_s", "1/s", self.bias_bandwidth_1_s);
-    visit("most_bias_m_s2", "m/s^2", self.most_bias_m_s2);
+    visit("bias_time_constants_s", "s", self.bias_time_constants_s);
+    visit("most_bias", "1", self.most_bias);
+    visit("across_time_constant_s", "s", self.across_time_constant_s);
+    visit("most_across_m_s2", "m/s^2", self.most_across_m_s2);
+    visit("bias_hold_s", "s", self.bias_hold_s);
+    visit("bias_fade_s", "s", self.bias_fade_s);
+    visit("state_delay_s", "s", self.state_delay_s);
     visit("effects", "1", self.effects);
     visit("drag_n_s_m", "N s/m", self.drag_n_s_m);
     visit("rate_damping_n_m_s", "N m s", self.rate_damping_n_m_s);

@@ -24,6 +24,20 @@ inline FlightController<float> outer_loop(const CoreSettings& settings, const Ai
   return FlightController<float>(gains, limits, gravity_m_s2);
 }
 
+/// The biases' settings. A model's own time constants belong into CoreSettings::bias_time_constants_s.
+inline BiasSettings<float> bias_settings(const CoreSettings& settings) noexcept {
+  BiasSettings<float> result;
+  for (std::size_t k = 0; k < result.most.size(); ++k) {
+    result.time_constants_s[k] = settings.bias_time_constants_s[k];
+    result.most[k] = settings.most_bias[k];
+  }
+  result.across_time_constant_s = settings.across_time_constant_s;
+  result.most_across_m_s2 = settings.most_across_m_s2;
+  result.hold_s = settings.bias_hold_s;
+  result.fade_s = settings.bias_fade_s;
+  return result;
+}
+
 /// The settings with the effects of a vehicle. From the eighth effect on the code is `another_effect`.
 template <class... Effects>
 CoreSettings with_effects(CoreSettings settings, const Quadrotor<float, Effects...>& vehicle) noexcept {

@@ -60,17 +60,25 @@ class ModelInputs {
   /// The inputs of a motion wanted in this tick. Without a fresh voltage they are not finite, until the window is
   /// complete `warming_up`: the network declines them.
   PINNQUAD_NOINLINE const typename History::Inputs& take(const MotionInputs<float>& motion) noexcept {
-    Present present;
-    static_cast<MotionInputs<float>&>(present) = motion;
-    const float volts = voltage_is_fresh() ? voltage_.value() : std::numeric_limits<float>::quiet_NaN();
-    set_columns(present, &volts);
-    static_cast<void>(history_.take(present, seconds_of(now_us_)));
+    static_cast<void>(history_.take(present(motion), seconds_of(now_us_)));
     return history_.inputs();
+  }
+  /// Those of a motion that has lasted as long as the window, until the next call. The past stays as it is.
+  PINNQUAD_NOINLINE const typename History::Inputs& lasting(const MotionInputs<float>& motion) noexcept {
+    return history_.lasting(present(motion));
   }
   /// Forgets the past: after a reset of the estimator its motions are of another frame.
   void clear() noexcept { history_.clear(); }
 
  private:
+  Present present(const MotionInputs<float>& motion) const noexcept {
+    Present result;
+    static_cast<MotionInputs<float>&>(result) = motion;
+    const float volts = voltage_is_fresh() ? voltage_.value() : std::numeric_limits<float>::quiet_NaN();
+    set_columns(result, &volts);
+    return result;
+  }
+
   std::uint64_t now_us_ = 0;
   Input<float> voltage_;
   History history_;
@@ -89,6 +97,7 @@ class ModelInputs<Features,
   static void tick(std::uint64_t /*now_us*/) noexcept {}
   static constexpr bool voltage_is_fresh() noexcept { return true; }
   static const MotionInputs<float>& take(const MotionInputs<float>& motion) noexcept { return motion; }
+  static const MotionInputs<float>& lasting(const MotionInputs<float>& motion) noexcept { return motion; }
   static void clear() noexcept {}
 };
 

@@ -6,9 +6,8 @@
 
 #include <cmath>
 
-#include "pinnquad/control/autopilot/bias_alarm.hpp"
 #include "pinnquad/control/autopilot/core_settings.hpp"
-#include "pinnquad/control/autopilot/flown_trust.hpp"
+#include "pinnquad/control/autopilot/flown_biases.hpp"
 #include "pinnquad/control/autopilot/inputs.hpp"
 #include "pinnquad/control/autopilot/model_inputs.hpp"
 #include "pinnquad/control/autopilot/model_slots.hpp"
@@ -28,8 +27,7 @@ namespace pinnquad::autopilot {
 template <class Shape, class View = ModelView<Shape>, class VehicleType = Quadrotor<float, QuadraticDrag>,
           class Trust = void>
 class NeuralController {
-  using FlownTrust = detail::FlownTrust<Trust>;
-  static constexpr bool trusts = FlownTrust::known;
+  static constexpr bool trusts = detail::FlownTrust<Trust>::known;
   using ModelInputs = detail::ModelInputs<typename Shape::Features>;
 
  public:
@@ -42,10 +40,7 @@ class NeuralController {
       std::conditional_t<trusts, Extend<TrainingGuard, JointDistance<Trust>, RefuseCommands<detail::AbsurdCommands>>,
                          Extend<TrainingGuard, RefuseCommands<detail::AbsurdCommands>>>;
   using Inverse = InverseDynamics<View, NetworkGuard>;
-  /// The past that answers depend on: the command residual is of windows of this length, and a raised alarm of the bias
-  /// is cleared no faster.
-  static constexpr std::uint64_t residual_window_us = 2 * detail::residual_period_us;
-  static constexpr float alarm_clear_s = detail::BiasAlarm::clear_s;
+  using Biases = detail::FlownBiases<Trust>;
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
   static_assert(!trusts || ModelInputs::of_motion_alone,
                 "pinnquad: limits of trust are those of a model of the present motion alone: fly one with a window or "
@@ -60,9 +55,8 @@ class NeuralController {
         analytic_(vehicle_),
         outer_loop_(detail::outer_loop(settings, vehicle_.airframe(), vehicle_.site().gravity_m_s2)),
         models_(NetworkGuard{}),
-        bias_({settings.bias_bandwidth_1_s, settings.most_bias_m_s2}),
-        take_off_(settings.take_off_s),
-        trust_(vehicle_.airframe().rise_time_constant_s(0)) {
+        biases_(vehicle_.airframe(), settings),
+        take_off_(settings.take_off_s) {
     settings_.distance_limit = settings_.innovation_limit = 0;
     if constexpr (trusts) {
       settings_.distance_limit = static_cast<float>(NetworkGuard::Distribution::squared_distance_limit);
@@ -86,9 +80,7 @@ class NeuralController {
   /// Inputs, each `not_finite`, `out_of_range` or `not_unit_quaternion` for a sample that is refused. rad/s, FRD.
   Status body_rates(std::uint64_t time_us, const Vector3<float>& rates_rad_s) noexcept {
     const Status status = rates_.accept(time_us, rates_rad_s, detail::check_sample(rates_rad_s));
-    if constexpr (trusts) {
-      if (status == Status::ok) trust_.motion().body_rates(time_us, rates_rad_s);
-    }
+    if (status == Status::ok) biases_.motion().body_rates(time_us, rates_rad_s);
     return status;
   }
   /// Body -> world; normalised, where the norm is within unit_quaternion_tolerance of 1.
@@ -102,9 +94,7 @@ class NeuralController {
     Status checked = detail::check_sample(state.position_m);
     if (checked == Status::ok) checked = detail::check_sample(state.velocity_m_s);
     const Status status = local_.accept(time_us, state, checked);
-    if constexpr (trusts) {
-      if (status == Status::ok) trust_.motion().velocity(time_us, state.velocity_m_s);
-    }
+    if (status == Status::ok) biases_.motion().velocity(time_us, state.velocity_m_s);
     return status;
   }
   /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point.
@@ -131,32 +121,34 @@ class NeuralController {
     set_point_.replace(wanted);
     held_position_m_ += by.position_m;
     held_yaw_rad_ += yaw_rad;
-    bias_.resume(bias_.acceleration_m_s2(), bias_.predicted_velocity_m_s() + by.velocity_m_s);
-    if constexpr (trusts) trust_.motion().interrupt();
+    biases_.motion().interrupt();
     model_inputs_.clear();
   }
 
-  const BiasEstimate<float>& bias() const noexcept { return bias_; }
+  /// Of the network's commands. What its network does not answer for it does not learn.
+  const MotionBias<float>& bias() const noexcept { return biases_.network(); }
+  /// Of the analytic inverse's commands; and the acceleration across the thrust, whoever answers.
+  const MotionBias<float>& analytic_bias() const noexcept { return biases_.analytic(); }
   /// Share of the thrust that it uses, 0 to 1: below 1 at take-off and landing.
   float lift() const noexcept { return take_off_.lift(); }
-  /// Mean error of the model's commands about the flown motion; 0 without limits of trust.
-  float command_residual() const noexcept { return trust_.command_residual(); }
+  /// Mean error of the model's commands, bias included, about the flown motion; 0 without limits of trust.
+  float command_residual() const noexcept { return biases_.trust().command_residual(); }
   /// False while the command residual is above its limit.
-  bool trusted() const noexcept { return trust_.trusted(); }
-  /// True while the bias has stood at its bound for too long: the analytic inverse flies, `distrusted`.
-  bool bias_alarm() const noexcept { return bias_alarm_.raised(); }
+  bool trusted() const noexcept { return biases_.trust().trusted(); }
+  /// True while the network's bias has stood at its bound for too long: the analytic inverse flies, `distrusted`.
+  bool bias_alarm() const noexcept { return biases_.alarm(); }
   /// Goes on from a logged tick (replay).
   void resume(const CoreRecord& logged) noexcept {
-    const auto& b = logged.bias_m_s2;
-    const auto& v = logged.predicted_velocity_m_s;
-    bias_.resume({b[0], b[1], b[2]}, {v[0], v[1], v[2]});
+    biases_.resume(logged);
     take_off_.resume(logged.lift);
-    if constexpr (trusts) trust_.resume(logged.innovation, logged.trusted != 0);
-    // where the command residual is below its limit, `distrusted` is the bias' alarm
-    if (logged.trusted != 0 && logged.reaction <= static_cast<std::uint8_t>(Reaction::levels) && logged.asked != 0) {
-      bias_alarm_.resume(logged.cause == static_cast<std::uint8_t>(Status::distrusted));
+    if (logged.asked != 0 && logged.reaction <= static_cast<std::uint8_t>(Reaction::levels)) {
+      for (std::size_t i = 0; i < last_commands_.size(); ++i) last_commands_[i] = logged.commands[i];
+      answered(logged.timestamp);
     }
   }
+
+  /// The biases of a logged tick, before its step: it learns nothing then. For a replay that lacks the ticks before.
+  void give_biases(const CoreRecord& logged) noexcept { biases_.give(logged); }
 
   /// One tick: motor commands in the airframe's rotor order, within the output limits. `commands` is untouched where
   /// the reaction is gives_up. `now_us` is of the samples' clock; any time may lie between two calls.
@@ -166,9 +158,8 @@ class NeuralController {
     const Inverse* inverse = models_.take();
     take_checksum(models_.checksum(inverse));
     Reaction reaction = inverse == nullptr ? Reaction::gives_up : judge_ages(now_us, report);
-    estimate_bias(now_us, reaction);
     take_off_.update(now_us, situation_, vertical_motion(reaction));
-    if constexpr (trusts) observe(now_us, reaction, inverse);
+    learn(now_us, reaction, inverse);
     if (reaction <= Reaction::levels) {
       Commands<float> answer{};
       report.status = ask(*inverse, reaction, answer, report);
@@ -179,9 +170,7 @@ class NeuralController {
           const float idle = settings_.lowest_command;
           for (float& u : last_commands_) u = idle + lift * (u - idle);
         }
-        expected_us_ = lift < 1.0f || saturated(last_commands_, range()) ? 0 : now_us;
-        answered_us_ = now_us;
-        answered_ = true;
+        answered(now_us);
       } else {
         reaction = Reaction::keeps_commands;
       }
@@ -195,10 +184,9 @@ class NeuralController {
   }
 
   /// A tick in which the stack asks nothing: off, or flown by hand. A controller that records has one per tick.
-  void skip(std::uint64_t /*now_us*/) noexcept {
-    expected_us_ = 0;
+  void skip(std::uint64_t now_us) noexcept {
     take_off_.skip(situation_);
-    if constexpr (trusts) trust_.motion().interrupt();
+    learn(now_us, Reaction::gives_up, nullptr);
   }
 
   /// The settings that it was made with, its vehicle's effects and the limits of trust.
@@ -225,17 +213,22 @@ class NeuralController {
     message.status = static_cast<std::uint8_t>(report.status);
     message.cause = static_cast<std::uint8_t>(report.cause);
     message.stale_inputs = report.stale_inputs;
+    message.bias_status = static_cast<std::uint8_t>(bias().status());
   }
   const Vehicle& vehicle() const noexcept { return vehicle_; }
 
  private:
   CommandRange<float> range() const noexcept { return {settings_.lowest_command, settings_.highest_command}; }
 
+  /// The last commands are of this tick.
+  void answered(std::uint64_t now_us) noexcept {
+    whole_answer_ = !(take_off_.lift() < 1.0f || saturated(last_commands_, range()));
+    answered_us_ = now_us;
+    answered_ = true;
+  }
+
   void take_checksum(std::uint32_t checksum) noexcept {
-    if (checksum_ != 0 && checksum != checksum_) {
-      bias_alarm_.reset();
-      if constexpr (trusts) trust_.reset();
-    }
+    if (checksum_ != 0 && checksum != checksum_) biases_.another_model();
     checksum_ = checksum;
   }
 
@@ -260,25 +253,18 @@ class NeuralController {
     return {local_.value().position_m, local_.value().velocity_m_s, attitude_.value(), rates_.value()};
   }
 
-  /// Compares the last answer's acceleration with the vehicle's: in flight, off the actuators' ends, with a velocity.
-  /// Out of line, as target() is.
-  PINNQUAD_NOINLINE void estimate_bias(std::uint64_t now_us, Reaction reaction) noexcept {
-    if (!situation_.in_flight()) bias_alarm_.reset();
-    if (reaction <= Reaction::holds_position && situation_.in_flight() && expected_us_ != 0) {
-      const float step_s = 1e-6f * static_cast<float>(now_us - expected_us_);
-      bias_.update(local_.value().velocity_m_s, expected_m_s2_, step_s);
-      bias_alarm_.update(bias_, body_down_axis(attitude_.value()), step_s);
-    } else {
-      bias_.freeze(local_.value().velocity_m_s);
-    }
-    expected_us_ = 0;
-  }
-
-  /// Compares the model with the flown motion. Out of line, as target() is.
-  PINNQUAD_NOINLINE void observe(std::uint64_t now_us, Reaction reaction, const Inverse* inverse) noexcept {
-    if (!situation_.in_flight()) trust_.reset();
-    const bool known = situation_.in_flight() && answered_ && reaction <= Reaction::holds_position;
-    if (inverse != nullptr) trust_.tick(now_us, known, state(), last_commands_, *inverse);
+  /// A tick for the biases. Out of line, as target() is.
+  PINNQUAD_NOINLINE void learn(std::uint64_t now_us, Reaction reaction, const Inverse* inverse) noexcept {
+    detail::FlownTick tick;
+    tick.now_us = now_us;
+    tick.in_flight = situation_.in_flight();
+    tick.known = tick.in_flight && answered_ && reaction <= Reaction::holds_position;
+    tick.freezes = tick.known && (!whole_answer_ || take_off_.may_stand());
+    tick.on_ground = !(take_off_.lift() > 0);
+    const auto network = [this, inverse](const MotionInputs<float>& motion, Commands<float>& said) noexcept {
+      return inverse->observed(model_inputs_.lasting(motion), said);
+    };
+    biases_.learn(tick, state(), last_commands_, network, analytic_);
   }
 
   /// It climbs for 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise.
@@ -327,11 +313,15 @@ class NeuralController {
     const typename Inverse::Inputs& inputs = model_inputs_.take(wanted);
     report.cause = trusted() && !bias_alarm() ? ask_network(inverse, inputs, commands, report) : Status::distrusted;
     count_.add(report.cause);
-    if (has_output(report.cause)) return report.cause;
+    if (has_output(report.cause)) {
+      bias().add_to(commands);
+      return report.cause;
+    }
     Commands<float> replaced{};
     Status status = analytic_(wanted, replaced);
     if (has_output(status)) status = NetworkGuard::check_commands(replaced.data());
     if (!has_output(status)) return report.cause;
+    analytic_bias().add_to(replaced);
     commands = replaced;
     return Status::fell_back;
   }
@@ -352,9 +342,8 @@ class NeuralController {
     const State<float> now = state();
     Accelerations<float> wanted, feedback;
     TrajectoryPoint<float> point = target(reaction, now);
-    const Vector3<float>& bias = bias_.acceleration_m_s2();
     // a vehicle that levels: thrust alone, so that level stays level
-    point.acceleration_m_s2 -= reaction == Reaction::levels ? Vector3<float>(0.0f, 0.0f, bias[2]) : bias;
+    if (reaction != Reaction::levels) point.acceleration_m_s2 -= analytic_bias().across_m_s2();
     point.acceleration_m_s2 = outer_loop_.limited(point.acceleration_m_s2);
     const Status outer = outer_loop_(now, point, wanted, feedback);
     if (outer != Status::ok) return outer;
@@ -382,10 +371,9 @@ class NeuralController {
   float held_yaw_rad_ = 0;
   bool holding_ = false;
   Commands<float> last_commands_{};
-  BiasEstimate<float> bias_;
-  detail::BiasAlarm bias_alarm_;
+  Biases biases_;
   Vector3<float> expected_m_s2_ = Vector3<float>::Zero();  ///< of the last answer, NED
-  std::uint64_t expected_us_ = 0;                          ///< 0: nothing to compare with
+  bool whole_answer_ = false;                              ///< the last commands: all of its thrust, off their ends
   Situation situation_{};
   detail::TakeOff take_off_;
   std::uint64_t answered_us_ = 0;
@@ -394,7 +382,6 @@ class NeuralController {
   ModelInputs model_inputs_;
   std::uint32_t checksum_ = 0;
   FallbackCount count_{};
-  FlownTrust trust_;
 };
 
 }  // namespace pinnquad::autopilot

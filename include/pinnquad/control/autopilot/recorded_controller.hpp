@@ -114,8 +114,16 @@ class Recorded : public Controller {
     record_.drives_motors = Controller::situation().drives_motors ? 1 : 0;
     record_.landed = Controller::situation().landed ? 1 : 0;
     record_.lift = Controller::lift();
-    copy(Controller::bias().acceleration_m_s2(), record_.bias_m_s2);
-    copy(Controller::bias().predicted_velocity_m_s(), record_.predicted_velocity_m_s);
+    const MotionBias<float>&own = Controller::bias(), &analytic = Controller::analytic_bias();
+    for (std::size_t k = 0; k < own.sums().size(); ++k) {
+      record_.bias_sums[k] = own.sums()[k];
+      record_.analytic_bias_sums[k] = analytic.sums()[k];
+    }
+    copy(analytic.across_m_s2(), record_.bias_across_m_s2);
+    record_.bias_waited_s = own.waited_s();
+    record_.analytic_bias_waited_s = analytic.waited_s();
+    record_.bias_status = static_cast<std::uint8_t>(own.status());
+    record_.analytic_bias_status = static_cast<std::uint8_t>(analytic.status());
     record_.reaction = static_cast<std::uint8_t>(report.reaction);
     record_.status = static_cast<std::uint8_t>(report.status);
     record_.cause = static_cast<std::uint8_t>(report.cause);

@@ -27,6 +27,8 @@ class TakeOff {
 
   /// 0 to 1.
   float lift() const noexcept { return lift_; }
+  /// True where the ground may bear it, or bears it.
+  bool may_stand() const noexcept { return phase_ != Phase::air || rests_since_us_ != 0; }
   /// Goes on from a logged lift: 0 on the ground, more on the way up.
   void resume(float lift) noexcept {
     if (lift_ > lift || lift_ < lift) phase_ = lift > 0 ? Phase::air : Phase::ground;
