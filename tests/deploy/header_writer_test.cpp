@@ -329,7 +329,7 @@ TEST_CASE("time constants of a bias are one constant more, and nothing else; wit
   const Model model = some_model(6);
   Provenance from;
   const std::string without = written(model, {Model::FeatureVector{}}, from);
-  CHECK(without.find("bias") == std::string::npos);
+  CHECK(without.find("of the bias") == std::string::npos);
   from.bias_time_constants_s = {0.2, 0.5, 0, 1};
   std::string with = written(model, {Model::FeatureVector{}}, from);
   CHECK(numbers_of(with, "bias_time_constants_s") == std::vector<float>{0.2f, 0.5f, 0.0f, 1.0f});

@@ -131,6 +131,7 @@ TEST_CASE("time constants: the shortest that costs no more than a twentieth, non
   const BiasTrial bounded = try_biases(rows, half(6000), airframe, {0.05, 0.25});
   CHECK(bounded.best_s()[0] == 0.3);
   CHECK(bounded.best_s()[2] == 0.3);
+  CHECK(try_biases(rows, half(6000), airframe, {0.05, least_bias_time_constant_s(0.06)}).best_s() == bounded.best_s());
   BiasTrial twice = bounded;
   twice += bounded;
   CHECK(twice.rows == 12000);

@@ -124,10 +124,11 @@ struct BiasTrial {
 /// std::invalid_argument for a count that is none.
 inline BiasTrial try_biases(const RowSet& rows, const std::vector<Commands<double>>& predictions,
                             const Airframe<double>& airframe, const PastRows& past) {
+  constexpr double rounding = 1e-9;  // 2 (0.06 + 0.04 + 0.05) is more than 0.3
   BiasTrial trial;
   for (std::size_t c = 0; c < BiasTrial::candidates; ++c) {
     const double time_s = bias_time_constants_tried_s[c];
-    if (time_s > 0 && time_s < past.least_time_constant_s) {
+    if (time_s > 0 && time_s < (1 - rounding) * past.least_time_constant_s) {
       trial.absolute[c].fill(std::numeric_limits<double>::infinity());
       continue;
     }

@@ -95,6 +95,36 @@ TEST_CASE("a constant explains nothing once each flight's bias is removed, whate
   }
 }
 
+TEST_CASE("a bias of the past: of each parting its time constants are those of the other ones") {
+  const Judged run(4, {pinnquad_test::constant_kind()}, each_flight);
+  const programs::JudgedKind& kind = run.judged.kinds[0];
+  REQUIRE(kind.bias_time_constants_s);
+  std::vector<pinnquad::BiasTrial> trials;
+  for (const programs::FinishedFit& fit : run.fits.finished) {
+    trials.push_back(pinnquad::try_biases(run.plan.folds[fit.fold].split.test, fit.held_out, run.plan.airframe.value,
+                                          run.plan.past));
+  }
+  REQUIRE(trials.size() == kind.fits.size());
+  pinnquad::BiasTrial all;
+  for (const pinnquad::BiasTrial& trial : trials) all += trial;
+  CHECK(*kind.bias_time_constants_s == all.best_s());
+  for (const programs::JudgedFit& fit : kind.fits) {
+    pinnquad::BiasTrial others;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      if (run.fits.finished[i].fold != fit.fold) others += trials[i];
+    }
+    CHECK(fit.bias_time_constants_s == others.best_s());
+    const pinnquad::RowSet& rows = run.plan.folds[fit.fold].split.test;
+    const programs::FlightErrors expected = programs::flight_errors(
+        rows,
+        pinnquad::with_past_bias(rows, run.fits.finished[fit.fold].held_out, run.plan.airframe.value,
+                                 pinnquad::detail::bias_settings_of<double>(others.best_s()), run.plan.past.delay_s),
+        run.judged.counts[fit.fold]);
+    CHECK(fit.adaptive.mean_absolute == expected.mean_absolute);
+    CHECK(fit.adaptive.rows == fit.errors.rows);
+  }
+}
+
 TEST_CASE(
     "with eight flights held out in turn: what is linear is a success, what is secretly the mean or spoiled is none") {
   const Judged run(8,
