@@ -74,7 +74,9 @@ TEST_CASE("hover has a trim: near the rigid body's in calm air, more with a weak
   const Vector3<double> place = FlightPlan{}.start_m;
   REQUIRE(hover_trim(vehicle(calm), place, trim) == Status::ok);
   using Rigid = pinnquad::Quadrotor<double, pinnquad::StandardAtmosphere>;
-  REQUIRE(hover_trim(Rigid(pinnquad::airframe_value<pinnquad::LightQuadrotor, double>(), pinnquad::paper_site<double>()), place, rigid) == Status::ok);
+  REQUIRE(
+      hover_trim(Rigid(pinnquad::airframe_value<pinnquad::LightQuadrotor, double>(), pinnquad::paper_site<double>()),
+                 place, rigid) == Status::ok);
   CHECK(pinnquad::test::distance(trim.commands, rigid.commands) <= 1e-3);
   HarderConditions still = worst();
   still.wind_m_s = 0;

@@ -317,14 +317,14 @@ void add_options(CLI::App& app, FlyOptions& options) {
   add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,
              "seed of pilot and recorder noise; the same seed gives the same flight")
       ->type_name("N");
-  add_number(app, "--samples", options.samples, std::size_t{1}, std::size_t{10000000},
-             "rows to record, one every 0.05 s (default: d1, harder 15000, d2 6000, d3 5000; with --sticks as long as these)");
+  add_number(
+      app, "--samples", options.samples, std::size_t{1}, std::size_t{10000000},
+      "rows to record, one every 0.05 s (default: d1, harder 15000, d2 6000, d3 5000; with --sticks as long as these)");
   app.add_option("--airframe", options.airframe,
                  "what flies: a file (examples/airframes), or one of: " + programs::airframe_names())
       ->type_name("NAME|FILE.toml")
       ->capture_default_str();
-  add_number(app, "--max-speed", options.max_speed_m_s, 0.5, 8.0,
-             "fastest the pilot flies, m/s (default: 8, d2 4)");
+  add_number(app, "--max-speed", options.max_speed_m_s, 0.5, 8.0, "fastest the pilot flies, m/s (default: 8, d2 4)");
   app.add_option("--ground-effect", options.ground_effect,
                  "none, cheeseman-bennett or conyers (default: d2 conyers, else none)")
       ->type_name("MODEL");

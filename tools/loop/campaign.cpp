@@ -224,8 +224,8 @@ class Loop {
     return row;
   }
 
-  /// The gains of least error, geometric mean, on trajectories and seeds of its own: a search that changes one gain at a
-  /// time, by a step that shrinks.
+  /// The gains of least error, geometric mean, on trajectories and seeds of its own: a search that changes one gain at
+  /// a time, by a step that shrinks.
   nlohmann::json tune(const LoopController& controller) const {
     const auto error_of = [&](const LoopGains& gains) {
       double sum = 0;

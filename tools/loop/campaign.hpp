@@ -15,8 +15,8 @@
 namespace programs {
 
 inline constexpr std::array<const char*, 4> campaign_trajectories = {"eight", "circle", "random", "step"};
-/// What flies: with the drag that the controllers know of; with the effects of simulation/harder_quadrotor.hpp, of which
-/// they know the drag alone.
+/// The vehicle that flies: with the drag that the controllers know of; with the effects of
+/// simulation/harder_quadrotor.hpp, of which they know the drag alone.
 inline constexpr std::array<const char*, 2> campaign_vehicles = {"nominal", "harder"};
 inline constexpr std::array<const char*, 2> campaign_gains = {"equal", "tuned"};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a controller does not know of: wind, a payload, a weak rotor, an empty battery, wrong parameters. A condition by
-// name and seed is the same for every controller.
+// Things that a controller does not know of: wind, a payload, a weak rotor, an empty battery, wrong parameters. A
+// condition by name and seed is the same for every controller.
 #pragma once
 
 #include <array>
@@ -66,7 +66,7 @@ struct MaybeGusts {
   }
 };
 
-/// What flies (simulation/tracking.hpp). Vehicle: with ConstantWind and MaybeGusts among its effects.
+/// A world that flies (simulation/tracking.hpp). Vehicle: with ConstantWind and MaybeGusts among its effects.
 template <class Vehicle>
 class LoopWorld {
   using Commands = pinnquad::Commands<double>;
@@ -108,7 +108,7 @@ class LoopWorld {
   const Vehicle& vehicle() const noexcept { return after_; }
 
  private:
-  /// What a seed says of a condition.
+  /// A condition as a seed draws it.
   struct Draw {
     pinnquad::Airframe<double> told, flown;
     pinnquad::ConstantWind wind{};

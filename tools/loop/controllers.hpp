@@ -53,7 +53,7 @@ inline pinnquad::FlightGains<double> flight_gains(const LoopGains& factors) {
   return gains;
 }
 
-/// What the controllers are told.
+/// All that the controllers are told.
 template <class Vehicle>
 struct LoopKnowledge {
   const pinnquad::BlockModel& model;

@@ -2,7 +2,7 @@
 // Flies a model from its block, as feed-forward in a closed loop: no compiler is asked. Or controllers that are compared
 // under conditions.
 //   pinnquad loop my_model/model.block --trajectory circle --column battery_voltage=15.2
-//   pinnquad loop my_model/model.block --controllers structured,adaptive,indi --conditions calm,payload --out compared
+//   pinnquad loop my_model/model.block --controllers adaptive,indi --conditions calm,payload --out compared
 #include "loop/loop_command.hpp"
 
 #include <algorithm>
@@ -226,7 +226,11 @@ programs::Command programs::loop_command(CLI::App& program) {
       ->capture_default_str()
       ->check(CLI::IsMember({"envelope", "none"}));
   line->add_flag("--json", options->json, "the figures as JSON");
-  const auto one_of = [](const std::vector<std::string>& names) { return CLI::IsMember(names); };
+  const auto one_of = [](const std::vector<std::string>& names) {
+    CLI::IsMember known(names);
+    known.description("");  // the names are below
+    return known;
+  };
   const auto list = [&](const char* name, std::vector<std::string>& value, const std::vector<std::string>& names,
                         const std::string& text) {
     line->add_option(name, value, text)
@@ -235,16 +239,19 @@ programs::Command programs::loop_command(CLI::App& program) {
         ->check(one_of(names))
         ->group("Comparison");
   };
-  const auto described = [](const char* text, const auto& all) {
-    std::string result = text;
-    for (const auto& each : all) result += std::string("\n  ") + each.name + ": " + each.summary;
-    return result;
+  const auto described = [](const char* title, const auto& all) {
+    std::string result = title;
+    for (const auto& each : all) {
+      char name[32];
+      std::snprintf(name, sizeof name, "\n  %-18s", each.name);
+      result += name + std::string(each.summary);
+    }
+    return result + "\n";
   };
   list("--controllers", options->controllers, names_of(loop_controllers),
-       described("compare these controllers in the loop (default: pid,formula,indi,structured,adaptive):",
-                 loop_controllers));
+       "compare these controllers, of those below (default: pid,formula,indi,structured,adaptive)");
   list("--conditions", options->conditions, names_of(loop_conditions),
-       described("under these conditions (default: calm,wind_8,gusts,payload,weak_rotor,battery):", loop_conditions));
+       "under these conditions, of those below (default: calm,wind_8,gusts,payload,weak_rotor,battery)");
   list("--trajectories", options->trajectories, {campaign_trajectories.begin(), campaign_trajectories.end()},
        "on these trajectories (default: eight,circle,random); step: a place 50 m away");
   list("--gains", options->gains, {campaign_gains.begin(), campaign_gains.end()},
@@ -273,6 +280,7 @@ programs::Command programs::loop_command(CLI::App& program) {
       ->type_name("FOLDER")
       ->group("Comparison");
   line->footer(
+      described("Controllers:", loop_controllers) + described("Conditions:", loop_conditions) +
       "Examples:\n"
       "  pinnquad loop my_model/model.hpp\n"
       "  pinnquad loop my_model/model.block --trajectory circle --guard none --json\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a campaign's rows come to: errors by controller and condition, and their ratios to those of others, with
+// Sums over a campaign's rows: errors by controller and condition, and their ratios to those of others, with
 // intervals.
 #pragma once
 

@@ -40,7 +40,7 @@ inline constexpr bool learns_in_flight = is_detected<detail::LearnCall, Policy, 
 template <class Policy, class Scalar>
 inline constexpr bool knows_across = is_detected<detail::AcrossCall, Policy, Scalar>;
 
-/// What the policy knows of; zero of one that knows of nothing.
+/// The acceleration that the policy knows of; zero of one that knows of none.
 template <class Scalar, class Policy>
 Vector3<Scalar> across_of(const Policy& policy, const State<Scalar>& state) noexcept {
   if constexpr (knows_across<Policy, Scalar>) {

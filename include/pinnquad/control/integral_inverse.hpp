@@ -29,8 +29,8 @@ struct IntegralSettings {
   Scalar most_rad_s2 = Scalar(30);
 };
 
-/// Asks the other policy for the motion wanted plus k times the integral of the feedback, each axis bounded; the integral
-/// stands still while a command is at its end.
+/// Asks the other policy for the motion wanted plus k times the integral of the feedback, each axis bounded; the
+/// integral stands still while a command is at its end.
 template <class Scalar, class FeedForward>
 class IntegralInverse {
  public:

@@ -9,8 +9,8 @@
 
 namespace pinnquad {
 
-/// The other policy's commands. The acceleration across the thrust that the effects of `Vehicle` make, with its rotors as
-/// in hover, is taken from what is asked for.
+/// The other policy's commands. The acceleration across the thrust that the effects of `Vehicle` make, with its rotors
+/// as in hover, is taken from what is asked for.
 template <class FeedForward, class Vehicle>
 class KnownDrag;
 

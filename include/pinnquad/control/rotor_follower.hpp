@@ -41,7 +41,7 @@ class RotorFollower {
     return kept(0).time_us + delay_us_ <= now_us;
   }
 
-  /// What the rotors followed a delay ago.
+  /// The commands that the rotors followed a delay ago.
   const Commands<Scalar>& then() const noexcept { return delay_us_ == 0 ? rotors_ : kept_[oldest_].commands; }
 
  private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The paper's three flights (Sec. 5.2) and a harder one as types: effects, pilot, duration. The pilots' styles are fitted to what a
-// vehicle can do at a place, found through its own inverse. Contract of a flight: `name`, `summary`, `Vehicle` and
-// `SwitchableVehicle` (the same effects, and a ground effect that a program may choose), `ground_effect` (the paper's),
-// `plan()` and `pilot(vehicle, engine, max_speed_m_s)`.
+// The paper's three flights (Sec. 5.2) and a harder one as types: effects, pilot, duration. The pilots' styles are
+// fitted to what a vehicle can do at a place, found through its own inverse. Contract of a flight: `name`, `summary`,
+// `Vehicle` and `SwitchableVehicle` (the same effects, and a ground effect that a program may choose), `ground_effect`
+// (the paper's), `plan()` and `pilot(vehicle, engine, max_speed_m_s)`.
 #pragma once
 
 #include <limits>
