@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flies a model from its block, as feed-forward in a closed loop: no compiler is asked. Or controllers that are compared
-// under conditions.
+// Flies a model from its block, as feed-forward in a closed loop: no compiler is asked. Or controllers that are
+// compared under conditions.
 //   pinnquad loop my_model/model.block --trajectory circle --column battery_voltage=15.2
 //   pinnquad loop my_model/model.block --controllers adaptive,indi --conditions calm,payload --out compared
 #include "loop/loop_command.hpp"
