@@ -38,7 +38,7 @@ inline std::string interval_text(const nlohmann::json& mean) {
 inline Chart loop_chart(const nlohmann::json& summary, const std::string& gains) {
   static constexpr const char* colours[] = {colour::blue,  colour::orange, colour::green,
                                             colour::amber, colour::red,    colour::violet};
-  static constexpr Shape shapes[] = {Shape::dots, Shape::squares, Shape::diamonds, Shape::triangles};
+  static constexpr Shape shapes[] = {Shape::squares, Shape::diamonds, Shape::triangles, Shape::pluses};
   Panel panel;
   panel.x.name = "RMSE of the position, cm";
   panel.x.logarithmic = true;
@@ -102,7 +102,7 @@ inline std::string loop_page(const nlohmann::json& result) {
   char plan[400];
   std::snprintf(
       plan, sizeof plan,
-      "The vehicle that %s was made for: %s, %s. %d seeds, flights of %.0f s, errors of what comes after 10 s. "
+      "The vehicle that %s was made for: %s, %s. Seeds 1 to %d, flights of %.0f s, errors of what comes after 10 s. "
       "What controllers see has white noise of %g m, %g m/s, %g rad, %g rad/s and comes %g ms late.",
       result["model"].get<std::string>().c_str(), result["airframe"].get<std::string>().c_str(),
       result["vehicle"].get<std::string>().c_str(), result["seeds"].get<int>(), result["duration_s"].get<double>(),

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+// Policies around an inverse: drag that is known, the integral of the feedback, two of which one takes over; and the
+// commands that rotors follow.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
+#include "pinnquad/aero/wind.hpp"
+#include "pinnquad/control/integral_inverse.hpp"
+#include "pinnquad/control/known_drag.hpp"
+#include "pinnquad/control/rotor_follower.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/simulation/tracking.hpp"
+
+using namespace pinnquad;
+
+namespace {
+
+using Draggy = Quadrotor<double, ConstantWind, LinearDamping>;
+
+Airframe<double> airframe() { return airframe_value<PaperQuadrotor, double>(); }
+
+/// Answers a number for each rotor, and says that it learns a bias.
+struct Scripted {
+  double answer = 0.5;
+  Status status = Status::ok;
+
+  Status operator()(const State<double>&, const Accelerations<double>&, std::uint64_t,
+                    Commands<double>& commands) noexcept {
+    if (has_output(status)) commands = {answer, answer, answer, answer};
+    return status;
+  }
+};
+using Learning = AdaptiveInverse<double, Scripted>;
+
+/// Ticks of 2 ms in hover under one command.
+template <class Policy>
+void hover(Policy& policy, double command, double duration_s, std::uint64_t& now_us, bool known = true) {
+  State<double> state;
+  for (int i = 0; i < static_cast<int>(std::lround(duration_s / 0.002)); ++i) {
+    now_us += 2000;
+    policy.learn(now_us, known, state, {command, command, command, command});
+  }
+}
+
+double answer_of(HandsOver<double, Learning, Learning>& both, std::uint64_t now_us, Status& status) {
+  Commands<double> commands{};
+  status = both(State<double>{}, Accelerations<double>{}, now_us, commands);
+  return commands[0];
+}
+
+}  // namespace
+
+TEST_CASE("drag that is known: - k v / m across the thrust, in NED, relative to the air") {
+  const LinearDamping drag{1.2, 0.0};
+  const Draggy vehicle(airframe(), {}, ConstantWind{{-3, 1, 0}}, drag);
+  const KnownDrag<Scripted, Draggy> policy({}, vehicle);
+  State<double> state;
+  state.velocity_m_s = {4, -2, 1};
+  state.attitude = from_euler<double>({0, 0, 0.7});  // the thrust points up: across is horizontal
+  const Vector3<double> expected = Vector3<double>(4 + 3, -2 - 1, 0) * (-1.2 / airframe().mass_kg);
+  CHECK((policy.across_m_s2(state) - expected).norm() <= 1e-12);
+  // tilted, what acts along the thrust is not across
+  state.attitude = from_euler<double>({0, 0.4, 0});
+  const Vector3<double> down = body_down_axis(state.attitude);
+  const Vector3<double> whole = Vector3<double>(7, -3, 1) * (-1.2 / airframe().mass_kg);
+  CHECK((policy.across_m_s2(state) - (whole - down * down.dot(whole))).norm() <= 1e-12);
+}
+
+TEST_CASE("known drag leans the attitude: the error of the figure-eight falls") {
+  using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
+  const Vehicle vehicle(airframe(), paper_site<double>());
+  FigureEight<double> eight;
+  eight.center_m = {0, 0, -20};
+  const FlightController<double> feedback({}, flight_limits(airframe(), 1.0));
+  const AnalyticInverse<Vehicle> inverse(vehicle);
+  const double without = track(vehicle, eight, feedback, inverse).rmse_m;
+  const double with =
+      track(vehicle, eight, feedback, KnownDrag<AnalyticInverse<Vehicle>, Vehicle>(inverse, vehicle)).rmse_m;
+  CHECK(with < 0.5 * without);
+}
+
+TEST_CASE("the integral takes a steady error away, is bounded, and stands still while a command is at its end") {
+  using Body = Quadrotor<double, StandardAtmosphere>;
+  const Body told(airframe(), paper_site<double>());
+  Airframe<double> loaded = airframe();
+  loaded.mass_kg *= 1.1;
+  const Body heavy(loaded, paper_site<double>());
+  ExactWorld<Body> world{heavy};
+  const auto at_rest = [](double) {
+    TrajectoryPoint<double> point;
+    point.position_m = {0, 0, -20};
+    return point;
+  };
+  struct Place {
+    decltype(at_rest) point;
+    TrajectoryPoint<double> sample(double time_s) const noexcept { return point(time_s); }
+  };
+  const FlightController<double> feedback({}, flight_limits(airframe(), 1.0));
+  const AnalyticInverse<Body> inverse(told);
+  double last_m = 0;
+  const auto observer = [&last_m](double, const auto& point, const auto& state, const auto&) noexcept {
+    last_m = (point.position_m - state.body.position_m).norm();
+  };
+  const TrackingPlan<double> plan;
+  static_cast<void>(track(told, world, Place{at_rest}, feedback, inverse, plan, observer));
+  CHECK(last_m > 0.1);
+  static_cast<void>(track(told, world, Place{at_rest}, feedback,
+                          IntegralInverse<double, AnalyticInverse<Body>>(inverse), plan, observer));
+  CHECK(last_m < 1e-4);
+
+  IntegralInverse<double, Scripted> policy({});
+  const IntegralSettings<double> settings;
+  const Accelerations<double> error{{2, 0, -1}, {0, 5, 0}};
+  std::uint64_t now_us = 1'000'000;
+  const auto ticks = [&](int count, bool known) {
+    for (int i = 0; i < count; ++i) {
+      now_us += 2000;
+      policy.learn(now_us, known, State<double>{}, {});
+      policy.integrate(error);
+    }
+  };
+  ticks(1, true);  // of the first tick no time is known
+  const Vector3<double> first = policy.across_m_s2({});
+  ticks(500, true);
+  CHECK((first - policy.across_m_s2({}) - Vector3<double>(2, 0, -1) * settings.linear_1_s).norm() <= 1e-9);
+  const Vector3<double> before = policy.across_m_s2({});
+  ticks(500, false);
+  CHECK(policy.across_m_s2({}) == before);
+  ticks(10'000, true);
+  CHECK(policy.across_m_s2({})[0] == doctest::Approx(-settings.most_m_s2));
+  policy.learn(now_us + 2000, true, State<double>{}, {});
+  policy.integrate({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {0, 0, 0}});
+  CHECK(policy.across_m_s2({})[0] == doctest::Approx(-settings.most_m_s2));
+}
+
+TEST_CASE("a bias beyond its bound hands over to the second with its own, and comes back") {
+  BiasSettings<double> narrow;
+  narrow.most = {0.1, 0.1, 0.1, 0.1};
+  const Learning first(Scripted{0.5}, airframe(), narrow), second(Scripted{0.6}, airframe());
+  HandsOver<double, Learning, Learning> both(first, second);
+  std::uint64_t now_us = 1'000'000;
+  Status status = Status::ok;
+  hover(both, 0.51, 3, now_us);  // 0.04 of the sum: within its bound
+  CHECK(answer_of(both, now_us, status) == doctest::Approx(0.51));
+  CHECK((status == Status::ok && !both.handed_over()));
+  hover(both, 0.65, 0.3, now_us);
+  CHECK(!both.handed_over());
+  hover(both, 0.65, 3, now_us);
+  CHECK(both.handed_over());
+  CHECK(answer_of(both, now_us, status) == doctest::Approx(0.65));
+  CHECK(status == Status::fell_back);
+  hover(both, 0.51, 3, now_us);
+  CHECK(!both.handed_over());
+  CHECK(answer_of(both, now_us, status) == doctest::Approx(0.51));
+  CHECK(status == Status::ok);
+}
+
+TEST_CASE("where both stand at their bounds, as with a payload that none carries, the first stays") {
+  BiasSettings<double> narrow;
+  narrow.most = {0.1, 0.1, 0.1, 0.1};
+  HandsOver<double, Learning, Learning> both(Learning(Scripted{0.5}, airframe(), narrow),
+                                             Learning(Scripted{0.5}, airframe(), narrow));
+  std::uint64_t now_us = 1'000'000;
+  hover(both, 0.65, 5, now_us);
+  CHECK(both.second().bias().status() == Status::limited);
+  CHECK(!both.handed_over());
+}
+
+TEST_CASE("where the first declines the second answers; where both do, its Status and nothing") {
+  HandsOver<double, Learning, Learning> one(Learning(Scripted{0.5, Status::outside_envelope}, airframe()),
+                                            Learning(Scripted{0.6}, airframe()));
+  Status status = Status::ok;
+  CHECK(answer_of(one, 0, status) == 0.6);
+  CHECK(status == Status::fell_back);
+  HandsOver<double, Learning, Learning> none(Learning(Scripted{0.5, Status::outside_envelope}, airframe()),
+                                             Learning(Scripted{0.6, Status::no_solution}, airframe()));
+  CHECK(answer_of(none, 0, status) == 0.0);
+  CHECK(status == Status::outside_envelope);
+}
+
+TEST_CASE("rotors follow: 1 - (lag / (lag + h))^n of a step, a delay later, at ticks that are not even") {
+  for (const double delay_s : {0.0, 0.007, 0.04}) {
+    RotorFollower<double> rotors(0.05, delay_s);
+    rotors.restart({0.2, 0.2, 0.2, 0.2});
+    std::uint64_t now_us = 5'000'000;
+    double expected = 0.2;
+    struct Kept {
+      std::uint64_t time_us;
+      double command;
+    };
+    std::vector<Kept> past;
+    bool known = false;
+    for (int i = 0; i < 400; ++i) {
+      const std::uint64_t step_us = i % 3 == 0 ? 1000 : 2500;
+      now_us += step_us;
+      const double h = 1e-6 * static_cast<double>(step_us);
+      expected += h / (0.05 + h) * (0.8 - expected);
+      past.push_back({now_us, expected});
+      known = rotors.follow(now_us, h, {0.8, 0.8, 0.8, 0.8});
+      if (!known) {
+        CHECK(now_us < 5'000'000 + 1e6 * delay_s + 2500);
+        continue;
+      }
+      // the oldest kept that is no younger than the delay, to the spacing of what is kept
+      const double wanted_us = static_cast<double>(now_us) - 1e6 * delay_s;
+      const double spacing_us = 1e6 * delay_s / 20 + 2500;
+      double least = 1, most = 0;
+      for (const Kept& kept : past) {
+        const double behind_us = wanted_us - static_cast<double>(kept.time_us);
+        if (behind_us < -0.5 || behind_us > spacing_us) continue;
+        least = std::fmin(least, kept.command);
+        most = std::fmax(most, kept.command);
+      }
+      CHECK((rotors.then()[0] >= least - 1e-12 && rotors.then()[0] <= most + 1e-12));
+    }
+    CHECK(known);
+  }
+}
