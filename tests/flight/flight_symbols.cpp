@@ -386,14 +386,15 @@ unsigned char pinnquad_flight_track_incremental(double* rmse_m) {
 /// Every function of an inverse that learns, tick by tick.
 unsigned char pinnquad_flight_learn(const float* state, const float* wanted, float* u) {
   using Inverse = pinnquad::NetworkInverse<Guarded>;
-  pinnquad::MotionBias<float> logged;
+  pinnquad::MotionBias<float> logged(pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>());
   pinnquad::AdaptiveInverse<float, Inverse> inverse(Inverse(guarded()),
                                                     pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>());
   const auto vehicle = read(state);
   Commands<float> commands{u[0], u[1], u[2], u[3]};
   inverse.learn(static_cast<std::uint64_t>(wanted[6]), true, vehicle.body, commands);
   inverse.interrupt();
-  logged.resume(inverse.bias().sums(), inverse.acceleration_bias_m_s2(), inverse.bias().waited_s());
+  logged.resume(inverse.bias().sums(), inverse.across_m_s2(vehicle.body), inverse.bias().waited_s(),
+                inverse.bias().status());
   const Status status = inverse(vehicle.body, motion(wanted), 0, commands);
   for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i] + logged.sums()[i];
   inverse.reset();

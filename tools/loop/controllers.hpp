@@ -23,7 +23,7 @@ struct LoopController {
   bool learns = false;
 };
 
-inline constexpr std::array<LoopController, 10> loop_controllers = {{
+inline constexpr std::array<LoopController, 11> loop_controllers = {{
     {"pid", "cascaded PID: the rigid body's allocation, integral of the feedback", false, true},
     {"formula", "the analytic inverse with nominal drag"},
     {"geometric", "the same, and the attitude leans against nominal drag"},
@@ -34,6 +34,8 @@ inline constexpr std::array<LoopController, 10> loop_controllers = {{
     {"structured_drag", "the same, and the attitude leans against nominal drag", true},
     {"adaptive", "the model, with a bias learnt in flight; beyond its bound formula_adaptive", true, true},
     {"structured_indi", "incremental inversion of the model", true, true},
+    {"structured_observer", "disturbance observer on the model, and the attitude leans against nominal drag", true,
+     true},
 }};
 
 /// Factors of what each controller has by default; 1 each: equal, moderate gains.
@@ -132,6 +134,14 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& kno
       using First = decltype(incremental(network, at_once));
       using Second = decltype(incremental(formula, at_once));
       return AnyPolicy(HandsOver<double, First, Second>(incremental(network, at_once), incremental(formula, at_once)));
+    });
+  }
+  if (name == "structured_observer") {
+    return of_model(TrainingGuard{}, [&](const auto& network) {
+      const KnownDrag<std::decay_t<decltype(network)>, Vehicle> leaning(network, known.vehicle);
+      using First = decltype(incremental(leaning, slower));
+      using Second = decltype(incremental(geometric, slower));
+      return AnyPolicy(HandsOver<double, First, Second>(incremental(leaning, slower), incremental(geometric, slower)));
     });
   }
   throw std::out_of_range(name);

@@ -24,6 +24,15 @@ class KnownDrag<FeedForward, Quadrotor<Scalar, Effects...>> {
                     Commands<Scalar>& commands) noexcept {
     return inverse_(state, wanted, time_us, commands);
   }
+  /// The other's own answer to a motion that was flown (NetworkInverse::observed()).
+  Status observed(const State<Scalar>& state, const Accelerations<Scalar>& flown, std::uint64_t time_us,
+                  Commands<Scalar>& commands) noexcept {
+    if constexpr (is_detected<detail::ObservedCall, FeedForward, Scalar>) {
+      return inverse_.observed(state, flown, time_us, commands);
+    } else {
+      return inverse_(state, flown, time_us, commands);
+    }
+  }
   Vector3<Scalar> across_m_s2(const State<Scalar>& state) const noexcept {
     const Surroundings<Scalar> air = vehicle_.surroundings(state, Scalar(0));
     const Scalar hover = vehicle_.airframe().mass_kg * vehicle_.site().gravity_m_s2 / vehicle_.rotor_scale(air);
