@@ -37,6 +37,7 @@ int main(int count, char** arguments) try {
 
   auto from = provenance_of(flights, split, best.seed, settings.residual.epochs, structured_in_words, judged.verdict);
   from.slopes = best.slopes.of;  // said in the header's first lines, with the verdict
+  from.bias_time_constants_s = chosen_bias_time_constants_s(best.model, split.validation);  // learnt in flight
   const auto exported = export_model(arguments[1], "MyModel", best.model, split, from);
   std::printf("proven: a roll slope of %.6f s^2/rad or more\n", exported.certificate->held_slope[0]);
   if (!exported.no_trust_because.empty()) std::printf("no trust.hpp: %s\n", exported.no_trust_because.c_str());
