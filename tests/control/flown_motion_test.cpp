@@ -115,7 +115,7 @@ TEST_CASE("commands are behind the rotors' lag: a step's closed form under the t
 }
 
 TEST_CASE("a state that comes late is paired with the commands of its own time") {
-  for (const std::uint64_t delay_us : {0, 5'000, 20'000, 40'000}) {
+  for (const std::uint64_t delay_us : {0u, 5'000u, 20'000u, 40'000u}) {
     Flown flown({period_us, 0.0, seconds(delay_us)});
     int motions = 0;
     for (std::uint64_t now_us = 1'000'000; now_us <= 3'000'000; now_us += tick_us) {
@@ -284,7 +284,8 @@ TEST_CASE("a replay that begins in the middle has the same motions, to the bit")
   Flown whole, part;
   int compared = 0;
   for (int i = 0; i < 800; ++i) {
-    const std::uint64_t now_us = 1'000'000 + static_cast<std::uint64_t>(i) * tick_us + (i % 3) * 100;
+    const std::uint64_t now_us =
+        1'000'000 + static_cast<std::uint64_t>(i) * tick_us + static_cast<std::uint64_t>(i % 3) * 100;
     const State<double> state = swinging(seconds(now_us));
     const bool complete = tell(whole, now_us, state, following(state));
     if (i < 333) continue;

@@ -79,7 +79,6 @@ TEST_CASE("the settings of a model: its own time constants, else the usual ones;
 }
 
 TEST_CASE("the most that it changes a command: of an X a quarter of the bounds' sum") {
-  const auto airframe = airframe_value<PaperQuadrotor, double>();
   for (const double most : largest_bias(airframe)) CHECK(most == doctest::Approx(0.25 * (0.8 + 3 * 0.4)));
   BiasSettings<double> bounded;
   bounded.most = {0.1, 0, 0.2, 0};
