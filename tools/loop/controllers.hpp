@@ -5,12 +5,14 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "flight/block_feed_forward.hpp"
 #include "loop/any_policy.hpp"
+#include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/control/filtered_motion.hpp"
 #include "pinnquad/control/known_drag.hpp"
 

@@ -2,7 +2,9 @@
 // The page of a campaign: errors by controller and condition, their ratios, gains found, recoveries.
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <string>
 #include <vector>
 
