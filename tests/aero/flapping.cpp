@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "support/hub_motion.hpp"
 #include "support/momentum_theory.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
@@ -44,12 +45,8 @@ TEST_CASE_TEMPLATE("each hub's moment in three dimensions, of tilted rotors too"
     for (Scalar& thrust : c.rotor_thrust_N) thrust = random.scalar<Scalar>(0.0, 8.0);
     Vector3<double> torque = Vector3<double>::Zero();
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto& hub = airframe.rotors[i];
-      const Vector3<double> arm = Vector3<Scalar>(hub.x_m, hub.y_m, hub.z_m).template cast<double>();
-      const Vector3<double> axis = Vector3<Scalar>(hub.axis[0], hub.axis[1], hub.axis[2]).template cast<double>();
-      const Vector3<double> w = c.body_rates_rad_s.template cast<double>();
-      const Vector3<double> v = c.air_relative_velocity_m_s.template cast<double>() + pinnquad::cross<double>(w, arm);
-      torque += pinnquad::cross<double>(v, axis) * (0.003 * static_cast<double>(c.rotor_thrust_N[i]));
+      const pinnquad::test::HubMotion hub = pinnquad::test::hub_motion(c, airframe.rotors[i]);
+      torque += pinnquad::cross<double>(hub.velocity, hub.axis) * (0.003 * static_cast<double>(c.rotor_thrust_N[i]));
     }
     const auto made = BladeFlapping{0.003}.wrench(c, airframe);
     CHECK(pinnquad::test::distance(made.torque_N_m, torque) <= pinnquad::test::rounding<Scalar>(100));

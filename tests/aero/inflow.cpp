@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "support/hub_motion.hpp"
 #include "support/momentum_theory.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
@@ -130,11 +131,7 @@ TEST_CASE_TEMPLATE("each hub's force in three dimensions, of tilted rotors too",
     const double v_h = std::sqrt(weight / 4 / (2 * static_cast<double>(c.air_density_kg_m3) * area));
     Vector3<double> force = Vector3<double>::Zero(), torque = Vector3<double>::Zero();
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto& hub = airframe.rotors[i];
-      const Vector3<double> arm = Vector3<Scalar>(hub.x_m, hub.y_m, hub.z_m).template cast<double>();
-      const Vector3<double> axis = Vector3<Scalar>(hub.axis[0], hub.axis[1], hub.axis[2]).template cast<double>();
-      const Vector3<double> w = c.body_rates_rad_s.template cast<double>();
-      const Vector3<double> v = c.air_relative_velocity_m_s.template cast<double>() + pinnquad::cross<double>(w, arm);
+      const auto [arm, axis, v] = pinnquad::test::hub_motion(c, airframe.rotors[i]);
       const double climb = v.dot(axis), edgewise = (v - axis * climb).squaredNorm();
       const double r = static_cast<double>(hover.thrust_ratio(Scalar(edgewise / (v_h * v_h)), Scalar(climb / v_h)));
       const Vector3<double> lift = axis * ((r - 1) * static_cast<double>(c.rotor_thrust_N[i]));

@@ -11,6 +11,8 @@
 #include <random>
 #include <vector>
 
+#include "pinnquad/core/random.hpp"
+
 using namespace pinnquad;
 
 namespace {
@@ -298,4 +300,28 @@ TEST_CASE("a replay that begins in the middle has the same motions, to the bit")
     CHECK(part.motion().velocity_m_s == whole.motion().velocity_m_s);
   }
   CHECK(compared >= 43);
+}
+
+TEST_CASE("the noise of a sample cancels from motion to motion, at any rate of samples") {
+  for (const int sample_every : {1, 7, 10}) {
+    pinnquad::FlownMotion<double> motion;
+    pinnquad::State<double> state;
+    std::mt19937_64 engine(1);
+    double sum = 0;
+    int motions = 0;
+    for (int ms = 1; ms < 40000; ++ms) {
+      const auto now_us = static_cast<std::uint64_t>(1'000'000 + 1000 * ms);
+      if (ms % sample_every == 0) {
+        state.velocity_m_s[0] = 0.02 * pinnquad::standard_normal(engine);
+        motion.velocity(now_us, state.velocity_m_s);
+      }
+      motion.body_rates(now_us, state.body_rates_rad_s);
+      if (motion.tick(now_us, true, state, {0.5, 0.5, 0.5, 0.5})) {
+        sum += motion.motion().linear_acceleration_m_s2[0] * period_s;
+        ++motions;
+      }
+    }
+    CHECK(motions > 1500);
+    CHECK(std::abs(sum) < 0.08);  // the difference of two means of 0.02 m/s, not of 1500 of them
+  }
 }

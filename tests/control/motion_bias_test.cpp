@@ -27,6 +27,16 @@ BiasSettings<double> settings() {
   return result;
 }
 
+/// Learns of a vehicle that needs 0.1 more of each rotor, and 0.05 more of the first, so many times.
+Bias learnt(int times, pinnquad::BiasSettings<double> settings = {}) {
+  settings.time_constants_s = {0.2, 0.45, 0.45, 0.45};
+  Bias bias(airframe, settings);
+  for (int i = 0; i < times; ++i) {
+    CHECK(pinnquad::has_output(bias.learn({}, {0.65, 0.6, 0.6, 0.6}, {0.5, 0.5, 0.5, 0.5}, period_s)));
+  }
+  return bias;
+}
+
 }  // namespace
 
 TEST_CASE("a constant residual is found as first order finds it: r (1 - (c / (c + T))^n)") {
@@ -168,4 +178,54 @@ TEST_CASE("it goes on from what was logged, within its bounds, and forgets when 
   CHECK(replayed.across_m_s2() == none);
   CHECK(replayed.status() == Status::warming_up);
   CHECK(replayed.settings().time_constants_s == settings().time_constants_s);
+}
+
+TEST_CASE("each sum follows its residual with its own time constant; A b is what was lacking") {
+  for (const int times : {1, 8, 400}) {
+    const Bias bias = learnt(times);
+    const auto share = [&](double time_constant_s) {
+      return 1 - std::pow(time_constant_s / (time_constant_s + period_s), times);
+    };
+    CHECK(bias.sums()[0] == doctest::Approx(0.45 * share(0.2)));
+    for (std::size_t k = 1; k < 4; ++k) CHECK(std::abs(bias.sums()[k]) == doctest::Approx(0.05 * share(0.45)));
+    CHECK(bias.status() == Status::ok);
+  }
+  Commands<double> commands{0.5, 0.5, 0.5, 0.5};
+  learnt(400).add_to(commands);
+  CHECK(commands[0] == doctest::Approx(0.65));
+  for (std::size_t i = 1; i < 4; ++i) CHECK(commands[i] == doctest::Approx(0.6));
+}
+
+TEST_CASE("a bias stays within its bounds and says so; without bounds there is none") {
+  pinnquad::BiasSettings<double> settings;
+  settings.most = {0.2, 0, 0, 0};
+  const Bias bias = learnt(100, settings);
+  CHECK(bias.sums() == pinnquad::SignedSums<double>{0.2, 0, 0, 0});
+  CHECK(bias.share_of_bound() == doctest::Approx(1));
+  CHECK(bias.status() == Status::limited);
+  settings.most = {0, 0, 0, 0};
+  CHECK(learnt(100, settings).share_of_bound() == 0);
+  Bias blown(airframe);
+  pinnquad::MotionInputs<double> motion;
+  motion.linear_acceleration_m_s2 = {100, 0, 0};
+  CHECK(blown.learn(motion, {}, {}, period_s) == Status::limited);
+  CHECK(blown.across_m_s2().norm() == doctest::Approx(blown.settings().most_across_m_s2));
+}
+
+TEST_CASE("a residual that is no number changes nothing; without any it holds, then fades") {
+  Bias bias = learnt(400);
+  const pinnquad::SignedSums<double> before = bias.sums();
+  CHECK(bias.learn({}, {std::nan(""), 0, 0, 0}, {}, period_s) == Status::not_finite);
+  CHECK(bias.sums() == before);
+  for (int i = 0; i < 499; ++i) bias.wait(1e-3);
+  CHECK(bias.sums() == before);
+  for (int i = 0; i < 2001; ++i) bias.wait(1e-3);
+  CHECK(bias.sums()[0] == doctest::Approx(before[0] * std::exp(-1.0)).epsilon(0.01));
+  bias.freeze();
+  const double faded = bias.sums()[0];
+  bias.wait(0.4);
+  CHECK(bias.sums()[0] == faded);
+  bias.reset();
+  CHECK(bias.sums() == pinnquad::SignedSums<double>{});
+  CHECK(bias.status() == Status::warming_up);
 }

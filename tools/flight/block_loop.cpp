@@ -37,11 +37,7 @@ AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const Model
   }
   const auto held = eight_for(plan.airframe, ground_z_m, range);
   if (!held) throw std::invalid_argument(none);
-  FigureEight<double> eight = *held;
-  if (plan.trajectory == "yaw_eight") {
-    eight.yaw_amplitude_rad = 0.5;
-    eight.period_s *= 14.0 / 15.0;
-  }
+  const FigureEight<double> eight = plan.trajectory == "yaw_eight" ? with_yaw(*held) : *held;
   return take(eight, eight.half_length_m, eight.half_height_m);
 }
 
@@ -83,8 +79,8 @@ ModelRange range_of(const BlockModel& model) {
   ModelRange range;
   for (int i = 0; i < features.size(); ++i) {
     const auto at = std::size_t(i);
-    range.features.push_back({std::string(features[i].name), std::string(features[i].unit), lower[at], upper[at],
-                              features.is_column(i)});
+    range.features.push_back(
+        {std::string(features[i].name), std::string(features[i].unit), lower[at], upper[at], features.is_column(i)});
   }
   range.of = [&features](const ModelRange::Motion& motion) {
     RunTimeInputs<double> lasting;

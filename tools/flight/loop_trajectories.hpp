@@ -106,6 +106,21 @@ bool slow_down(Trajectory& trajectory, double ground_z_m, const Range& range) {
   return false;
 }
 
+/// The middle of a trajectory, NED: far above the ground, or near it in the middle of the range's heights.
+template <class Range>
+pinnquad::Vector3<double> center_for(double ground_z_m, const Range& range) {
+  double down_m = -far_above_ground_m;
+  if (const auto altitude = range.altitude_m()) {
+    const double lowest = std::max(altitude->first, least_altitude_m);
+    down_m = ground_z_m - (lowest + 0.45 * (altitude->second - lowest));
+  }
+  return {0, 0, down_m};
+}
+/// How far it may rise and sink about that middle.
+inline double half_height_m(const std::pair<double, double>& altitude_m) {
+  return 0.35 * (altitude_m.second - std::max(altitude_m.first, least_altitude_m));
+}
+
 /// As large beside the usual trajectory as the range's speed along that axis beside 4 m/s.
 template <class Range>
 double size_along(const Range& range, std::size_t axis) {
@@ -121,16 +136,14 @@ template <class Range>
 std::optional<pinnquad::FigureEight<double>> eight_for(const pinnquad::Airframe<double>& airframe, double ground_z_m,
                                                        const Range& range, std::optional<double> shortest_s = {}) {
   pinnquad::FigureEight<double> eight;
-  eight.center_m = {0, 0, -detail::far_above_ground_m};
+  eight.center_m = detail::center_for(ground_z_m, range);
   const double size = detail::size_along(range, 0);
   eight.half_length_m *= size;
   eight.half_width_m *= detail::size_along(range, 1);
   eight.half_height_m *= detail::size_along(range, 2);
   eight.period_s = shortest_s.value_or(eight.period_s * std::sqrt(size));
   if (const auto altitude = range.altitude_m()) {
-    const double lowest = std::max(altitude->first, detail::least_altitude_m);
-    eight.center_m[2] = ground_z_m - (lowest + 0.45 * (altitude->second - lowest));
-    eight.half_height_m = 0.35 * (altitude->second - lowest);
+    eight.half_height_m = detail::half_height_m(*altitude);
     eight.half_length_m = std::min(eight.half_length_m, 1.0);
     eight.half_width_m = std::min(eight.half_width_m, 0.5);
     eight.period_s = 4;
@@ -140,18 +153,23 @@ std::optional<pinnquad::FigureEight<double>> eight_for(const pinnquad::Airframe<
   return eight;
 }
 
+/// One in 14/15 of the time, whose nose swings by 0.5 rad.
+inline pinnquad::FigureEight<double> with_yaw(pinnquad::FigureEight<double> eight) {
+  eight.yaw_amplitude_rad = 0.5;
+  eight.period_s *= 14.0 / 15.0;
+  return eight;
+}
+
 /// A level circle, near the ground in the middle of the heights.
 template <class Range>
 std::optional<pinnquad::Circle<double>> circle_for(const pinnquad::Airframe<double>& airframe, double ground_z_m,
                                                    const Range& range) {
   pinnquad::Circle<double> circle;
-  circle.center_m = {0, 0, -detail::far_above_ground_m};
+  circle.center_m = detail::center_for(ground_z_m, range);
   const double size = std::min(detail::size_along(range, 0), detail::size_along(range, 1));
   circle.radius_m *= size;
   circle.period_s *= std::sqrt(size);
-  if (const auto altitude = range.altitude_m()) {
-    const double lowest = std::max(altitude->first, detail::least_altitude_m);
-    circle.center_m[2] = ground_z_m - (lowest + 0.45 * (altitude->second - lowest));
+  if (range.altitude_m()) {
     circle.radius_m = std::min(circle.radius_m, 1.0);
     circle.period_s = 4;
   }
@@ -165,13 +183,9 @@ template <class Range>
 std::optional<RandomPath> random_path_for(const pinnquad::Airframe<double>& airframe, double ground_z_m,
                                           const Range& range, std::uint64_t seed) {
   RandomPath path(seed);
-  path.center_m = {0, 0, -detail::far_above_ground_m};
+  path.center_m = detail::center_for(ground_z_m, range);
   for (std::size_t axis = 0; axis < 3; ++axis) path.half_size[axis] *= detail::size_along(range, axis);
-  if (const auto altitude = range.altitude_m()) {
-    const double lowest = std::max(altitude->first, detail::least_altitude_m);
-    path.center_m[2] = ground_z_m - (lowest + 0.45 * (altitude->second - lowest));
-    path.half_size = {1, 1, 0.35 * (altitude->second - lowest), 0.4};
-  }
+  if (const auto altitude = range.altitude_m()) path.half_size = {1, 1, detail::half_height_m(*altitude), 0.4};
   path.period_s = std::max(path.period_s, detail::least_period_s(airframe, 9 * path.half_size[0]));
   if (!detail::slow_down(path, ground_z_m, range)) return {};
   return path;

@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <deque>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <random>
 #include <stdexcept>
+#include <system_error>
 #include <tuple>
 #include <type_traits>
 
@@ -19,6 +21,7 @@
 #include "command_line/interrupt.hpp"
 #include "command_line/parallel.hpp"
 #include "flight/block_loop.hpp"
+#include "flight/loop_figures.hpp"
 #include "flight/loop_trajectories.hpp"
 #include "loop/controllers.hpp"
 #include "loop/loop_page.hpp"
@@ -121,37 +124,30 @@ class Loop {
  public:
   explicit Loop(const LoopCampaign& plan)
       : plan_(plan), told_(plan.airframe, paper_site<double>()), range_(range_of(plan.model)) {
+    const double ground_z_m = told_.site().ground_z_m;
+    const auto eight = eight_for(plan.airframe, ground_z_m, range_);
+    at_once_["eight"] = any(eight);
+    at_once_["yaw_eight"] = any(std::optional(with_yaw(*eight)));
+    if (std::find(plan.trajectories.begin(), plan.trajectories.end(), "circle") != plan.trajectories.end()) {
+      at_once_["circle"] = any(circle_for(plan.airframe, ground_z_m, range_));
+    }
+    at_once_["step"] = {[start = eight->center_m](double time_s) {
+      TrajectoryPoint<double> point;
+      point.position_m = start;
+      if (time_s > 0) point.position_m[0] += 50;
+      return point;
+    }};
     Status status = told_.status();
     HoverTrim<double> trim;
-    if (status == Status::ok) status = hover_trim(told_, trajectory("eight", 1).sample(0).position_m, trim);
+    if (status == Status::ok) status = hover_trim(told_, eight->center_m, trim);
     if (status != Status::ok) {
       throw std::invalid_argument(std::string("this airframe can't be flown here: ") + to_string(status));
     }
   }
 
   AnyTrajectory trajectory(const std::string& name, std::uint64_t seed) const {
-    const double ground_z_m = told_.site().ground_z_m;
-    const auto any = [](const auto& held) {
-      if (!held) {
-        throw std::invalid_argument("the model's envelope holds no trajectory of this kind, however slow");
-      }
-      return AnyTrajectory{[path = *held](double time_s) { return path.sample(time_s); }};
-    };
-    if (name == "circle") return any(circle_for(plan_.airframe, ground_z_m, range_));
-    if (name == "random") return any(random_path_for(plan_.airframe, ground_z_m, range_, seed));
-    auto eight = eight_for(plan_.airframe, ground_z_m, range_);
-    if (name == "yaw_eight" && eight) {
-      eight->yaw_amplitude_rad = 0.5;
-      eight->period_s *= 14.0 / 15.0;
-    }
-    if (name != "step") return any(eight);
-    if (!eight) return any(eight);
-    return {[start = eight->center_m](double time_s) {
-      TrajectoryPoint<double> point;
-      point.position_m = start;
-      if (time_s > 0) point.position_m[0] += 50;
-      return point;
-    }};
+    if (name == "random") return any(random_path_for(plan_.airframe, told_.site().ground_z_m, range_, seed));
+    return at_once_.at(name);
   }
 
   /// A row of the table; with the error over time where the condition changes at half time, of the first seed.
@@ -193,6 +189,7 @@ class Loop {
     };
     const TrackingResult<double> flown =
         track(told_, world, path, FlightController<double>(feedback, limits), policy, how, observer);
+    const double onset_s = condition.at_half ? half_s : 0;
     const double usual_m =
         condition.at_half ? errors.worst_second_m(settled_s, half_s) : errors.worst_second_m(half_s, how.duration_s);
     const bool crashed = flown.status != Status::ok || errors.low || !(errors.worst_m(settled_s) < lost_m);
@@ -210,11 +207,9 @@ class Loop {
                           {"effort_1_s", effort / (ticks * period_s)},
                           {"step_ns", 1e9 * policy.busy_s() / ticks},
                           {"answered_share", nullptr}};
-    const auto recovered = errors.recovery_s(condition.at_half ? half_s : 0, usual_m);
+    const auto recovered = errors.recovery_s(onset_s, usual_m);
     if (recovered && !crashed) row["recovery_s"] = *recovered;
-    if (flown.fallback.asked > 0) {
-      row["answered_share"] = 1 - flown.fallback.fallbacks() / static_cast<double>(flown.fallback.asked);
-    }
+    if (flown.fallback.asked > 0) row["answered_share"] = answered_share(flown.fallback);
     if (condition.at_half && cell.seed == 1 && cell.trajectory == "eight") {
       row["series"] = {{"period_s", 25 * period_s}, {"error_cm", nlohmann::json::array()}};
       for (std::size_t i = 0; i < errors.squares.size(); i += 25) {
@@ -270,6 +265,11 @@ class Loop {
   }
 
  private:
+  template <class Held>
+  static AnyTrajectory any(const std::optional<Held>& held) {
+    if (!held) throw std::invalid_argument("the model's envelope holds no trajectory of this kind, however slow");
+    return {[path = *held](double time_s) { return path.sample(time_s); }};
+  }
   template <class Vehicle>
   static Vehicle with_air(const Airframe<double>& airframe, const Site<double>& site, const ConstantWind& wind,
                           const MaybeGusts& gusts) {
@@ -288,52 +288,61 @@ class Loop {
   const LoopCampaign& plan_;
   Told told_;
   ModelRange range_;
+  std::map<std::string, AnyTrajectory> at_once_;  ///< that are the same for every seed
 };
 
 /// One JSON value a line: the plan, then what is done. A last line that was not written whole is dropped.
 class Journal {
  public:
   Journal(const std::string& path, const nlohmann::json& plan) : path_(path) {
-    std::ifstream in(path);
-    std::string line, text;
-    bool same = false;
-    for (int number = 0; std::getline(in, line); ++number) {
-      const nlohmann::json value = nlohmann::json::parse(line, nullptr, false);
-      if (value.is_discarded()) break;
-      if (number == 0) {
-        same = value == plan;
-        if (!same) break;
-      } else {
-        done_.push_back(value);
-      }
-      text += line + '\n';
-    }
-    in.close();
-    if (!same) {
-      done_.clear();
-      text = plan.dump() + '\n';
-    }
-    out_.open(path, std::ios::trunc);
-    out_ << text << std::flush;
+    const std::uintmax_t kept = read(plan);
+    std::error_code error;
+    if (kept > 0) std::filesystem::resize_file(path, kept, error);
+    if (error) throw OutputError(path, error.message());
+    out_.open(path, kept > 0 ? std::ios::app : std::ios::trunc);
+    if (kept == 0) write(plan);
     check();
   }
 
-  const std::deque<nlohmann::json>& done() const { return done_; }
+  std::map<std::string, nlohmann::json> rows;   ///< by Cell::key()
+  std::map<std::string, nlohmann::json> tuned;  ///< by controller
+
   void add(const nlohmann::json& value) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    done_.push_back(value);
-    out_ << value.dump() << '\n' << std::flush;
+    file(value);
+    write(value);
     check();
   }
 
  private:
+  /// Length of the lines that are whole, of the same plan; 0: none.
+  std::uintmax_t read(const nlohmann::json& plan) {
+    std::ifstream in(path_);
+    std::string line;
+    std::uintmax_t length = 0;
+    while (std::getline(in, line) && !in.eof()) {
+      const nlohmann::json value = nlohmann::json::parse(line, nullptr, false);
+      if (value.is_discarded() || (length == 0 && value != plan)) break;
+      if (length > 0) file(value);
+      length += line.size() + 1;
+    }
+    return length;
+  }
+  void file(const nlohmann::json& value) {
+    if (value.contains("tuned")) {
+      tuned[value["tuned"]] = value;
+    } else {
+      rows[Cell{value["controller"], value["condition"], value["trajectory"], value["gains"], value["seed"]}.key()] =
+          value;
+    }
+  }
+  void write(const nlohmann::json& value) { out_ << value.dump() << '\n' << std::flush; }
   void check() const {
     if (!out_) throw OutputError(path_, "the disk does not take it");
   }
 
   std::string path_;
   std::ofstream out_;
-  std::deque<nlohmann::json> done_;
   std::mutex mutex_;
 };
 
@@ -380,18 +389,7 @@ nlohmann::json run(const LoopCampaign& plan) {
   const FolderLock lock(plan.out);
   const nlohmann::json said = plan_of(plan);
   Journal journal(plan.out + "/loop.journal", said);
-  std::map<std::string, nlohmann::json> rows, tuned;
-  const auto read = [&] {
-    for (const nlohmann::json& value : journal.done()) {
-      if (value.contains("tuned")) {
-        tuned[value["tuned"]] = value;
-      } else {
-        rows[Cell{value["controller"], value["condition"], value["trajectory"], value["gains"], value["seed"]}.key()] =
-            value;
-      }
-    }
-  };
-  read();
+  std::map<std::string, nlohmann::json>&rows = journal.rows, &tuned = journal.tuned;
 
   std::vector<const LoopController*> to_tune;
   if (std::find(plan.gains.begin(), plan.gains.end(), "tuned") != plan.gains.end()) {
@@ -411,7 +409,6 @@ nlohmann::json run(const LoopCampaign& plan) {
                  ++finished;
                });
   stop_if_interrupted();
-  read();
 
   std::vector<Cell> missing;
   const std::vector<Cell> cells = cells_of(plan);
@@ -431,7 +428,6 @@ nlohmann::json run(const LoopCampaign& plan) {
                  ++finished;
                });
   stop_if_interrupted();
-  read();
 
   nlohmann::json result = said;
   result["tuning"] = nlohmann::json::array();

@@ -3,6 +3,7 @@
 // moderate gains, and with its own, which a search finds on other trajectories and seeds.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>

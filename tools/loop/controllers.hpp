@@ -103,14 +103,19 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& kno
     return AdaptiveInverse<double, std::decay_t<decltype(inverse)>, FilteredMotion<double>>(inverse, airframe, settings,
                                                                                             filtered);
   };
-  const KnownDrag<Formula, Vehicle> geometric(formula, known.vehicle);
+  const auto leaning = [&](const auto& inverse) {
+    return KnownDrag<std::decay_t<decltype(inverse)>, Vehicle>(inverse, known.vehicle);
+  };
   if (name == "pid") return AnyPolicy(IntegralInverse<double, AnalyticInverse<Body>>(rigid_body, integral));
   if (name == "formula") return AnyPolicy(formula);
-  if (name == "geometric") return AnyPolicy(geometric);
+  if (name == "geometric") return AnyPolicy(leaning(formula));
   if (name == "formula_adaptive") return AnyPolicy(adaptive(formula));
   if (name == "indi") return AnyPolicy(incremental(rigid_body, at_once));
-  if (name == "observer") return AnyPolicy(incremental(geometric, slower));
+  if (name == "observer") return AnyPolicy(incremental(leaning(formula), slower));
 
+  const auto handing_over = [](const auto& first, const auto& second) {
+    return AnyPolicy(HandsOver<double, std::decay_t<decltype(first)>, std::decay_t<decltype(second)>>(first, second));
+  };
   const double ground_z_m = known.vehicle.site().ground_z_m;
   const auto of_model = [&](const auto& guard, const auto& compose) {
     return with_feed_forward(known.model, guard, ground_z_m, known.columns, compose);
@@ -120,30 +125,20 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& kno
     return of_model(falls_back, [](const auto& network) { return AnyPolicy(network); });
   }
   if (name == "structured_drag") {
-    return of_model(falls_back, [&](const auto& network) {
-      return AnyPolicy(KnownDrag<std::decay_t<decltype(network)>, Vehicle>(network, known.vehicle));
-    });
+    return of_model(falls_back, [&](const auto& network) { return AnyPolicy(leaning(network)); });
   }
   if (name == "adaptive") {
-    return of_model(TrainingGuard{}, [&](const auto& network) {
-      using First = decltype(adaptive(network));
-      using Second = decltype(adaptive(formula));
-      return AnyPolicy(HandsOver<double, First, Second>(adaptive(network), adaptive(formula)));
-    });
+    return of_model(TrainingGuard{},
+                    [&](const auto& network) { return handing_over(adaptive(network), adaptive(formula)); });
   }
   if (name == "structured_indi") {
     return of_model(TrainingGuard{}, [&](const auto& network) {
-      using First = decltype(incremental(network, at_once));
-      using Second = decltype(incremental(formula, at_once));
-      return AnyPolicy(HandsOver<double, First, Second>(incremental(network, at_once), incremental(formula, at_once)));
+      return handing_over(incremental(network, at_once), incremental(formula, at_once));
     });
   }
   if (name == "structured_observer") {
     return of_model(TrainingGuard{}, [&](const auto& network) {
-      const KnownDrag<std::decay_t<decltype(network)>, Vehicle> leaning(network, known.vehicle);
-      using First = decltype(incremental(leaning, slower));
-      using Second = decltype(incremental(geometric, slower));
-      return AnyPolicy(HandsOver<double, First, Second>(incremental(leaning, slower), incremental(geometric, slower)));
+      return handing_over(incremental(leaning(network), slower), incremental(leaning(formula), slower));
     });
   }
   throw std::out_of_range(name);

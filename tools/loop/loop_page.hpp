@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <iterator>
 #include <string>
@@ -36,10 +37,12 @@ inline std::string interval_text(const nlohmann::json& mean) {
   return text;
 }
 
+/// One after the other for the controllers, from the first again behind the last.
+inline constexpr std::array<const char*, 6> loop_colours = {colour::blue,  colour::orange, colour::green,
+                                                            colour::amber, colour::red,    colour::violet};
+
 /// Conditions as rows, controllers as marks.
 inline Chart loop_chart(const nlohmann::json& summary, const std::string& gains) {
-  static constexpr const char* colours[] = {colour::blue,  colour::orange, colour::green,
-                                            colour::amber, colour::red,    colour::violet};
   static constexpr Shape shapes[] = {Shape::squares, Shape::diamonds, Shape::triangles, Shape::pluses};
   Panel panel;
   panel.x.name = "RMSE of the position, cm";
@@ -49,8 +52,8 @@ inline Chart loop_chart(const nlohmann::json& summary, const std::string& gains)
   for (std::size_t c = 0; c < controllers.size(); ++c) {
     Series series;
     series.name = controllers[c];
-    series.colour = colours[c % std::size(colours)];
-    series.shape = shapes[(c / std::size(colours) + c) % std::size(shapes)];
+    series.colour = loop_colours[c % loop_colours.size()];
+    series.shape = shapes[(c / loop_colours.size() + c) % std::size(shapes)];
     for (const nlohmann::json& each : summary) {
       if (each["gains"] != gains || each["controller"] != controllers[c] || each["rmse_cm"].is_null()) continue;
       const auto row = std::find(panel.y.rows.begin(), panel.y.rows.end(), each["condition"]) - panel.y.rows.begin();
@@ -65,8 +68,6 @@ inline Chart loop_chart(const nlohmann::json& summary, const std::string& gains)
 
 /// Errors over time of the flights of one condition that changes at half time.
 inline Chart recovery_chart(const nlohmann::json& series, const std::string& condition, double half_s) {
-  static constexpr const char* colours[] = {colour::blue,  colour::orange, colour::green,
-                                            colour::amber, colour::red,    colour::violet};
   Chart chart{"Recovery", "Position error over time under " + condition, {}};
   for (const char* gains : {"equal", "tuned"}) {
     Panel panel;
@@ -78,8 +79,8 @@ inline Chart recovery_chart(const nlohmann::json& series, const std::string& con
       if (each["condition"] != condition || each["gains"] != gains) continue;
       Series line;
       line.name = each["controller"];
-      line.colour = colours[count % std::size(colours)];
-      line.dashed = count >= std::size(colours);
+      line.colour = loop_colours[count % loop_colours.size()];
+      line.dashed = count >= loop_colours.size();
       ++count;
       const std::vector<double> errors_cm = each["error_cm"];
       const double period_s = each["period_s"];

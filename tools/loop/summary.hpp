@@ -58,38 +58,39 @@ inline std::string loop_cell(const nlohmann::json& figures) {
 inline nlohmann::json loop_summary(const nlohmann::json& rows) {
   std::map<std::string, double> errors;  // of flights that came back, by all that names them
   std::vector<std::array<std::string, 3>> order;
+  std::map<std::array<std::string, 3>, std::vector<const nlohmann::json*>> flown;
   const auto flight = [](const nlohmann::json& row, const std::string& controller) {
     return controller + ' ' + row["gains"].get<std::string>() + ' ' + row["condition"].get<std::string>() + ' ' +
            row["trajectory"].get<std::string>() + ' ' + std::to_string(row["seed"].get<int>());
   };
   for (const nlohmann::json& row : rows) {
-    if (!row["crashed"].get<bool>())
+    if (!row["crashed"].get<bool>()) {
       errors[flight(row, row["controller"])] = std::max(1e-9, row["rmse_cm"].get<double>());
+    }
     const std::array<std::string, 3> entry = {row["gains"], row["controller"], row["condition"]};
-    if (std::find(order.begin(), order.end(), entry) == order.end()) order.push_back(entry);
+    if (flown.count(entry) == 0) order.push_back(entry);
+    flown[entry].push_back(&row);
   }
   nlohmann::json summary = nlohmann::json::array();
-  for (const auto& [gains, controller, condition] : order) {
+  for (const auto& entry : order) {
+    const auto& [gains, controller, condition] = entry;
     std::vector<double> logs;
     std::array<std::vector<double>, loop_baselines.size()> ratios;
-    int flights = 0, crashed = 0;
-    for (const nlohmann::json& row : rows) {
-      if (row["gains"] != gains || row["controller"] != controller || row["condition"] != condition) continue;
-      ++flights;
-      const auto own = errors.find(flight(row, controller));
-      if (own == errors.end()) {
-        ++crashed;
-        continue;
-      }
+    for (const nlohmann::json* row : flown[entry]) {
+      const auto own = errors.find(flight(*row, controller));
+      if (own == errors.end()) continue;
       logs.push_back(std::log(own->second));
       for (std::size_t i = 0; i < ratios.size(); ++i) {
-        const auto base = errors.find(flight(row, loop_baselines[i]));
+        const auto base = errors.find(flight(*row, loop_baselines[i]));
         if (base != errors.end()) ratios[i].push_back(std::log(own->second / base->second));
       }
     }
-    nlohmann::json figures = {{"gains", gains},         {"controller", controller},
-                              {"condition", condition}, {"flights", flights},
-                              {"crashed", crashed},     {"rmse_cm", detail::geometric_mean(logs)}};
+    nlohmann::json figures = {{"gains", gains},
+                              {"controller", controller},
+                              {"condition", condition},
+                              {"flights", flown[entry].size()},
+                              {"crashed", flown[entry].size() - logs.size()},
+                              {"rmse_cm", detail::geometric_mean(logs)}};
     for (std::size_t i = 0; i < ratios.size(); ++i) {
       figures[std::string("over_") + loop_baselines[i]] = detail::geometric_mean(ratios[i]);
     }

@@ -117,10 +117,7 @@ class BlockNetwork : public TrainedNetwork {
   Predictions guarded_predictions(const pinnquad::RowSet& rows) const override;
   GuardCounts guard_counts(const pinnquad::RowSet& rows) const override;
   DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override;
-  double looks_ahead_s() const override {
-    const pinnquad::RunTimeWindow& window = block_.features().window();
-    return window.causal ? 0 : window.period_s * (window.taps - 1) / 2;
-  }
+  double looks_ahead_s() const override { return block_.features().window().latest_s; }
   const pinnquad::BlockModel* block() const override { return &block_; }
 
  private:

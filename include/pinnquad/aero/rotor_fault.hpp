@@ -2,7 +2,8 @@
 // A rotor that is weak from a time on: a chipped propeller, a tired motor.
 #pragma once
 
-#include "pinnquad/aero/inflow.hpp"
+#include "pinnquad/aero/effect.hpp"
+#include "pinnquad/dynamics/allocation.hpp"
 
 namespace pinnquad {
 
@@ -23,9 +24,8 @@ struct RotorFault {
     const RotorMount<Scalar>& hub = airframe.rotors[rotor % rotor_count];
     const Scalar along_N = Scalar(share - 1) * condition.rotor_thrust_N[rotor % rotor_count];
     const Scalar torque_over_thrust_m = airframe.max_rotor_torque_N_m() / airframe.max_rotor_thrust_N();
-    const Scalar reaction_N_m = -Scalar(static_cast<int>(hub.spin)) * torque_over_thrust_m * along_N;
-    detail::add_at_hub(hub, along_N, result);
-    result.torque_N_m += Vector3<Scalar>(hub.axis[0], hub.axis[1], hub.axis[2]) * reaction_N_m;
+    result.force_N = to_vector(hub.axis) * along_N;
+    result.torque_N_m = to_vector(detail::rotor_torque_N_m(hub, along_N, torque_over_thrust_m * along_N));
     return result;
   }
 

@@ -14,6 +14,7 @@
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flown_motion.hpp"
 #include "pinnquad/control/motion_bias.hpp"
+#include "pinnquad/control/tick_clock.hpp"
 
 namespace pinnquad {
 
@@ -90,9 +91,7 @@ class AdaptiveInverse {
   /// drove the motors, in flight, off their ends. The bias learns where a motion is complete and the inverse answers
   /// for it by itself; else it waits.
   void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
-    const Scalar step_s =
-        before_us_ != 0 && now_us > before_us_ ? Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_) : Scalar(0);
-    before_us_ = now_us;
+    const Scalar step_s = clock_.step_s(now_us);
     const bool learnt = motion_.tick(now_us, known, state, commands) && compare(now_us, state.position_m, step_s);
     if (!learnt) bias_.wait(step_s);
     motion_.velocity(now_us, state.velocity_m_s);
@@ -130,7 +129,7 @@ class AdaptiveInverse {
   FeedForward inverse_;
   MotionBias<Scalar> bias_;
   Motion motion_;
-  std::uint64_t before_us_ = 0;
+  detail::TickClock<Scalar> clock_;
 };
 
 /// Two that learn: the first answers; where it declines, or has needed a bias beyond its bound for `patience_s`, the
@@ -156,9 +155,7 @@ class HandsOver {
   void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
     first_.learn(now_us, known, state, commands);
     second_.learn(now_us, known, state, commands);
-    const Scalar step_s =
-        before_us_ != 0 && now_us > before_us_ ? Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_) : Scalar(0);
-    before_us_ = now_us;
+    const Scalar step_s = clock_.step_s(now_us);
     const bool beyond = first_.bias().status() == Status::limited && second_.bias().status() != Status::limited;
     for_s_ = beyond != handed_over_ ? for_s_ + step_s : Scalar(0);
     if (for_s_ < patience_s_) return;
@@ -176,7 +173,7 @@ class HandsOver {
   First first_;
   Second second_;
   Scalar patience_s_;
-  std::uint64_t before_us_ = 0;
+  detail::TickClock<Scalar> clock_;
   Scalar for_s_{0};  ///< time that has said otherwise
   bool handed_over_ = false;
 };

@@ -11,6 +11,7 @@
 #include "pinnquad/control/autopilot/inputs.hpp"
 #include "pinnquad/control/flown_motion.hpp"
 #include "pinnquad/control/motion_bias.hpp"
+#include "pinnquad/control/tick_clock.hpp"
 
 namespace pinnquad::autopilot::detail {
 
@@ -77,9 +78,7 @@ class FlownBiases {
   void learn(const FlownTick& tick, const State<float>& state, const Commands<float>& commands, const Network& network,
              const Analytic& analytic) noexcept {
     const std::uint64_t now_us = tick.now_us;
-    const float step_s =
-        before_us_ != 0 && now_us > before_us_ ? 1e-6f * static_cast<float>(now_us - before_us_) : 0.0f;
-    before_us_ = now_us;
+    const float step_s = clock_.step_s(now_us);
     if (!tick.in_flight) {
       alarm_.reset();
       trust_.reset();
@@ -139,7 +138,7 @@ class FlownBiases {
   MotionBias<float> network_, analytic_;
   FlownTrust<Trust> trust_{};
   BiasAlarm alarm_;
-  std::uint64_t before_us_ = 0;  ///< the tick before
+  pinnquad::detail::TickClock<float> clock_;
   bool given_ = false;
 };
 
