@@ -14,6 +14,7 @@ namespace pinnquad {
 template <class FeedForward, class Vehicle>
 class KnownDrag;
 
+/// Of a quadrotor with its effects.
 template <class FeedForward, class Scalar, class... Effects>
 class KnownDrag<FeedForward, Quadrotor<Scalar, Effects...>> {
  public:

@@ -50,6 +50,7 @@ constexpr Quaternion<Scalar> conjugate(const Quaternion<Scalar>& q) noexcept {
   return {q.w, -q.x, -q.y, -q.z};
 }
 
+/// |q|^2.
 template <class Scalar>
 constexpr Scalar squared_norm(const Quaternion<Scalar>& q) noexcept {
   return q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
@@ -66,6 +67,7 @@ constexpr bool is_unit(const Quaternion<Scalar>& q) noexcept {
   return excess <= unit_quaternion_tolerance<Scalar> && -excess <= unit_quaternion_tolerance<Scalar>;
 }
 
+/// q / |q|.
 template <class Scalar>
 Quaternion<Scalar> normalized(const Quaternion<Scalar>& q) noexcept {
   using std::sqrt;
@@ -101,6 +103,7 @@ PINNQUAD_ALWAYS_INLINE Vector3<Scalar> world_down_axis(const Quaternion<Scalar>&
   return Vector3<Scalar>(q.x * z2 - q.w * y2, q.y * z2 + q.w * x2, Scalar(1) - (q.x * x2 + q.y * y2));
 }
 
+/// Of Euler angles ZYX, rad.
 template <class Scalar>
 Quaternion<Scalar> from_euler(const EulerAngles<Scalar>& angles) noexcept {
   using std::cos;

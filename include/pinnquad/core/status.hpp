@@ -9,6 +9,7 @@
 
 namespace pinnquad {
 
+/// Why a function has no answer, or how good one is. Nothing that flies throws.
 enum class [[nodiscard]] Status : std::uint8_t{
     ok = 0,
     not_finite,           ///< an input is NaN or infinite

@@ -104,6 +104,7 @@ void write_flight_csv(const std::string& path, const Flight& flight, const Obser
   }
   writer.commit();
 }
+/// The same, of which nobody watches the rows.
 inline void write_flight_csv(const std::string& path, const Flight& flight) {
   write_flight_csv(path, flight, [](std::size_t) {});
 }

@@ -98,6 +98,7 @@ struct ProvenSigns {
   AxisDerivatives slope{}, held_slope{};
 };
 
+/// A block of a file, ready to predict: in float or double, as it was written.
 class BlockModel {
  public:
   /// Reads a file. Throws InputError, one line: not readable, no block that describes itself, one that contradicts

@@ -104,6 +104,7 @@ template <class Scalar>
 constexpr Scalar clip_command(Scalar command) noexcept {
   return command < Scalar(0) ? Scalar(0) : (command > Scalar(1) ? Scalar(1) : command);
 }
+/// All four.
 template <class Scalar>
 constexpr Commands<Scalar> clipped(const Commands<Scalar>& commands) noexcept {
   return {clip_command(commands[0]), clip_command(commands[1]), clip_command(commands[2]), clip_command(commands[3])};
@@ -115,6 +116,7 @@ Scalar lag_factor(Scalar time_constant_s, Scalar step_s) noexcept {
   using std::exp;
   return time_constant_s > Scalar(0) ? Scalar(exp(-step_s / time_constant_s)) : Scalar(0);
 }
+/// Of each rotor.
 template <class Scalar>
 std::array<Scalar, rotor_count> lag_factor(const std::array<Scalar, rotor_count>& time_constants_s,
                                            Scalar step_s) noexcept {
@@ -169,6 +171,7 @@ constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before
                                            Scalar time_constant_s) noexcept {
   return time_constant_s > Scalar(0) ? before : end;
 }
+/// Of each rotor its own.
 template <class Scalar>
 constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
                                            const std::array<Scalar, rotor_count>& time_constants_s) noexcept {

@@ -11,15 +11,17 @@
 
 namespace pinnquad {
 
-/// The torque rows of Eq. (2): their axis and its name.
+/// Row of the torque about x in Eq. (2): its axis and its name.
 struct Roll {
   static constexpr int axis = 0;
   static constexpr const char* name = "roll";
 };
+/// Row of the torque about y.
 struct Pitch {
   static constexpr int axis = 1;
   static constexpr const char* name = "pitch";
 };
+/// Row of the torque about z.
 struct Yaw {
   static constexpr int axis = 2;
   static constexpr const char* name = "yaw";

@@ -34,11 +34,13 @@ struct Wrench {
   Vector3<Scalar> torque_N_m = Vector3<Scalar>::Zero();
 };
 
+/// Force and torque, each by itself.
 template <class Scalar>
 Wrench<Scalar> operator+(const Wrench<Scalar>& a, const Wrench<Scalar>& b) noexcept {
   return {a.force_N + b.force_N, a.torque_N_m + b.torque_N_m};
 }
 
+/// Force and torque, each by itself.
 template <class Scalar>
 Wrench<Scalar> operator-(const Wrench<Scalar>& a, const Wrench<Scalar>& b) noexcept {
   return {a.force_N - b.force_N, a.torque_N_m - b.torque_N_m};
@@ -64,6 +66,7 @@ Vector3<Scalar> body_derivative(const State<Scalar>& state, const Vector3<Scalar
          cross<Scalar>(state.body_rates_rad_s, body_velocity(state));
 }
 
+/// True where no number of the state is NaN or infinite.
 template <class Scalar>
 bool all_finite(const State<Scalar>& state) noexcept {
   const Quaternion<Scalar>& q = state.attitude;

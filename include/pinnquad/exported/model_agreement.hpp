@@ -14,6 +14,7 @@ namespace pinnquad {
 
 /// Times that an exported model can state of its clock: a sample period, a lag that was removed. False for NaN.
 inline constexpr double longest_clock_s = 4.0;
+/// 0 to longest_clock_s.
 constexpr bool is_clock_time(double seconds) noexcept { return seconds >= 0.0 && seconds <= longest_clock_s; }
 
 namespace detail {

@@ -26,6 +26,7 @@ struct RunTimeInputs : MotionInputsWithAltitude<Scalar> {
   std::array<Scalar, most_columns> columns{};  ///< in the order of RunTimeFeatures::column()
 };
 
+/// As of motions; columns linearly.
 template <class Scalar>
 RunTimeInputs<Scalar> interpolated(const RunTimeInputs<Scalar>& a, const RunTimeInputs<Scalar>& b,
                                    Scalar share) noexcept {

@@ -23,6 +23,7 @@ struct BlockFault {
   const char* found = nullptr;
 };
 
+/// A model of a block that is known at run time alone: every layer, column and schema is as the block describes it.
 template <class Scalar>
 class RunTimeModel {
  public:

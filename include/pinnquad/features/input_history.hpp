@@ -33,6 +33,7 @@ MotionInputs<Scalar> interpolated(const MotionInputs<Scalar>& a, const MotionInp
   return result;
 }
 
+/// The altitude linearly too.
 template <class Scalar>
 MotionInputsWithAltitude<Scalar> interpolated(const MotionInputsWithAltitude<Scalar>& a,
                                               const MotionInputsWithAltitude<Scalar>& b, Scalar share) noexcept {

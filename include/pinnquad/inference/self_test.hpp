@@ -136,6 +136,7 @@ Status self_test(const InverseDynamics<Model, Guard>& inverse,
   return Status::ok;
 }
 
+/// The same without the report.
 template <class Model, class Guard>
 Status self_test(const InverseDynamics<Model, Guard>& inverse) noexcept {
   SelfTestReport<typename Model::Scalar> report;

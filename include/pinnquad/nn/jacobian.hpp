@@ -55,6 +55,7 @@ PINNQUAD_ALWAYS_INLINE void pull_back_product(const Scalar* weight, const Scalar
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
+/// Of a dense layer: its weights, transposed.
 template <class Scalar, int In, int Out, bool HasBias>
 struct PullBack<DenseLayer<Scalar, In, Out, HasBias>> {
   template <class Pack, int Rows, int Stride, class Finish>

@@ -105,6 +105,7 @@ constexpr RecorderErrors noisy_gyro_errors() noexcept {
   errors.command_jitter_s = 0.010;
   return errors;
 }
+/// Commands that were recorded 40 ms late.
 constexpr RecorderErrors late_command_errors() noexcept {
   RecorderErrors errors;
   errors.command_latency_s = 0.040;

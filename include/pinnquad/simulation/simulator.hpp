@@ -311,6 +311,7 @@ RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPla
   return recorded;
 }
 
+/// The same, with nobody who watches.
 template <class Vehicle, class Pilot>
 RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan = {}) {
   return fly(quadrotor, pilot, plan, [](const auto&) {});

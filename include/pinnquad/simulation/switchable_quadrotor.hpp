@@ -14,6 +14,7 @@
 
 namespace pinnquad {
 
+/// Of a vehicle that is put together at run time.
 enum class GroundEffectModel { none, cheeseman_bennett, conyers };
 
 /// One of three Quadrotors, with `Effects...` and behind them no ground effect, Cheeseman and Bennett's, or Conyers'. A
