@@ -120,6 +120,7 @@ template <class Scalar>
 const Scalar* set_columns(MotionInputs<Scalar>& /*inputs*/, const Scalar* values) noexcept {
   return values;
 }
+/// Of inputs that have some.
 template <class Base, class Scalar, class... Column>
 const Scalar* set_columns(detail::InputsWithColumns<Base, Scalar, Column...>& inputs, const Scalar* values) noexcept {
   values = set_columns(static_cast<Base&>(inputs), values);
