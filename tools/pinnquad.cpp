@@ -7,13 +7,14 @@
 #include "airframe/airframe_command.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/interrupt.hpp"
+#include "convert/convert_command.hpp"
 #include "flight/fly_command.hpp"
 #include "identify/identify_command.hpp"
 #include "import/import_command.hpp"
+#include "loop/loop_command.hpp"
 #include "model/block_command.hpp"
 #include "model/certify_command.hpp"
 #include "model/evaluate_command.hpp"
-#include "loop/loop_command.hpp"
 #include "model/replay_command.hpp"
 #include "project/new_command.hpp"
 #include "training/train_command.hpp"
@@ -24,10 +25,10 @@ int run(int argument_count, char** arguments, std::string& name) {
   CLI::App program("Physics-informed inverse dynamics of quadrotors: from a flight to a network that may fly", name);
   program.fallthrough();  // --config may stand anywhere
   const std::vector<programs::Command> commands = {
-      programs::fly_command(program),      programs::import_command(program),  programs::identify_command(program),
-      programs::train_command(program),    programs::evaluate_command(program), programs::certify_command(program),
-      programs::replay_command(program),   programs::loop_command(program),    programs::block_command(program),
-      programs::airframe_command(program), programs::new_command(program)};
+      programs::fly_command(program),     programs::import_command(program),   programs::identify_command(program),
+      programs::train_command(program),   programs::evaluate_command(program), programs::certify_command(program),
+      programs::replay_command(program),  programs::loop_command(program),     programs::block_command(program),
+      programs::convert_command(program), programs::airframe_command(program), programs::new_command(program)};
   program.footer(
       "Examples:\n"
       "  pinnquad fly d1 --seed 1 --out d1.csv                    a simulated flight\n"

@@ -17,8 +17,7 @@
 #include "pinnquad/deploy/airframe_writer.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/deploy/opening_comment.hpp"
-#include "pinnquad/deploy/provenance.hpp"
-#include "pinnquad/exported/certificate.hpp"
+#include "pinnquad/deploy/written_model.hpp"
 #include "pinnquad/exported/contents_hash.hpp"
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/io/atomic_file.hpp"
@@ -80,14 +79,15 @@ class ConstantWriter {
     out_ << "}};\n";
     count(name, rows);
   }
-  template <class Scalar, int Size>
-  void scaler(const std::string& type, const char* name, const Scaler<Scalar, Size>& value) {
-    out_ << "  static constexpr pinnquad::Scaler<" << type << ", " << Size << "> " << name << " = {{";
-    write_braced(out_, value.mean, "  ");
+  template <class Scalar>
+  void scaler(const std::string& type, const char* name, const std::vector<Scalar>& mean,
+              const std::vector<Scalar>& standard_deviation) {
+    out_ << "  static constexpr pinnquad::Scaler<" << type << ", " << mean.size() << "> " << name << " = {{";
+    write_braced(out_, mean, "  ");
     out_ << "}, {";
-    write_braced(out_, value.standard_deviation, "  ");
+    write_braced(out_, standard_deviation, "  ");
     out_ << "}};\n";
-    count(name, value);
+    count(name, std::array{mean, standard_deviation});
   }
 
  private:
@@ -150,87 +150,43 @@ void write_header_records(std::ostream& out, ConstantWriter& write, const Writte
   }
 }
 
-/// All numbers of a model but its golden vectors.
-template <class Model>
-void require_finite_model(const Model& model) {
-  require_finite(model.network.parameters, "the parameters");
-  require_finite(model.input.mean, "the input means");
-  require_finite(model.input.standard_deviation, "the input standard deviations");
-  require_finite(model.output.mean, "the output means");
-  require_finite(model.output.standard_deviation, "the output standard deviations");
-  require_finite(model.envelope_lower, "the lower envelope");
-  require_finite(model.envelope_upper, "the upper envelope");
-}
-
-/// The commands of golden feature vectors, by the portable kernel.
-/// Throws std::invalid_argument for none, for one outside the envelope, which no self test could pass, and for a model
-/// or a command that is not finite.
-template <class Model>
-std::vector<Commands<typename Model::Scalar>> golden_commands(
-    const Model& model, const std::vector<typename Model::FeatureVector>& golden) {
-  if (golden.empty()) throw std::invalid_argument("export: a model needs at least one golden vector");
-  require_finite_model(model);
-  std::vector<Commands<typename Model::Scalar>> commands;
-  for (const auto& x : golden) {
-    if (!inside_envelope(model.envelope_lower.data(), x.data(), model.envelope_upper.data(), x.size())) {
-      throw std::invalid_argument("export: golden vector " + std::to_string(commands.size() + 1) +
-                                  " lies outside the envelope");
-    }
-    commands.push_back(model.predict(x));
-    require_finite(commands.back(), "the commands of golden vector " + std::to_string(commands.size()));
-  }
-  return commands;
-}
-
-}  // namespace detail
-
-namespace detail {
-
 /// The header of a model into `out`; returns its contents_hash.
-template <class Model>
-std::uint64_t write_struct(std::ostream& out, const std::string& struct_name, const Model& model,
-                           const std::vector<typename Model::FeatureVector>& golden,
-                           const std::vector<Commands<typename Model::Scalar>>& golden_commands,
-                           const WrittenRecords& records, const Provenance& provenance) {
-  using Scalar = typename Model::Scalar;
-  constexpr bool own_airframe = std::is_same_v<typename Model::Vehicle, GivenAirframe>;
-  const std::string vehicle_name = model.airframe_name();
+template <class Scalar>
+std::uint64_t write_struct(std::ostream& out, const WrittenModel<Scalar>& model) {
   const std::string scalar = type_name<Scalar>();
+  const auto signs = motor_torque_signs(model.airframe);
   ConstantWriter write(out);
 
   out << "// Inverse-dynamics model, exported by pinnquad " << PINNQUAD_VERSION
       << ". Generated: export again rather than edit.\n"
       << "// SI units, rad. Commands in the order of the airframe's rotors.\n";
-  write_opening_comment(out, records, model.template airframe<double>());
-  out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n";
-  std::string vehicle;
-  if constexpr (own_airframe) {
-    vehicle = struct_name + "Airframe";
-    write_airframe(out, vehicle, vehicle_name, model.template airframe<double>());
+  write_opening_comment(out, model, model.airframe);
+  out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n" << model.own_types;
+  std::string vehicle = model.vehicle_type;
+  if (vehicle.empty()) {
+    vehicle = model.name + "Airframe";
+    write_airframe(out, vehicle, model.vehicle_name, model.airframe);
     out << '\n';
-  } else {
-    vehicle = type_name<typename Model::Vehicle>();
   }
-  out << "struct " << struct_name << " {\n"
+  out << "struct " << model.name << " {\n"
       << "  using Scalar = " << scalar << ";\n"
-      << "  using Network = " << type_name<typename Model::Network>() << ";\n"
-      << "  using Features = " << type_name<typename Model::Features>() << ";\n"
-      << "  using Outputs = " << type_name<typename Model::Outputs>() << ";\n"
+      << "  using Network = " << model.network_type << ";\n"
+      << "  using Features = " << model.features_type << ";\n"
+      << "  using Outputs = " << model.outputs_type << ";\n"
       << "  using Vehicle = " << vehicle << ";\n"
       << "  using Inputs = Features::Inputs<Scalar>;\n\n";
   write.number("format_version", model_format_version);
-  write.text("name", struct_name);
+  write.text("name", model.name);
   out << "\n  // provenance\n";
-  write.text("training_data", provenance.training_data);
-  write.constant("std::uint64_t", "training_data_hash", hexadecimal(provenance.training_data_hash),
-                 provenance.training_data_hash);
-  write.constant("int", "training_rows", std::to_string(provenance.training_rows),
-                 static_cast<int>(provenance.training_rows));
-  out << "  static constexpr std::uint64_t seed = " << provenance.seed << "u;\n";
-  write.number("epochs", provenance.epochs);
-  write.text("loss", provenance.loss);
-  if (provenance.verdict) {
-    const Verdict& verdict = *provenance.verdict;
+  write.text("training_data", model.training_data);
+  write.constant("std::uint64_t", "training_data_hash", hexadecimal(model.training_data_hash),
+                 model.training_data_hash);
+  write.constant("int", "training_rows", std::to_string(model.training_rows), static_cast<int>(model.training_rows));
+  out << "  static constexpr std::uint64_t seed = " << model.seed << "u;\n";
+  write.number("epochs", model.epochs);
+  write.text("loss", model.loss);
+  if (model.verdict) {
+    const Verdict& verdict = *model.verdict;
     const auto figure = [&](const char* name, double value) {
       if (is_finite(value)) write.number(name, stated_figure(value));
     };
@@ -240,37 +196,48 @@ std::uint64_t write_struct(std::ostream& out, const std::string& struct_name, co
     write.truth("worse_than_mean", verdict.worse_than_mean());
     write.truth("beats_linear_regression", verdict.beats_linear_regression());
   }
+  const auto features = names_and_units(model.feature_texts, 0);
+  const auto outputs = names_and_units(model.output_texts, 1);  // behind the schema's description
   out << "\n  // what it was trained for; require_model() compares with Features, Outputs and Vehicle\n";
   write.text("frame", model_frame);
-  write.list("const char*", "feature_names", Model::Features::names);
-  write.list("const char*", "feature_units", Model::Features::units);
-  write.list("const char*", "output_names", OutputMap<typename Model::Outputs>::names);
-  write.list("const char*", "output_units", OutputMap<typename Model::Outputs>::units);
-  write.text("vehicle_name", vehicle_name);
+  write.list("const char*", "feature_names", features.names);
+  write.list("const char*", "feature_units", features.units);
+  write.list("const char*", "output_names", outputs.names);
+  write.list("const char*", "output_units", outputs.units);
+  write.text("vehicle_name", model.vehicle_name);
   out << "  // rotor by rotor: signs of its torque about x, y, z\n";
-  write.table("int", "motor_torque_signs", motor_torque_signs(model.template airframe<double>()));
-  write_header_records<Scalar>(out, write, records);
+  write.table("int", "motor_torque_signs", signs);
+  write_header_records<Scalar>(out, write, model);
   out << "\n  // standardisation: (value - mean) / spread\n";
-  write.scaler(scalar, "input", model.input);
-  write.scaler(scalar, "output", model.output);
+  write.scaler(scalar, "input", model.input_mean, model.input_deviation);
+  write.scaler(scalar, "output", model.output_mean, model.output_deviation);
   out << "\n  // training envelope per feature, margin included\n";
   write.list(scalar, "envelope_lower", model.envelope_lower);
   write.list(scalar, "envelope_upper", model.envelope_upper);
 
   out << "\n  // golden vectors: features in physical units -> commands\n";
-  write.table(scalar, "golden_features", golden);
-  write.table(scalar, "golden_commands", golden_commands);
+  write.table(scalar, "golden_features", model.golden_features);
+  write.table(scalar, "golden_commands", model.golden_commands);
 
   out << "\n  // layer by layer: weights row-major (row = output, column = input), then biases\n";
-  write.list(scalar, "parameters", model.network.parameters);
-  write.count("Vehicle", model.template airframe<double>());
+  write.list(scalar, "parameters", model.parameters);
+  write.count("Vehicle", model.airframe);
   out << "\n  // over all of this: what was edited does not compile (exported/contents_hash.hpp)\n"
       << "  static constexpr std::uint64_t contents_hash = " << hexadecimal(write.contents_hash()) << ";\n";
-  out << "};\n\nstatic_assert(pinnquad::require_model<" << struct_name << ">());\n";
-  if constexpr (has_certificate<Model>) {
-    out << "static_assert(pinnquad::require_certificate<" << struct_name << ">());  // docs/certificate.md\n";
+  out << "};\n\nstatic_assert(pinnquad::require_model<" << model.name << ">());\n";
+  if (model.certificate) {
+    out << "static_assert(pinnquad::require_certificate<" << model.name << ">());  // docs/certificate.md\n";
   }
   return write.contents_hash();
+}
+
+/// The header as a text; no locale plays a part.
+template <class Scalar>
+std::string header_text(const WrittenModel<Scalar>& model) {
+  std::ostringstream out;
+  out.imbue(std::locale::classic());  // a global locale may group digits
+  write_struct(out, model);
+  return out.str();
 }
 
 }  // namespace detail
@@ -287,12 +254,7 @@ void write_model(std::ostream& stream, const std::string& struct_name,
                  const std::vector<typename TrainedModel<NetworkType, ContextType>::FeatureVector>& golden,
                  const Provenance& provenance) {
   detail::require_identifier(struct_name);
-  const auto golden_commands = detail::golden_commands(model, golden);
-  const auto records = detail::records_of_training(model, provenance);
-  std::ostringstream out;
-  out.imbue(std::locale::classic());  // a global locale may group digits
-  detail::write_struct(out, struct_name, model, golden, golden_commands, records, provenance);
-  stream << out.str();
+  stream << detail::header_text(detail::written_model(model, golden, provenance, struct_name));
 }
 
 /// The same into a file that appears whole or not at all.

@@ -99,8 +99,9 @@ struct WrittenRecords : Provenance {
   std::string answer;  ///< description of what the parameters are of
   std::string base;    ///< description of the outputs' base; empty: none
 
-  // of a block alone: a header has types for these, and its own hash
-  std::string name;                                       ///< of the header's struct
+  std::string name;          ///< of the header's struct
+  std::string own_types;     ///< C++ of the types that it uses and that no library has; for a header
+  std::string vehicle_type;  ///< for a header; empty: the airframe is written before the struct
   std::string network_type, features_type, outputs_type;  ///< as a header names them, for a reader
   std::vector<std::string> feature_texts;                 ///< name and unit of each
   std::vector<std::string> output_texts;                  ///< the schema's description, then name and unit of each

@@ -3,8 +3,11 @@
 // without a new firmware. Layout: exported/model_block.hpp; the same bytes on every machine.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pinnquad/deploy/block_writer.hpp"
@@ -19,27 +22,28 @@ namespace pinnquad {
 
 namespace detail {
 
-/// `model` has scalers and envelope, as an object or as static members.
-template <class Shape, class Model, class GoldenFeatures, class GoldenCommands, class Parameters>
-std::vector<unsigned char> block_of(const Model& model, const GoldenFeatures& golden_features,
-                                    const GoldenCommands& golden_commands, const Parameters& parameters,
-                                    const WrittenRecords& records, std::uint64_t shape,
-                                    std::uint64_t training_data_hash, std::uint64_t training_rows) {
-  using Layout = ModelBlockLayout<Shape>;
-  using Scalar = typename Shape::Scalar;
+template <class Scalar>
+std::vector<unsigned char> block_of(const WrittenModel<Scalar>& model) {
   LittleEndianBytes<Scalar> scalars;
-  scalars.add(model.input.mean);
-  scalars.add(model.input.standard_deviation);
-  scalars.add(model.output.mean);
-  scalars.add(model.output.standard_deviation);
-  scalars.add(model.envelope_lower);
-  scalars.add(model.envelope_upper);
-  scalars.add(golden_features);
-  scalars.add(golden_commands);
-  scalars.add(parameters);
-  return whole_block({sizeof(Scalar), Layout::inputs, Layout::outputs, Layout::parameter_count, golden_features.size(),
-                      training_rows, shape, training_data_hash},
-                     block_records<Scalar>(records), scalars.bytes);
+  for (const auto* numbers : {&model.input_mean, &model.input_deviation, &model.output_mean, &model.output_deviation,
+                              &model.envelope_lower, &model.envelope_upper}) {
+    scalars.add(*numbers);
+  }
+  scalars.add(model.golden_features);
+  scalars.add(model.golden_commands);
+  scalars.add(model.parameters);
+  return whole_block(
+      {sizeof(Scalar), model.input_mean.size(), model.output_mean.size(), model.parameters.size(),
+       model.golden_features.size(), model.training_rows, hash_of_shape(model), model.training_data_hash},
+      block_records<Scalar>(model), scalars.bytes);
+}
+
+/// The block beside the header that write_struct() writes of the same model.
+template <class Scalar>
+std::vector<unsigned char> block_beside_header(WrittenModel<Scalar> model) {
+  std::ostream nowhere(nullptr);
+  model.contents_hash = write_struct(nowhere, model);
+  return block_of(model);
 }
 
 }  // namespace detail
@@ -53,14 +57,9 @@ std::vector<unsigned char> model_block(
     const std::vector<typename TrainedModel<NetworkType, ContextType>::FeatureVector>& golden,
     const Provenance& provenance, const std::string& name = "Model",
     const FittedTrust<ContextType::Features::size>* trust = nullptr) {
-  using Model = TrainedModel<NetworkType, ContextType>;
-  const auto golden_commands = detail::golden_commands(model, golden);
-  auto records = detail::records_of_training(model, provenance);
-  std::ostream nowhere(nullptr);
-  records.name = name;
-  records.contents_hash = detail::write_struct(nowhere, name, model, golden, golden_commands, records, provenance);
+  auto written = detail::written_model(model, golden, provenance, name);
   if (trust != nullptr) {
-    records.trust = {trust->squared_distance_limit,
+    written.trust = {trust->squared_distance_limit,
                      trust->command_residual_factor,
                      trust->command_residual_limit,
                      trust->command_residual_cleared,
@@ -68,10 +67,7 @@ std::vector<unsigned char> model_block(
                      {trust->distribution.mean.begin(), trust->distribution.mean.end()},
                      {trust->distribution.whitening.begin(), trust->distribution.whitening.end()}};
   }
-  const std::uint64_t shape = detail::hash_of_shape<Model>(printable(model.airframe_name()),
-                                                           motor_torque_signs(model.template airframe<double>()));
-  return detail::block_of<Model>(model, golden, golden_commands, model.network.parameters, records, shape,
-                                 provenance.training_data_hash, provenance.training_rows);
+  return detail::block_beside_header(std::move(written));
 }
 
 /// The block of an exported header, of format 2 or later: the bytes that its training would have written as a block.
@@ -81,11 +77,12 @@ std::vector<unsigned char> model_block() {
   static_assert(require_model<Model>());
   static_assert(Model::format_version >= 2,
                 "pinnquad: a header of format 1 does not check its own names; export it again");
-  auto records = detail::records_of_header<Model>();
+  detail::WrittenModel<typename Model::Scalar> written;
+  static_cast<detail::WrittenRecords&>(written) = detail::records_of_header<Model>();
   if constexpr (!std::is_void_v<Trust>) {
     using Distance = detail::DistanceTrust<Trust>;
     using Residual = detail::ResidualTrust<Trust>;
-    records.trust = {Distance::squared_distance_limit,
+    written.trust = {Distance::squared_distance_limit,
                      Residual::command_residual_factor,
                      Residual::command_residual_limit,
                      Residual::command_residual_cleared,
@@ -93,9 +90,15 @@ std::vector<unsigned char> model_block() {
                      detail::converted<double>(Trust::distribution_mean),
                      detail::converted<double>(Trust::whitening)};
   }
-  return detail::block_of<Model>(Model{}, Model::golden_features, Model::golden_commands, Model::parameters, records,
-                                 shape_hash<Model>, Model::training_data_hash,
-                                 static_cast<std::uint64_t>(Model::training_rows));
+  detail::take_numbers(written, Model{});
+  for (const auto& x : Model::golden_features) written.golden_features.emplace_back(x.begin(), x.end());
+  for (const auto& u : Model::golden_commands) {
+    std::copy(u.begin(), u.end(), written.golden_commands.emplace_back().begin());
+  }
+  written.parameters.assign(Model::parameters.begin(), Model::parameters.end());
+  written.training_data_hash = Model::training_data_hash;
+  written.training_rows = static_cast<std::size_t>(Model::training_rows);
+  return detail::block_of(written);
 }
 
 namespace detail {

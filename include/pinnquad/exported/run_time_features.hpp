@@ -9,13 +9,10 @@
 #include <string_view>
 
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/features/chosen_features.hpp"
 #include "pinnquad/features/input_history.hpp"
-#include "pinnquad/features/motion_parts.hpp"
 
 namespace pinnquad {
-
-/// Every feature of the library that a motion has. A name means the same number in each of its feature sets.
-struct NamedFeatures : Joined<PaperFeatures, SpecificForce, RateProducts, DownVector, SquaredVelocity> {};
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 

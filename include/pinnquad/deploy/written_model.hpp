@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// All that header and block write of a model, as values: of a training, of an exported header's types, or of a network
+// that was made elsewhere and that no type is of.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "pinnquad/deploy/provenance.hpp"
+#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/training/trained_model.hpp"
+
+namespace pinnquad {
+namespace detail {
+
+/// The records of a model, and its numbers as its Scalar has them.
+template <class Scalar>
+struct WrittenModel : WrittenRecords {
+  std::vector<Scalar> input_mean, input_deviation, output_mean, output_deviation;
+  std::vector<Scalar> envelope_lower, envelope_upper;
+  std::vector<std::vector<Scalar>> golden_features;
+  std::vector<Commands<Scalar>> golden_commands;
+  std::vector<Scalar> parameters;  ///< layer by layer: weights row-major, then biases
+};
+
+/// Texts in turn, apart.
+struct NamesAndUnits {
+  std::vector<std::string> names, units;
+};
+inline NamesAndUnits names_and_units(const std::vector<std::string>& texts, std::size_t first) {
+  NamesAndUnits apart;
+  for (std::size_t i = first; i + 1 < texts.size(); i += 2) {
+    apart.names.push_back(texts[i]);
+    apart.units.push_back(texts[i + 1]);
+  }
+  return apart;
+}
+
+/// As detail::hash_of_shape(), of what is known when a program runs.
+inline std::uint64_t hash_of_shape(const WrittenRecords& model) {
+  const NamesAndUnits features = names_and_units(model.feature_texts, 0),
+                      outputs = names_and_units(model.output_texts, 1);
+  Fnv1a fnv;
+  fnv.absorb_text(model.answer);
+  absorb_shape(fnv, features.names, features.units, outputs.names, outputs.units, model.vehicle_name,
+               motor_torque_signs(model.airframe));
+  return fnv.hash;
+}
+
+/// Throws std::invalid_argument for a number that is not finite, for no golden vector, and for one outside the
+/// envelope, which no self test could pass.
+template <class Scalar>
+void require_numbers(const WrittenModel<Scalar>& model) {
+  require_finite(model.parameters, "the parameters");
+  require_finite(model.input_mean, "the input means");
+  require_finite(model.input_deviation, "the input standard deviations");
+  require_finite(model.output_mean, "the output means");
+  require_finite(model.output_deviation, "the output standard deviations");
+  require_finite(model.envelope_lower, "the lower envelope");
+  require_finite(model.envelope_upper, "the upper envelope");
+  if (model.golden_features.empty()) throw std::invalid_argument("export: a model needs at least one golden vector");
+  for (std::size_t i = 0; i < model.golden_features.size(); ++i) {
+    const std::vector<Scalar>& x = model.golden_features[i];
+    if (!inside_envelope(model.envelope_lower.data(), x.data(), model.envelope_upper.data(), x.size())) {
+      throw std::invalid_argument("export: golden vector " + std::to_string(i + 1) + " lies outside the envelope");
+    }
+    require_finite(model.golden_commands[i], "the commands of golden vector " + std::to_string(i + 1));
+  }
+}
+
+/// `model` has scalers and envelope, as an object or as static members.
+template <class Scalar, class Model>
+void take_numbers(WrittenModel<Scalar>& written, const Model& model) {
+  const auto take = [](const auto& from, std::vector<Scalar>& to) { to.assign(from.begin(), from.end()); };
+  take(model.input.mean, written.input_mean);
+  take(model.input.standard_deviation, written.input_deviation);
+  take(model.output.mean, written.output_mean);
+  take(model.output.standard_deviation, written.output_deviation);
+  take(model.envelope_lower, written.envelope_lower);
+  take(model.envelope_upper, written.envelope_upper);
+}
+
+/// Of a trained model; the commands of its golden vectors are worked out by the portable kernel. Throws
+/// std::invalid_argument where require_numbers() and records_of_training() do.
+template <class Model>
+WrittenModel<typename Model::Scalar> written_model(const Model& model,
+                                                   const std::vector<typename Model::FeatureVector>& golden,
+                                                   const Provenance& provenance, const std::string& name) {
+  WrittenModel<typename Model::Scalar> written;
+  take_numbers(written, model);
+  written.parameters.assign(model.network.parameters.begin(), model.network.parameters.end());
+  for (const auto& x : golden) {
+    written.golden_features.emplace_back(x.begin(), x.end());
+    written.golden_commands.push_back(model.predict(x));
+  }
+  require_numbers(written);
+  static_cast<WrittenRecords&>(written) = records_of_training(model, provenance);
+  written.name = name;
+  if constexpr (!std::is_same_v<typename Model::Vehicle, GivenAirframe>) {
+    written.vehicle_type = type_name<typename Model::Vehicle>();
+  }
+  return written;
+}
+
+}  // namespace detail
+}  // namespace pinnquad

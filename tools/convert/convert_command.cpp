@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// Weights in and out: a network of ONNX or safetensors becomes a model as any other, with golden vectors of its source;
+// a model becomes a network of ONNX or safetensors.
+//   pinnquad convert net.onnx --features features.toml --out my_model
+//   pinnquad convert my_model/model.block --out net.onnx
+#include "convert/convert_command.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "command_line/console.hpp"
+#include "command_line/file_roles.hpp"
+#include "command_line/folder_lock.hpp"
+#include "command_line/options.hpp"
+#include "convert/converted_model.hpp"
+#include "convert/features_file.hpp"
+#include "convert/onnx_file.hpp"
+#include "convert/safetensors.hpp"
+#include "pinnquad/deploy/block_model.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+struct ConvertOptions {
+  std::string source, features, out;
+  std::string name = "ConvertedModel";
+  bool in_double = false;
+};
+
+programs::ForeignNetwork read_network(const ConvertOptions& options, const programs::ForeignMeaning& meaning) {
+  const std::string bytes = file_text(options.source);
+  const bool is_onnx = std::filesystem::path(options.source).extension() == ".onnx";
+  programs::ForeignNetwork network =
+      is_onnx ? programs::read_onnx(bytes, options.source)
+              : programs::safetensors_network(programs::read_safetensors(bytes, options.source), options.source,
+                                              meaning);
+  network.source = printable(std::filesystem::path(options.source).filename().string());
+  return network;
+}
+
+/// Largest difference of a model's commands from its source's, over motions inside its envelope.
+double largest_difference(const BlockModel& model, const programs::ForeignNetwork& network,
+                          const programs::ForeignMeaning& meaning) {
+  constexpr std::size_t motions = 1000;
+  double largest = 0;
+  for (const programs::Numbers& x : programs::vectors_inside(meaning, motions, 2)) {
+    programs::Numbers shown = x;
+    if (!model.is_double()) {
+      std::transform(x.begin(), x.end(), shown.begin(), [](double v) { return double(static_cast<float>(v)); });
+    }
+    const Commands<double> own = model.commands(shown), source = programs::source_commands(network, meaning, shown);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const double difference = std::abs(own[i] - source[i]);
+      if (!(difference <= largest)) largest = difference;  // NaN stays
+    }
+  }
+  return largest;
+}
+
+template <class Scalar>
+void write_model(const ConvertOptions& options, const programs::ForeignNetwork& network,
+                 const programs::ForeignMeaning& meaning) {
+  detail::WrittenModel<Scalar> written = programs::converted_model<Scalar>(network, meaning, options.name);
+  const std::string block_path = options.out + "/model.block", header_path = options.out + "/model.hpp";
+  const std::vector<unsigned char> block = detail::block_beside_header(written);
+  const BlockModel model(block_path, block);
+  const double difference = std::max(model.golden_difference(), largest_difference(model, network, meaning));
+  if (!(difference <= programs::converted_tolerance)) {
+    char worst[32];
+    std::snprintf(worst, sizeof worst, "%.1e", difference);
+    throw InputError(
+        options.source, 0, 0, "a network that the model's arithmetic answers within 1e-6 of a command",
+        std::string("a difference of ") + worst + (model.is_double() ? "" : " (--double has more digits)"));
+  }
+  if (!model.angular_accelerations().empty()) {
+    if (const auto proven = model.proven_signs()) {
+      written.proven_slopes = {proven->held_slope[0], proven->held_slope[1], proven->held_slope[2]};
+    } else {
+      written.signs_unproven = true;
+    }
+  }
+  const programs::FolderLock folder(options.out);
+  AtomicFile header_file(header_path), block_file(block_path);
+  header_file.stream() << detail::header_text(written);
+  detail::write_block(block_file.stream(), block);
+  header_file.close();
+  block_file.close();
+  header_file.commit();
+  block_file.commit();
+  std::printf("%s: struct %s, %s, %d parameters\n", printable(header_path).c_str(), options.name.c_str(),
+              model.answer().c_str(), model.network().parameter_count());
+  std::printf(
+      "%s: %zu bytes; at most %.1e from the source's commands, over %d golden vectors and 1000 motions inside "
+      "the envelope\n",
+      printable(block_path).c_str(), block.size(), difference, model.golden_count());
+  if (written.signs_unproven) {
+    std::printf("not proven to follow the angular acceleration that is asked: pinnquad certify %s\n",
+                printable(block_path).c_str());
+  }
+}
+
+int convert(const ConvertOptions& options) {
+  if (!is_identifier(options.name)) {
+    throw std::invalid_argument("--name " + options.name +
+                                ": a C++ identifier was expected, no keyword and no name that C++ reserves");
+  }
+  if (options.features.empty()) {
+    throw std::invalid_argument("--features is required: no file of weights says what its numbers mean");
+  }
+  programs::FileRoles roles;
+  roles.reads("source", options.source);
+  roles.reads("--features", options.features);
+  roles.writes("--out", options.out + "/model.hpp");
+  roles.writes("--out", options.out + "/model.block");
+  const programs::ForeignMeaning meaning = programs::read_features_file(options.features);
+  const programs::ForeignNetwork network = read_network(options, meaning);
+  options.in_double ? write_model<double>(options, network, meaning) : write_model<float>(options, network, meaning);
+  return 0;
+}
+
+}  // namespace
+
+programs::Command programs::convert_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand(
+      "convert", "Makes a model of a network that was trained elsewhere, or a network for elsewhere of a model");
+  const auto options = std::make_shared<ConvertOptions>();
+  add_path(*line, "source", options->source, "FILE", "a network (.onnx, .safetensors), or a model (.block, .hpp)")
+      ->required();
+  add_path(*line, "--features", options->features, "FILE.toml",
+           "of a network: what its numbers mean (docs/convert.md)");
+  add_path(*line, "--out", options->out, "DIR|FILE",
+           "of a network the folder for model.hpp and model.block; of a model the network to write (.onnx, "
+           ".safetensors)")
+      ->required();
+  line->add_option("--name", options->name, "name of the exported struct")->type_name("NAME")->capture_default_str();
+  line->add_flag("--double", options->in_double, "numbers of the model in double, not in float");
+  line->footer(
+      "Examples:\n"
+      "  pinnquad convert net.onnx --features features.toml --out my_model\n"
+      "  pinnquad convert my_model/model.block --out net.onnx\n"
+      "Exit codes: 0; 2 bad input or a file that can't be read or written; 130 interrupted.");
+  return {line, [options] { return convert(*options); }};
+}

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+#include "convert/converted_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <tuple>
+
+#include "convert/folded_network.hpp"
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/exported/run_time_features.hpp"
+#include "pinnquad/exported/run_time_network.hpp"
+#include "pinnquad/exported/run_time_outputs.hpp"
+
+namespace programs {
+namespace {
+
+using namespace pinnquad;
+
+/// The library's feature sets without a window or a column.
+using FeatureSets = std::tuple<PaperFeatures, PaperFeaturesWithAltitude, AccelerationFeatures, PhysicsFeatures,
+                               PhysicsFeaturesWithoutVelocity, InverseFeatures, InverseFeaturesWithAltitude,
+                               InverseFeaturesWithoutVelocity, InverseAccelerations>;
+
+/// The model's features: places of the file's in the model's order, and the type that has them so.
+struct FeatureOrder {
+  std::vector<std::size_t> of_file;
+  std::string type, own_types;
+};
+
+std::size_t place_of(const std::vector<std::string>& names, const std::string& name) {
+  return std::size_t(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+template <class Set>
+bool take_set(const std::vector<std::string>& names, FeatureOrder& order) {
+  if (names.size() != std::size_t(Set::size)) return false;
+  order.of_file.clear();
+  for (const char* name : Set::names) {
+    const std::size_t place = place_of(names, name);
+    if (place == names.size()) return false;
+    order.of_file.push_back(place);
+  }
+  order.type = type_name<Set>();
+  return true;
+}
+template <class... Set>
+bool take_set(const std::vector<std::string>& names, FeatureOrder& order, const std::tuple<Set...>*) {
+  return (take_set<Set>(names, order) || ...);
+}
+
+/// Features of the motion in the library's order, measured columns behind them.
+FeatureOrder feature_order(const ForeignMeaning& meaning, const std::string& model) {
+  using Named = NamedFeaturesWithAltitude;
+  FeatureOrder order;
+  std::vector<std::string> motion, columns;
+  for (const ForeignFeature& feature : meaning.features) {
+    (feature.is_column ? columns : motion).push_back(feature.name);
+  }
+  if (motion.empty()) throw InputError(meaning.path, 0, 0, "a feature of the motion", "measured columns alone");
+  if (!take_set(motion, order, static_cast<const FeatureSets*>(nullptr))) {
+    order.of_file.clear();
+    std::string places;
+    bool altitude = false;
+    for (std::size_t i = 0; i < std::size_t(Named::size); ++i) {
+      if (place_of(motion, Named::names[i]) == motion.size()) continue;
+      order.of_file.push_back(place_of(motion, Named::names[i]));
+      places += ", " + std::to_string(i);
+      altitude = altitude || i == std::size_t(NamedFeatures::size);
+    }
+    order.type =
+        "pinnquad::Chosen<pinnquad::NamedFeatures" + std::string(altitude ? "WithAltitude" : "") + places + ">";
+  }
+  // places among the features of the motion become those among all of the file's
+  std::vector<std::size_t> all;
+  for (const std::size_t place : order.of_file) {
+    all.push_back(std::size_t(std::find_if(meaning.features.begin(), meaning.features.end(),
+                                           [&](const ForeignFeature& one) { return one.name == motion[place]; }) -
+                              meaning.features.begin()));
+  }
+  if (order.type.find("Chosen") != std::string::npos) {
+    order.own_types = "#include \"pinnquad/features/chosen_features.hpp\"\n\n";
+  }
+  std::string column_types;
+  for (std::size_t i = 0; i < meaning.features.size(); ++i) {
+    const ForeignFeature& feature = meaning.features[i];
+    if (!feature.is_column) continue;
+    const std::string type = model + "Column" + std::to_string(all.size() - motion.size() + 1);
+    all.push_back(i);
+    column_types += ", " + type;
+    order.own_types += "struct " + type + " {\n  static constexpr const char* name = " + detail::quoted(feature.name) +
+                       ";\n  static constexpr const char* unit = " + detail::quoted(feature.unit) + ";\n};\n\n";
+  }
+  if (!columns.empty()) order.type = "pinnquad::WithColumns<" + order.type + column_types + ">";
+  order.of_file = std::move(all);
+  return order;
+}
+
+/// y = scale x + shift.
+struct Line {
+  double scale, shift;
+};
+
+/// The scaler of a feature, in the library's unit: the file's, or one by which the envelope has a spread of 1.
+template <class Scalar>
+struct FeatureScaler {
+  Scalar mean, deviation;
+  Line to_network;  ///< what the network reads of the standardised feature, in double: nothing is lost to rounding
+};
+template <class Scalar>
+FeatureScaler<Scalar> scaler_of(const ForeignFeature& feature) {
+  const double middle = (feature.lower + feature.upper) / 2, spread = (feature.upper - feature.lower) / std::sqrt(12.0);
+  const double mean = (feature.is_standardised ? feature.mean : middle) / feature.unit_factor;
+  const double deviation = (feature.is_standardised ? feature.scale : spread) / feature.unit_factor;
+  FeatureScaler<Scalar> scaler{static_cast<Scalar>(mean), static_cast<Scalar>(deviation), {}};
+  // (factor (mean' + deviation' z) - file's mean) / file's scale
+  scaler.to_network.scale = feature.unit_factor * static_cast<double>(scaler.deviation) / feature.scale;
+  scaler.to_network.shift = (feature.unit_factor * static_cast<double>(scaler.mean) - feature.mean) / feature.scale;
+  return scaler;
+}
+
+/// Reads the widths of a chain against the file's. Throws InputError.
+void require_widths(const ForeignNetwork& network, const ForeignMeaning& meaning) {
+  if (network.inputs != meaning.features.size()) {
+    throw InputError(
+        meaning.path, 0, 0,
+        "a feature for each of the " + std::to_string(network.inputs) + " numbers that " + network.source + " reads",
+        std::to_string(meaning.features.size()) + " features");
+  }
+  if (network.outputs != meaning.outputs.size()) {
+    throw InputError(
+        meaning.path, 0, 0,
+        "an output for each of the " + std::to_string(network.outputs) + " numbers that " + network.source + " makes",
+        std::to_string(meaning.outputs.size()) + " outputs" + (meaning.outputs.size() == 4 ? " ([output] names)" : ""));
+  }
+}
+
+/// The chain between the library's standardised features and its outputs.
+std::vector<FoldedLayer> layers_of(const ForeignNetwork& network, const ForeignMeaning& meaning,
+                                   const std::vector<std::size_t>& of_file, const std::vector<Line>& to_network,
+                                   const std::vector<std::size_t>& outputs_of_file) {
+  Folder folder(network.inputs);
+  ForeignDense first{network.inputs, Numbers(network.inputs * network.inputs, 0), Numbers(network.inputs, 0)};
+  for (std::size_t own = 0; own < network.inputs; ++own) {
+    first.weights[of_file[own] * network.inputs + own] = to_network[own].scale;
+    first.bias[of_file[own]] = to_network[own].shift;
+  }
+  folder.add(dense_step(std::move(first)));
+  for (const ForeignStep& step : network.steps) folder.add(step);
+  ForeignDense last{network.outputs, Numbers(network.outputs * network.outputs, 0), Numbers(network.outputs, 0)};
+  bool is_identity = true;
+  for (std::size_t own = 0; own < network.outputs; ++own) {
+    const std::size_t place = outputs_of_file[own];
+    last.weights[own * network.outputs + place] = meaning.output_scale[place];
+    last.bias[own] = meaning.output_mean[place];
+    is_identity = is_identity && place == own && !(std::abs(last.bias[own]) > 0) &&
+                  !(std::abs(meaning.output_scale[place] - 1) > 0);
+  }
+  if (!is_identity) folder.add(dense_step(std::move(last)));
+  return std::move(folder).layers();
+}
+
+/// The schema of the file: `use(schema)`.
+template <class Use>
+void with_schema(const ForeignMeaning& meaning, const Use& use) {
+  RunTimeOutputs<double> outputs;
+  outputs.find(meaning.schema);
+  outputs.visit(use);
+}
+
+/// Places of the file's outputs in the schema's order.
+std::vector<std::size_t> output_order(const ForeignMeaning& meaning) {
+  std::vector<std::size_t> of_file;
+  with_schema(meaning, [&](auto schema) {
+    for (const char* name : OutputMap<decltype(schema)>::names) of_file.push_back(place_of(meaning.outputs, name));
+  });
+  return of_file;
+}
+
+/// The names of the layers, in a block's description ("Inputs") or as a header's type ("InputSize").
+template <class Scalar>
+std::string network_text(const char* inputs_word, std::size_t inputs, const std::vector<FoldedLayer>& layers) {
+  std::string text =
+      "pinnquad::Network<" + type_name<Scalar>() + ", pinnquad::" + inputs_word + "<" + std::to_string(inputs) + ">";
+  for (const FoldedLayer& layer : layers) {
+    text += ", " + (layer.dense.outputs() > 0 ? "pinnquad::Dense<" + std::to_string(layer.dense.outputs()) + ">"
+                                              : layer_text(layer.activation));
+  }
+  return text + ">";
+}
+
+}  // namespace
+
+template <class Scalar>
+detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& network, const ForeignMeaning& meaning,
+                                             const std::string& name) {
+  require_widths(network, meaning);
+  const FeatureOrder order = feature_order(meaning, name);
+  detail::WrittenModel<Scalar> model;
+  std::vector<Line> to_network;
+  std::vector<std::string> columns;
+  for (const std::size_t place : order.of_file) {
+    const ForeignFeature& feature = meaning.features[place];
+    const FeatureScaler<Scalar> scaler = scaler_of<Scalar>(feature);
+    model.input_mean.push_back(scaler.mean);
+    model.input_deviation.push_back(scaler.deviation);
+    model.envelope_lower.push_back(static_cast<Scalar>(feature.lower / feature.unit_factor));
+    model.envelope_upper.push_back(static_cast<Scalar>(feature.upper / feature.unit_factor));
+    to_network.push_back(scaler.to_network);
+    detail::append_texts(model.feature_texts, std::array{feature.name}, std::array{feature.unit});
+    if (!feature.is_column) continue;
+    model.column_names.push_back(feature.name);
+    model.column_units.push_back(feature.unit);
+  }
+  const std::vector<FoldedLayer> layers = layers_of(network, meaning, order.of_file, to_network, output_order(meaning));
+  for (const FoldedLayer& layer : layers) {
+    for (const Numbers* numbers : {&layer.dense.weights, &layer.dense.bias}) {
+      for (const double number : *numbers) model.parameters.push_back(static_cast<Scalar>(number));
+    }
+  }
+  model.output_mean.assign(network.outputs, Scalar(0));
+  model.output_deviation.assign(network.outputs, Scalar(1));
+  for (const Numbers& x : vectors_inside(meaning, 8, 1)) {
+    auto& golden = model.golden_features.emplace_back();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      golden.push_back(std::clamp(static_cast<Scalar>(x[i]), model.envelope_lower[i], model.envelope_upper[i]));
+    }
+    const Commands<double> u = source_commands(network, meaning, Numbers(golden.begin(), golden.end()));
+    auto& commands = model.golden_commands.emplace_back();
+    for (std::size_t i = 0; i < u.size(); ++i) commands[i] = static_cast<Scalar>(u[i]);
+  }
+
+  model.name = name;
+  model.answer = network_text<Scalar>("Inputs", network.inputs, layers);
+  model.network_type = network_text<Scalar>("InputSize", network.inputs, layers);
+  model.features_type = order.type;
+  model.own_types = order.own_types;
+  with_schema(meaning, [&](auto schema) {
+    using Map = OutputMap<decltype(schema)>;
+    model.outputs_type = type_name<decltype(schema)>();
+    model.output_texts = {detail::description_text<decltype(schema)>()};
+    detail::append_texts(model.output_texts, Map::names, Map::units);
+    detail::take_airframe<decltype(schema)>(model, meaning.airframe.name, meaning.airframe.value,
+                                            airframe_in<Scalar>(meaning.airframe.value));
+  });
+  model.command_meaning = meaning.command_meaning.value_or(command_meaning_of(meaning.airframe.value));
+  model.sample_period_s = meaning.sample_period_s;
+  model.training_data = network.source;
+  model.loss = "not known: converted";
+  RunTimeNetwork read;
+  if (!read.parse(model.answer)) {
+    throw std::invalid_argument(network.source + ": expected a network of at most " +
+                                std::to_string(RunTimePart::most_layers) + " layers, each of at most " +
+                                std::to_string(RunTimeNetwork::widest_layer) + " neurons, found " + model.answer);
+  }
+  detail::require_numbers(model);
+  return model;
+}
+
+template detail::WrittenModel<float> converted_model(const ForeignNetwork&, const ForeignMeaning&, const std::string&);
+template detail::WrittenModel<double> converted_model(const ForeignNetwork&, const ForeignMeaning&, const std::string&);
+
+Commands<double> source_commands(const ForeignNetwork& network, const ForeignMeaning& meaning,
+                                 const Numbers& features) {
+  const std::vector<std::size_t> of_file = feature_order(meaning, "").of_file;
+  Numbers x(features.size());
+  for (std::size_t own = 0; own < features.size(); ++own) {
+    const ForeignFeature& feature = meaning.features[of_file[own]];
+    x[of_file[own]] = (feature.unit_factor * features[own] - feature.mean) / feature.scale;
+  }
+  const Numbers made = network.evaluate(x);
+  Numbers outputs;
+  for (const std::size_t place : output_order(meaning)) {
+    outputs.push_back(made[place] * meaning.output_scale[place] + meaning.output_mean[place]);
+  }
+  RunTimeOutputs<double> schema;
+  schema.find(meaning.schema);
+  schema.prepare(meaning.airframe.value);
+  Commands<double> u{};
+  schema.commands(features.data(), outputs.data(), u.data());
+  return u;
+}
+
+std::vector<Numbers> vectors_inside(const ForeignMeaning& meaning, std::size_t count, std::uint64_t seed) {
+  std::vector<Numbers> vectors;
+  std::mt19937_64 engine(seed);
+  for (std::size_t i = 0; i < count; ++i) {
+    auto& x = vectors.emplace_back();
+    for (const std::size_t place : feature_order(meaning, "").of_file) {
+      const ForeignFeature& feature = meaning.features[place];
+      const double lower = feature.lower / feature.unit_factor, upper = feature.upper / feature.unit_factor;
+      x.push_back(i == 0 ? (lower + upper) / 2 : uniform(engine, lower, upper));
+    }
+  }
+  return vectors;
+}
+
+}  // namespace programs

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// In place of onnx_file.cpp where libonnx is not installed.
+#include <stdexcept>
+
+#include "convert/onnx_file.hpp"
+
+namespace programs {
+
+ForeignNetwork read_onnx(const std::string& /*bytes*/, const std::string& path) {
+  throw std::invalid_argument(
+      path +
+      ": this pinnquad was built without ONNX; as root: apt-get install libonnx-dev, then build "
+      "it again");
+}
+
+}  // namespace programs
