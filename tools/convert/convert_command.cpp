@@ -20,9 +20,11 @@
 #include "command_line/folder_lock.hpp"
 #include "command_line/options.hpp"
 #include "convert/converted_model.hpp"
+#include "convert/exported_network.hpp"
 #include "convert/features_file.hpp"
 #include "convert/onnx_file.hpp"
 #include "convert/safetensors.hpp"
+#include "model/given_model.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 
@@ -40,9 +42,9 @@ programs::ForeignNetwork read_network(const ConvertOptions& options, const progr
   const std::string bytes = file_text(options.source);
   const bool is_onnx = std::filesystem::path(options.source).extension() == ".onnx";
   programs::ForeignNetwork network =
-      is_onnx ? programs::read_onnx(bytes, options.source)
-              : programs::safetensors_network(programs::read_safetensors(bytes, options.source), options.source,
-                                              meaning);
+      is_onnx
+          ? programs::read_onnx(bytes, options.source)
+          : programs::safetensors_network(programs::read_safetensors(bytes, options.source), options.source, meaning);
   network.source = printable(std::filesystem::path(options.source).filename().string());
   return network;
 }
@@ -69,9 +71,9 @@ double largest_difference(const BlockModel& model, const programs::ForeignNetwor
 template <class Scalar>
 void write_model(const ConvertOptions& options, const programs::ForeignNetwork& network,
                  const programs::ForeignMeaning& meaning) {
-  detail::WrittenModel<Scalar> written = programs::converted_model<Scalar>(network, meaning, options.name);
+  pinnquad::detail::WrittenModel<Scalar> written = programs::converted_model<Scalar>(network, meaning, options.name);
   const std::string block_path = options.out + "/model.block", header_path = options.out + "/model.hpp";
-  const std::vector<unsigned char> block = detail::block_beside_header(written);
+  const std::vector<unsigned char> block = pinnquad::detail::block_beside_header(written);
   const BlockModel model(block_path, block);
   const double difference = std::max(model.golden_difference(), largest_difference(model, network, meaning));
   if (!(difference <= programs::converted_tolerance)) {
@@ -90,8 +92,8 @@ void write_model(const ConvertOptions& options, const programs::ForeignNetwork& 
   }
   const programs::FolderLock folder(options.out);
   AtomicFile header_file(header_path), block_file(block_path);
-  header_file.stream() << detail::header_text(written);
-  detail::write_block(block_file.stream(), block);
+  header_file.stream() << pinnquad::detail::header_text(written);
+  pinnquad::detail::write_block(block_file.stream(), block);
   header_file.close();
   block_file.close();
   header_file.commit();
@@ -108,7 +110,8 @@ void write_model(const ConvertOptions& options, const programs::ForeignNetwork& 
   }
 }
 
-int convert(const ConvertOptions& options) {
+/// Of a network a model.
+void convert_network(const ConvertOptions& options) {
   if (!is_identifier(options.name)) {
     throw std::invalid_argument("--name " + options.name +
                                 ": a C++ identifier was expected, no keyword and no name that C++ reserves");
@@ -124,6 +127,38 @@ int convert(const ConvertOptions& options) {
   const programs::ForeignMeaning meaning = programs::read_features_file(options.features);
   const programs::ForeignNetwork network = read_network(options, meaning);
   options.in_double ? write_model<double>(options, network, meaning) : write_model<float>(options, network, meaning);
+}
+
+/// Of a model a network.
+void convert_model(const ConvertOptions& options) {
+  const std::string ending = std::filesystem::path(options.out).extension().string();
+  if (ending != ".onnx" && ending != ".safetensors") {
+    throw std::invalid_argument("--out " + options.out +
+                                ": of a model a name that ends in .onnx or .safetensors was "
+                                "expected");
+  }
+  if (!options.features.empty()) throw std::invalid_argument("--features is of a network; a model says its own");
+  programs::FileRoles roles;
+  roles.reads("source", options.source);
+  roles.writes("--out", options.out);
+  const programs::ExportedNetwork network = programs::exported_network(programs::read_model(options.source));
+  const std::string bytes = ending == ".onnx" ? programs::onnx_bytes(network, options.out)
+                                              : programs::safetensors_of(network, options.source);
+  AtomicFile file(options.out);
+  file.stream() << bytes;
+  file.commit();
+  std::printf("%s: %zu bytes, from %zu features in physical units to the commands\n", printable(options.out).c_str(),
+              bytes.size(), network.inputs);
+}
+
+int convert(const ConvertOptions& options) {
+  const std::string ending = std::filesystem::path(options.source).extension().string();
+  const bool is_model = ending == ".block" || ending == ".hpp";
+  if (!is_model && ending != ".onnx" && ending != ".safetensors") {
+    throw std::invalid_argument(options.source +
+                                ": a name that ends in .onnx, .safetensors, .block or .hpp was expected");
+  }
+  is_model ? convert_model(options) : convert_network(options);
   return 0;
 }
 

@@ -89,8 +89,9 @@ FeatureOrder feature_order(const ForeignMeaning& meaning, const std::string& mod
     const std::string type = model + "Column" + std::to_string(all.size() - motion.size() + 1);
     all.push_back(i);
     column_types += ", " + type;
-    order.own_types += "struct " + type + " {\n  static constexpr const char* name = " + detail::quoted(feature.name) +
-                       ";\n  static constexpr const char* unit = " + detail::quoted(feature.unit) + ";\n};\n\n";
+    order.own_types +=
+        "struct " + type + " {\n  static constexpr const char* name = " + pinnquad::detail::quoted(feature.name) +
+        ";\n  static constexpr const char* unit = " + pinnquad::detail::quoted(feature.unit) + ";\n};\n\n";
   }
   if (!columns.empty()) order.type = "pinnquad::WithColumns<" + order.type + column_types + ">";
   order.of_file = std::move(all);
@@ -193,11 +194,11 @@ std::string network_text(const char* inputs_word, std::size_t inputs, const std:
 }  // namespace
 
 template <class Scalar>
-detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& network, const ForeignMeaning& meaning,
-                                             const std::string& name) {
+pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& network, const ForeignMeaning& meaning,
+                                                       const std::string& name) {
   require_widths(network, meaning);
   const FeatureOrder order = feature_order(meaning, name);
-  detail::WrittenModel<Scalar> model;
+  pinnquad::detail::WrittenModel<Scalar> model;
   std::vector<Line> to_network;
   std::vector<std::string> columns;
   for (const std::size_t place : order.of_file) {
@@ -208,7 +209,7 @@ detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& network, cons
     model.envelope_lower.push_back(static_cast<Scalar>(feature.lower / feature.unit_factor));
     model.envelope_upper.push_back(static_cast<Scalar>(feature.upper / feature.unit_factor));
     to_network.push_back(scaler.to_network);
-    detail::append_texts(model.feature_texts, std::array{feature.name}, std::array{feature.unit});
+    pinnquad::detail::append_texts(model.feature_texts, std::array{feature.name}, std::array{feature.unit});
     if (!feature.is_column) continue;
     model.column_names.push_back(feature.name);
     model.column_units.push_back(feature.unit);
@@ -239,10 +240,10 @@ detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& network, cons
   with_schema(meaning, [&](auto schema) {
     using Map = OutputMap<decltype(schema)>;
     model.outputs_type = type_name<decltype(schema)>();
-    model.output_texts = {detail::description_text<decltype(schema)>()};
-    detail::append_texts(model.output_texts, Map::names, Map::units);
-    detail::take_airframe<decltype(schema)>(model, meaning.airframe.name, meaning.airframe.value,
-                                            airframe_in<Scalar>(meaning.airframe.value));
+    model.output_texts = {pinnquad::detail::description_text<decltype(schema)>()};
+    pinnquad::detail::append_texts(model.output_texts, Map::names, Map::units);
+    pinnquad::detail::take_airframe<decltype(schema)>(model, meaning.airframe.name, meaning.airframe.value,
+                                                      airframe_in<Scalar>(meaning.airframe.value));
   });
   model.command_meaning = meaning.command_meaning.value_or(command_meaning_of(meaning.airframe.value));
   model.sample_period_s = meaning.sample_period_s;
@@ -254,12 +255,14 @@ detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& network, cons
                                 std::to_string(RunTimePart::most_layers) + " layers, each of at most " +
                                 std::to_string(RunTimeNetwork::widest_layer) + " neurons, found " + model.answer);
   }
-  detail::require_numbers(model);
+  pinnquad::detail::require_numbers(model);
   return model;
 }
 
-template detail::WrittenModel<float> converted_model(const ForeignNetwork&, const ForeignMeaning&, const std::string&);
-template detail::WrittenModel<double> converted_model(const ForeignNetwork&, const ForeignMeaning&, const std::string&);
+template pinnquad::detail::WrittenModel<float> converted_model(const ForeignNetwork&, const ForeignMeaning&,
+                                                               const std::string&);
+template pinnquad::detail::WrittenModel<double> converted_model(const ForeignNetwork&, const ForeignMeaning&,
+                                                                const std::string&);
 
 Commands<double> source_commands(const ForeignNetwork& network, const ForeignMeaning& meaning,
                                  const Numbers& features) {

@@ -87,7 +87,7 @@ ForeignFeature feature_of(const std::string& path, const toml::table& table) {
   feature.mean = keys.number("mean", logs::of_either_sign, 0);
   feature.scale = keys.number("scale", logs::above_zero, 1);
   if (feature.is_standardised) {
-    const double centre = feature.mean, reach = detail::furthest_deviations * feature.scale;
+    const double centre = feature.mean, reach = pinnquad::detail::furthest_deviations * feature.scale;
     if (!(centre - feature.lower <= reach && feature.upper - centre <= reach)) {
       keys.refuse(*keys.optional(keys.optional("scale") ? "scale" : "mean"),
                   "a mean and a scale by which the envelope lies within 131072 of 0", "others");
@@ -123,13 +123,13 @@ template <class... Schema>
 bool find_schema(const std::vector<std::string>& names, std::string& description, const std::tuple<Schema...>*) {
   const auto take = [&](auto schema) {
     using Map = OutputMap<decltype(schema)>;
-    using Base = typename detail::BaseOf<decltype(schema)>::type;
-    if (!std::is_same_v<Base, detail::NoBase>) return false;
+    using Base = typename pinnquad::detail::BaseOf<decltype(schema)>::type;
+    if (!std::is_same_v<Base, pinnquad::detail::NoBase>) return false;
     std::vector<std::string> own(Map::names.begin(), Map::names.end()), given = names;
     std::sort(own.begin(), own.end());
     std::sort(given.begin(), given.end());
     if (own != given) return false;
-    description = detail::description_text<decltype(schema)>();
+    description = pinnquad::detail::description_text<decltype(schema)>();
     return true;
   };
   return (take(Schema{}) || ...);
@@ -140,7 +140,7 @@ void take_outputs(const std::string& path, TomlTable& root, ForeignMeaning& mean
   meaning.outputs = {"u1", "u2", "u3", "u4"};
   meaning.output_mean.assign(4, 0);
   meaning.output_scale.assign(4, 1);
-  meaning.schema = detail::description_text<CommandOutputs>();
+  meaning.schema = pinnquad::detail::description_text<CommandOutputs>();
   const toml::node* node = root.optional("output");
   if (!node) return;
   if (!node->is_table()) root.refuse(*node, table_expected, logs::described(*node));

@@ -20,7 +20,7 @@ struct FoldedLayer {
 
 /// sigmoid(v) = (1 + tanh(v / 2)) / 2 is the only activation that is none of the library's.
 inline std::string layer_text(ForeignActivation activation) {
-  constexpr std::array<const char*, 7> names = {"Relu", "Tanh", "Tanh", "Gelu", "Silu", "Softplus", "Sine"};
+  constexpr std::array<const char*, 8> names = {"Relu", "Tanh", "Tanh", "Gelu", "Silu", "Softplus", "Sine", "Clip"};
   return "pinnquad::" + std::string(names[static_cast<std::size_t>(activation)]);
 }
 

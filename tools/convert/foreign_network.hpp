@@ -15,10 +15,11 @@ namespace programs {
 
 using Numbers = std::vector<double>;
 
-/// Activations that a source may have. A sigmoid becomes a tanh between two affine maps.
-enum class ForeignActivation { relu, tanh, sigmoid, gelu, silu, softplus, sine };
-inline constexpr std::array<const char*, 7> foreign_activations = {"relu", "tanh",     "sigmoid", "gelu",
-                                                                   "silu", "softplus", "sine"};
+/// Activations that a source may have, and the library's Clip. A sigmoid becomes a tanh between two affine maps.
+enum class ForeignActivation { relu, tanh, sigmoid, gelu, silu, softplus, sine, clip };
+inline constexpr std::array<const char*, 8> foreign_activations = {"relu", "tanh",     "sigmoid", "gelu",
+                                                                   "silu", "softplus", "sine",    "clip"};
+inline constexpr double clip_bound = 3.5;  ///< of the library's Clip, which is PyTorch's Hardtanh(-3.5, 3.5)
 
 /// By its definition, with the C library's functions.
 inline double activated(ForeignActivation activation, double v) {
@@ -30,6 +31,7 @@ inline double activated(ForeignActivation activation, double v) {
     case ForeignActivation::silu: return v / (1 + std::exp(-v));
     case ForeignActivation::softplus: return v > 30 ? v : std::log1p(std::exp(v));
     case ForeignActivation::sine: return std::sin(v);
+    case ForeignActivation::clip: return v < -clip_bound ? -clip_bound : (v > clip_bound ? clip_bound : v);
   }
   return v;
 }
@@ -58,6 +60,21 @@ struct ForeignNetwork {
   /// As the source says, operator by operator: nothing of `steps` plays a part.
   std::function<Numbers(const Numbers&)> evaluate;
 };
+
+/// y = step(x).
+inline Numbers taken(const ForeignStep& step, const Numbers& x) {
+  Numbers y = step.dense.outputs() > 0 ? step.dense.bias : x;
+  if (step.dense.outputs() > 0) {
+    for (std::size_t row = 0; row < y.size(); ++row) {
+      for (std::size_t k = 0; k < x.size(); ++k) y[row] += step.dense.weights[row * x.size() + k] * x[k];
+    }
+  } else if (!step.scale.empty()) {
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = step.scale[i] * x[i] + step.shift[i];
+  } else {
+    for (double& value : y) value = activated(step.activation, value);
+  }
+  return y;
+}
 
 inline ForeignStep dense_step(ForeignDense dense) {
   ForeignStep step;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "pinnquad/io/file_error.hpp"
+#include "pinnquad/version.hpp"
 
 namespace programs {
 namespace {
@@ -584,7 +585,138 @@ class Graph {
   std::string name_;                   ///< of the node at hand, for messages
 };
 
+/// Nodes one after the other, each with the tensors that it takes.
+class GraphWriter {
+ public:
+  explicit GraphWriter(const ExportedNetwork& network) : network_(network) {
+    model_.set_ir_version(7);
+    model_.set_producer_name("pinnquad");
+    model_.set_producer_version(PINNQUAD_VERSION);
+    model_.add_opset_import()->set_version(13);
+    for (const auto& [word, value] : network.facts) {
+      auto* fact = model_.add_metadata_props();
+      fact->set_key(word);
+      fact->set_value(value);
+    }
+    graph_ = model_.mutable_graph();
+    graph_->set_name(network.name);
+    describe(graph_->add_input(), "features", network.inputs);
+    write_nodes();
+    describe(graph_->add_output(), "commands", network.of_outputs.outputs());
+  }
+
+  std::string bytes() const { return model_.SerializeAsString(); }
+
+ private:
+  using Names = std::vector<std::string>;
+
+  int type() const { return network_.is_double ? onnx::TensorProto::DOUBLE : onnx::TensorProto::FLOAT; }
+
+  void describe(onnx::ValueInfoProto* value, const char* name, std::size_t width) const {
+    value->set_name(name);
+    auto* tensor = value->mutable_type()->mutable_tensor_type();
+    tensor->set_elem_type(type());
+    tensor->mutable_shape()->add_dim()->set_dim_param("rows");
+    tensor->mutable_shape()->add_dim()->set_dim_value(static_cast<std::int64_t>(width));
+  }
+
+  /// The name of a constant that is added.
+  std::string constant(const Numbers& values, const std::vector<std::size_t>& shape) {
+    auto* tensor = graph_->add_initializer();
+    tensor->set_name("constant_" + std::to_string(graph_->initializer_size()));
+    tensor->set_data_type(type());
+    for (const std::size_t size : shape) tensor->add_dims(static_cast<std::int64_t>(size));
+    for (const double value : values) {
+      network_.is_double ? tensor->add_double_data(value) : tensor->add_float_data(static_cast<float>(value));
+    }
+    return tensor->name();
+  }
+  std::string row(const Numbers& values) { return constant(values, {values.size()}); }
+
+  /// The name of what the node makes.
+  std::string node(const char* op, const Names& inputs) {
+    auto* made = graph_->add_node();
+    made->set_op_type(op);
+    for (const std::string& input : inputs) made->add_input(input);
+    made->set_name(std::string(op) + "_" + std::to_string(graph_->node_size()));
+    made->add_output(made->name());
+    return made->name();
+  }
+  std::string gemm(const std::string& x, const ForeignDense& dense) {
+    const std::string made =
+        node("Gemm", {x, constant(dense.weights, {dense.outputs(), dense.inputs}), row(dense.bias)});
+    auto* transposed = graph_->mutable_node(graph_->node_size() - 1)->add_attribute();
+    transposed->set_name("transB");
+    transposed->set_type(onnx::AttributeProto::INT);
+    transposed->set_i(1);
+    return made;
+  }
+  std::string gathered(const std::string& x, const std::vector<std::size_t>& places) {
+    auto* tensor = graph_->add_initializer();
+    tensor->set_name("places_" + std::to_string(graph_->initializer_size()));
+    tensor->set_data_type(onnx::TensorProto::INT64);
+    tensor->add_dims(static_cast<std::int64_t>(places.size()));
+    for (const std::size_t place : places) tensor->add_int64_data(static_cast<std::int64_t>(place));
+    const std::string made = node("Gather", {x, tensor->name()});
+    auto* axis = graph_->mutable_node(graph_->node_size() - 1)->add_attribute();
+    axis->set_name("axis");
+    axis->set_type(onnx::AttributeProto::INT);
+    axis->set_i(1);
+    return made;
+  }
+  std::string clipped(const std::string& x, const Numbers& lower, const Numbers& upper) {
+    return node("Min", {node("Max", {x, row(lower)}), row(upper)});
+  }
+  std::string activation(const std::string& x, ForeignActivation activation) {
+    const auto number = [this](double value) { return constant({value}, {}); };
+    switch (activation) {
+      case ForeignActivation::relu: return node("Relu", {x});
+      case ForeignActivation::tanh: return node("Tanh", {x});
+      case ForeignActivation::sigmoid: return node("Sigmoid", {x});
+      case ForeignActivation::softplus: return node("Softplus", {x});
+      case ForeignActivation::sine: return node("Sin", {x});
+      case ForeignActivation::clip: return node("Clip", {x, number(-clip_bound), number(clip_bound)});
+      case ForeignActivation::silu: return node("Mul", {x, node("Sigmoid", {x})});
+      case ForeignActivation::gelu: {
+        const std::string gate = node("Add", {node("Erf", {node("Div", {x, number(std::sqrt(2.0))})}), number(1)});
+        return node("Mul", {node("Mul", {x, gate}), number(0.5)});
+      }
+    }
+    return x;
+  }
+
+  void write_nodes() {
+    std::string x = "features";
+    if (!network_.least.empty()) x = clipped(x, network_.least, network_.most);
+    const std::string z = node("Div", {node("Sub", {x, row(network_.mean)}), row(network_.deviation)});
+    std::string sum;
+    for (const ExportedPart& part : network_.parts) {
+      std::string v = part.shown.empty() ? z : gathered(z, part.shown);
+      for (const ForeignStep& step : part.steps) {
+        v = step.dense.outputs() > 0 ? gemm(v, step.dense) : activation(v, step.activation);
+      }
+      if (!part.lower.empty()) v = clipped(v, part.lower, part.upper);
+      sum = sum.empty() ? v : node("Add", {sum, v});
+    }
+    std::string u = node("Add", {node("Mul", {sum, row(network_.output_deviation)}), row(network_.output_mean)});
+    if (!network_.is_plain_output()) u = gemm(u, network_.of_outputs);
+    if (!network_.of_features.empty()) {
+      const ForeignDense dense{network_.inputs, network_.of_features, Numbers(network_.of_outputs.outputs(), 0)};
+      u = node("Add", {u, gemm("features", dense)});
+    }
+    graph_->mutable_node(graph_->node_size() - 1)->set_output(0, "commands");
+  }
+
+  const ExportedNetwork& network_;
+  onnx::ModelProto model_;
+  onnx::GraphProto* graph_ = nullptr;
+};
+
 }  // namespace
+
+std::string onnx_bytes(const ExportedNetwork& network, const std::string& /*path*/) {
+  return GraphWriter(network).bytes();
+}
 
 ForeignNetwork read_onnx(const std::string& bytes, const std::string& path) { return Graph(bytes, path).network(); }
 

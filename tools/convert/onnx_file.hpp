@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "convert/exported_network.hpp"
 #include "convert/foreign_network.hpp"
 
 namespace programs {
@@ -16,5 +17,8 @@ namespace programs {
 /// node: an operator that is none of these, shapes that are not known or do not fit, another type of numbers, data in
 /// another file, numbers that are none.
 ForeignNetwork read_onnx(const std::string& bytes, const std::string& path);
+
+/// The bytes of a model: features in physical units, [rows, features], to commands, [rows, 4]. `path` is for messages.
+std::string onnx_bytes(const ExportedNetwork& network, const std::string& path);
 
 }  // namespace programs

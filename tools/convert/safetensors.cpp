@@ -42,6 +42,14 @@ double read_number(const char* from) {
   return static_cast<double>(number);
 }
 
+template <class Bits, class Number>
+void append_number(Number number, std::string& to) {
+  static_assert(sizeof(Bits) == sizeof(Number));
+  Bits bits = 0;
+  std::memcpy(&bits, &number, sizeof bits);
+  for (std::size_t i = 0; i < sizeof bits; ++i) to += static_cast<char>(bits >> (8 * i) & 0xff);
+}
+
 /// A tensor of the header: where its bytes are.
 struct Placed {
   std::string name, type;
@@ -374,6 +382,30 @@ Tensors read_safetensors(const std::string& bytes, const std::string& path) {
 
 ForeignNetwork safetensors_network(const Tensors& tensors, const std::string& path, const ForeignMeaning& meaning) {
   return Sequential(tensors, path, meaning).network();
+}
+
+std::string safetensors_bytes(const std::vector<std::pair<std::string, Tensor>>& tensors, bool is_double,
+                              const std::map<std::string, std::string>& metadata) {
+  nlohmann::json header = nlohmann::json::object();
+  header["__metadata__"] = metadata;
+  std::string data;
+  for (const auto& [name, tensor] : tensors) {
+    const std::size_t begin = data.size();
+    for (const double value : tensor.values) {
+      if (is_double) {
+        append_number<std::uint64_t>(value, data);
+      } else {
+        append_number<std::uint32_t>(static_cast<float>(value), data);
+      }
+    }
+    header[name] = {
+        {"dtype", is_double ? "F64" : "F32"}, {"shape", tensor.shape}, {"data_offsets", {begin, data.size()}}};
+  }
+  std::string text = header.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  text.resize((text.size() + 7) / 8 * 8, ' ');
+  std::string bytes;
+  append_number<std::uint64_t>(static_cast<std::uint64_t>(text.size()), bytes);
+  return bytes + text + data;
 }
 
 }  // namespace programs
