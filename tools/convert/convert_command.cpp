@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -49,7 +51,8 @@ programs::ForeignNetwork read_network(const ConvertOptions& options, const progr
   return network;
 }
 
-/// Largest difference of a model's commands from its source's, over motions inside its envelope.
+/// Largest difference of a model's commands from its source's, over motions inside its envelope; of a command beyond 1,
+/// which no motor follows, the share.
 double largest_difference(const BlockModel& model, const programs::ForeignNetwork& network,
                           const programs::ForeignMeaning& meaning) {
   constexpr std::size_t motions = 1000;
@@ -61,11 +64,30 @@ double largest_difference(const BlockModel& model, const programs::ForeignNetwor
     }
     const Commands<double> own = model.commands(shown), source = programs::source_commands(network, meaning, shown);
     for (std::size_t i = 0; i < own.size(); ++i) {
-      const double difference = std::abs(own[i] - source[i]);
+      const double difference = std::abs(own[i] - source[i]) / std::max(1.0, std::abs(source[i]));
       if (!(difference <= largest)) largest = difference;  // NaN stays
     }
   }
   return largest;
+}
+
+[[noreturn]] void refuse_difference(const ConvertOptions& options, double difference) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", difference);
+  throw InputError(options.source, 0, 0, "a network that the model's arithmetic answers within 1e-6 of a command",
+                   std::string("a difference of ") + text + (options.in_double ? "" : " (--double has more digits)"));
+}
+
+/// Of a block whose weights may not give its golden commands: BlockModel refuses such a one.
+template <class Scalar>
+double golden_difference(const std::vector<unsigned char>& block) {
+  std::vector<std::uint64_t> aligned((block.size() + 7) / 8);
+  std::memcpy(aligned.data(), block.data(), block.size());
+  const auto model = std::make_unique<RunTimeModel<Scalar>>();
+  BlockFault fault;
+  if (RunTimeModel<Scalar>::open(aligned.data(), block.size(), *model, fault) != Status::ok) return 0;  // it says why
+  std::vector<Scalar> work(model->workspace());
+  return static_cast<double>(model->golden_difference(work.data()));
 }
 
 template <class Scalar>
@@ -74,15 +96,11 @@ void write_model(const ConvertOptions& options, const programs::ForeignNetwork& 
   pinnquad::detail::WrittenModel<Scalar> written = programs::converted_model<Scalar>(network, meaning, options.name);
   const std::string block_path = options.out + "/model.block", header_path = options.out + "/model.hpp";
   const std::vector<unsigned char> block = pinnquad::detail::block_beside_header(written);
+  double difference = golden_difference<Scalar>(block);
+  if (!(difference <= golden_tolerance)) refuse_difference(options, difference);
   const BlockModel model(block_path, block);
-  const double difference = std::max(model.golden_difference(), largest_difference(model, network, meaning));
-  if (!(difference <= programs::converted_tolerance)) {
-    char worst[32];
-    std::snprintf(worst, sizeof worst, "%.1e", difference);
-    throw InputError(
-        options.source, 0, 0, "a network that the model's arithmetic answers within 1e-6 of a command",
-        std::string("a difference of ") + worst + (model.is_double() ? "" : " (--double has more digits)"));
-  }
+  difference = std::max(difference, largest_difference(model, network, meaning));
+  if (!(difference <= programs::converted_tolerance)) refuse_difference(options, difference);
   if (!model.angular_accelerations().empty()) {
     if (const auto proven = model.proven_signs()) {
       written.proven_slopes = {proven->held_slope[0], proven->held_slope[1], proven->held_slope[2]};

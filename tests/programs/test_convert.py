@@ -1,0 +1,723 @@
+# SPDX-License-Identifier: MIT
+"""convert: a network of safetensors or ONNX becomes a model that answers as its source does, and a model a network that
+answers as the model does. The source's answers are worked out here by loops in double, and by PyTorch where it is."""
+import json
+import math
+import random
+import re
+import struct
+from pathlib import Path
+
+import pytest
+from conftest import SOURCE, Program, listing, no_partial_files
+from exported import Header
+
+TOLERANCE = 1e-6  # of a command
+UNITS = {"vdot_bx": "m/s^2", "s_z": "m/s^2", "wdot_x": "rad/s^2", "wdot_y": "rad/s^2", "wdot_z": "rad/s^2",
+         "w_x": "rad/s", "down_z": "1", "altitude": "m", "battery_voltage": "V"}
+# name, lower, upper: in an order of no feature set of the library
+FEATURES = [("s_z", -25, 0), ("wdot_y", -60, 60), ("wdot_x", -60, 60), ("w_x", -5, 5), ("wdot_z", -10, 10)]
+ACTIVATIONS = {"relu": lambda v: max(v, 0.0), "tanh": math.tanh, "sigmoid": lambda v: 1 / (1 + math.exp(-v)),
+               "gelu": lambda v: v * (1 + math.erf(v / math.sqrt(2))) / 2, "silu": lambda v: v / (1 + math.exp(-v)),
+               "softplus": lambda v: math.log1p(math.exp(v)), "sine": math.sin, "identity": lambda v: v}
+AIRFRAME = '[airframe]\nname = "paper_quadrotor"\n'
+
+
+def features_toml(*lines, features=FEATURES, per_feature=lambda lower, upper: "", units=UNITS, tables=AIRFRAME):
+    """Writes features.toml."""
+    rows = "".join(f'  {{ name = "{name}", unit = "{units[name]}", lower = {lower}, upper = {upper}'
+                   f'{per_feature(lower, upper)} }},\n' for name, lower, upper in features)
+    Path("features.toml").write_text("\n".join([f"feature = [\n{rows}]", *lines, tables]))
+
+
+def mean_and_scale(lower, upper):
+    return f", mean = {(lower + upper) / 2 + 0.1}, scale = {(upper - lower) / 4}"
+
+
+def safetensors(path, tensors, number="f", change=lambda header: None):
+    """Writes {name: (shape, values)}; change(header) edits its JSON."""
+    header, data = {}, b""
+    for name, (shape, values) in tensors.items():
+        raw = struct.pack(f"<{len(values)}{number}", *values)
+        header[name] = {"dtype": {"f": "F32", "d": "F64"}[number], "shape": list(shape),
+                        "data_offsets": [len(data), len(data) + len(raw)]}
+        data += raw
+    edited = change(header)
+    text = edited if isinstance(edited, bytes) else json.dumps(header).encode()
+    Path(path).write_bytes(struct.pack("<Q", len(text)) + text + data)
+    return path
+
+
+def as_float(values):
+    return list(struct.unpack(f"{len(values)}f", struct.pack(f"{len(values)}f", *values)))
+
+
+class Network:
+    """Layers of random numbers, as floats: a width is Linear, "norm" is BatchNorm1d, a word an activation."""
+
+    def __init__(self, inputs, *layers, seed=1):
+        rng = random.Random(seed)
+        self.tensors, self.layers, width = {}, [], inputs
+        draw = lambda count, least, most: as_float([rng.uniform(least, most) for _ in range(count)])
+        for number, layer in enumerate(layers):
+            if layer == "norm":
+                parts = {"weight": draw(width, 0.5, 2), "bias": draw(width, -1, 1), "running_mean": draw(width, -1, 1),
+                         "running_var": draw(width, 0.3, 2)}
+                self.tensors.update({f"{number}.{name}": ((width,), values) for name, values in parts.items()})
+                self.layers.append(("norm", *parts.values()))
+            elif isinstance(layer, int):
+                bound = 1 / math.sqrt(width)
+                weights, biases = draw(width * layer, -bound, bound), draw(layer, -bound, bound)
+                self.tensors[f"{number}.weight"] = (layer, width), weights
+                self.tensors[f"{number}.bias"] = (layer,), biases
+                self.layers.append((layer, weights, biases))
+                width = layer
+            else:
+                self.layers.append((layer,))
+
+    def __call__(self, x):
+        for kind, *numbers in self.layers:
+            if kind == "norm":
+                x = [(v - mean) / math.sqrt(variance + 1e-5) * gamma + beta
+                     for v, gamma, beta, mean, variance in zip(x, *numbers)]
+            elif isinstance(kind, int):
+                weights, biases = numbers
+                x = [bias + sum(w * v for w, v in zip(weights[row * len(x) : (row + 1) * len(x)], x))
+                     for row, bias in enumerate(biases)]
+            else:
+                x = [ACTIVATIONS[kind](v) for v in x]
+        return x
+
+
+def golden(header):
+    """Features by name, and commands, of each golden vector."""
+    names = header.names()
+    features, commands = header.numbers("golden_features"), header.numbers("golden_commands")
+    rows = [dict(zip(names, features[at : at + len(names)])) for at in range(0, len(features), len(names))]
+    assert len(rows) == 8 and len(commands) == 32
+    return [(row, commands[4 * i : 4 * i + 4]) for i, row in enumerate(rows)]
+
+
+def worst(header, answer):
+    """Largest difference of a golden command from answer({feature: value})."""
+    return max(abs(a - b) for row, commands in golden(header) for a, b in zip(answer(row), commands))
+
+
+def converted(pinnquad, source, *words):
+    done = pinnquad("convert", source, "--features", "features.toml", "--out", "model", *words)
+    said = json.loads(pinnquad("block --json model/model.block").out)
+    assert said["golden_difference"] <= TOLERANCE
+    header = Header("model/model.hpp")
+    assert said["contents_hash"] in header.text
+    assert float(re.search(r"at most (\S+) from", done.out).group(1)) <= TOLERANCE
+    return header
+
+
+@pytest.mark.parametrize("activation", [name for name in ACTIVATIONS if name != "identity"])
+@pytest.mark.parametrize("norm", ["", "before", "behind"])
+def test_safetensors(pinnquad, activation, norm):
+    """Each activation, with batch norm before it or behind it; a sigmoid behind the last layer."""
+    layers = [12, *["norm"] * (norm == "before"), activation, *["norm"] * (norm == "behind"), 12, activation, 4, "sigmoid"]
+    network = Network(len(FEATURES), *layers)
+    safetensors("net.safetensors", network.tensors)
+    features_toml(f'activations = ["{activation}", "{activation}", "sigmoid"]', per_feature=mean_and_scale)
+    header = converted(pinnquad, "net.safetensors")
+    standardised = lambda row: [(row[name] - (lower + upper) / 2 - 0.1) / ((upper - lower) / 4)
+                                for name, lower, upper in FEATURES]
+    assert worst(header, lambda row: network(standardised(row))) <= TOLERANCE
+    # as the library's own models: the header has no sigmoid and no norm
+    assert "Sigmoid" not in header.text and "BatchNorm" not in header.text
+
+
+def test_physical_values(pinnquad):
+    """A network that reads no standardised numbers, in units of its own; one that names its tensors behind a prefix;
+    modules without numbers that do nothing."""
+    network = Network(len(FEATURES), "norm", 8, "tanh", "identity", 4)
+    # what reads degrees has weights as small
+    network.tensors = {f"model.net.{name}": tensor for name, tensor in network.tensors.items()}
+    safetensors("net.safetensors", network.tensors, "d")
+    other = {**UNITS, "w_x": "deg/s", "wdot_z": "deg/s^2", "s_z": "g"}
+    features_toml('activations = ["tanh", "identity"]', units=other)
+    header = converted(pinnquad, "net.safetensors")
+    factor = {"w_x": 180 / math.pi, "wdot_z": 180 / math.pi, "s_z": 1 / 9.80665}
+    shown = lambda row: [row[name] * factor.get(name, 1) for name, *_ in FEATURES]
+    assert worst(header, lambda row: network(shown(row))) <= TOLERANCE
+    lower = dict(zip(header.names(), header.numbers("envelope_lower")))
+    assert lower["w_x"] == pytest.approx(math.radians(-5)) and lower["s_z"] == pytest.approx(-25 * 9.80665)
+
+
+def test_outputs(pinnquad):
+    """Commands in another order, scaled; and a network that makes the sums about the axes."""
+    network = Network(len(FEATURES), 8, "relu", 4)
+    safetensors("net.safetensors", network.tensors)
+    output = "[output]\nnames = {}\nmean = [0.5, 0.4, 0.3, 0.2]\nscale = [0.1, 0.2, 0.3, 0.4]\n"
+    made = lambda row: [y * scale + mean for y, scale, mean in zip(
+        network([row[name] for name, *_ in FEATURES]), (0.1, 0.2, 0.3, 0.4), (0.5, 0.4, 0.3, 0.2))]
+    features_toml('activations = "relu"', tables=output.format('["u3", "u1", "u4", "u2"]') + AIRFRAME)
+    header = converted(pinnquad, "net.safetensors")
+    assert worst(header, lambda row: [made(row)[place] for place in (1, 3, 0, 2)]) <= TOLERANCE
+    features_toml('activations = "relu"', tables=output.format('["sum", "roll_sum", "pitch_sum", "yaw_sum"]') + AIRFRAME)
+    header = converted(pinnquad, "net.safetensors")
+    assert "pinnquad::AxisCommandOutputs" in header.text
+    signs = header.numbers("motor_torque_signs")
+    commands = lambda y: [(y[0] + sum(signs[3 * i + k] * y[k + 1] for k in range(3))) / 4 for i in range(4)]
+    assert worst(header, lambda row: commands(made(row))) <= TOLERANCE
+
+
+def test_double(pinnquad):
+    """A network whose numbers float has no digits for: refused, and taken in double."""
+    network = Network(len(FEATURES), 8, "tanh", 4)
+    shape, weights = network.tensors["2.weight"]
+    network.tensors["2.weight"] = shape, [3000 * w for w in weights]
+    network.layers[2] = (4, network.tensors["2.weight"][1], network.layers[2][2])
+    safetensors("net.safetensors", network.tensors, "d")
+    features_toml('activations = "tanh"', per_feature=mean_and_scale)
+    pinnquad.refused("convert net.safetensors --features features.toml --out model", at="net.safetensors",
+                     keyword="--double")
+    assert not Path("model").exists()
+    header = converted(pinnquad, "net.safetensors", "--double")
+    assert "using Scalar = double;" in header.text
+
+
+def test_feature_sets(pinnquad, compiler):
+    """A set of the library by its name; else a choice of its features, with the altitude and measured columns. The
+    header compiles without exceptions and run-time types, passes its self test and refuses what is outside."""
+    columns = [("battery_voltage", 13, 17), *FEATURES, ("altitude", 0.1, 3)]
+    for name, features in {"InverseAccelerations": [FEATURES[i] for i in (4, 2, 0, 1)], "WithColumns": columns}.items():
+        network = Network(len(features), 8, "gelu", 4)
+        safetensors("net.safetensors", network.tensors)
+        features_toml('activations = "gelu"', features=features, per_feature=mean_and_scale)
+        header = converted(pinnquad, "net.safetensors")
+        features_type = re.search("using Features = (.*);", header.text).group(1)
+        assert features_type.startswith(f"pinnquad::{name}")
+        standardised = lambda row: [(row[n] - (lower + upper) / 2 - 0.1) / ((upper - lower) / 4)
+                                    for n, lower, upper in features]
+        assert worst(header, lambda row: network(standardised(row))) <= TOLERANCE
+    assert features_type == ("pinnquad::WithColumns<pinnquad::Chosen<pinnquad::NamedFeaturesWithAltitude, 3, 4, 5, 9, "
+                             "18, 28>, ConvertedModelColumn1>")
+    Path("main.cpp").write_text("""
+#include "model/model.hpp"
+#include <cmath>
+int main() {
+  const pinnquad::InverseDynamics<ConvertedModel> inverse;
+  if (pinnquad::self_test(inverse) != pinnquad::Status::ok) return 1;
+  ConvertedModel::Inputs hover;
+  pinnquad::Commands<float> u{};
+  if (inverse.predict(hover, u) != pinnquad::Status::not_finite) return 2;
+  hover.altitude_m = 1;
+  hover.column<ConvertedModelColumn1>() = 15;
+  if (inverse.predict(hover, u) != pinnquad::Status::ok) return 3;
+  for (const float one : u) {
+    if (!std::isfinite(one)) return 4;
+  }
+  return 0;
+}
+""")
+    compiler("-O1 -fno-exceptions -fno-rtti -ffp-contract=off -Wall -Wextra -Werror -I. main.cpp -o main")
+    Program("./main")()
+
+
+def test_commands_take_it(pinnquad, flown):
+    """certify, evaluate and loop know no difference. An affine network is proven where its slopes are."""
+    features = [("wdot_x", -200, 200), ("wdot_y", -200, 200), ("wdot_z", -50, 50), ("s_z", -40, 10)]
+    features_toml(features=features)
+    signs = [(-1, 1, 1), (1, -1, 1), (1, 1, -1), (-1, -1, -1)]
+    slopes = [0.002, 0.002, 0.01]
+    weights = [w for row in signs for w in [*(s * k for s, k in zip(row, slopes)), -0.05]]
+    safetensors("affine.safetensors", {"0.weight": ((4, 4), weights), "0.bias": ((4,), [0.0] * 4)})
+    header = converted(pinnquad, "affine.safetensors")
+    assert "PROVEN" in header.text and "NOT PROVEN" not in header.text
+    assert "proven" in pinnquad("certify model/model.hpp").out
+    report = json.loads(pinnquad("certify model/model.block --json").out)
+    assert report["held_slope"]["roll"] == pytest.approx(4 * slopes[0], rel=1e-5)
+    flight = flown("--seed 9 --samples 500")
+    assert "R^2" in pinnquad("evaluate model/model.block --flight", flight, code=(0, 1)).out
+    # the other way round: refuted
+    safetensors("affine.safetensors", {"0.weight": ((4, 4), [-w for w in weights]), "0.bias": ((4,), [0.5] * 4)})
+    header = converted(pinnquad, "affine.safetensors")
+    assert "NOT PROVEN" in header.text
+    pinnquad("certify model/model.block --seconds 1", code=1)
+
+
+WRONG_FEATURES = {
+    "unknown key": ('motors = 4', "*:1", "motors"),
+    "activation": ('activations = "swish"', "*:15", "swish"),
+    "activation list": ('activations = ["tanh", 3]', "*:24", "3"),
+    "period": ('sample_period_s = 5', "*:19", "5"),
+    "meaning": ('commands_are = "volts"', "*:16", "volts"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG_FEATURES)
+def test_wrong_features(pinnquad, case):
+    line, place, keyword = WRONG_FEATURES[case]
+    safetensors("net.safetensors", Network(len(FEATURES), 4).tensors)
+    features_toml(line)
+    refused_features(pinnquad, place, keyword)
+
+
+def refused_features(pinnquad, place, keyword):
+    pinnquad.refused("convert net.safetensors --features features.toml --out model",
+                     at="features.toml" + (f":{place}" if place else ""), keyword=keyword)
+    assert listing(".") == ["features.toml", "net.safetensors"], "nothing is left behind"
+
+
+FEATURE = '{ name = "w_x", unit = "rad/s", lower = -5, upper = 5 }'
+WRONG_TABLES = {
+    "no feature": ("", "", "feature"),
+    "empty": ("feature = []", "1:11", "an array of 0"),
+    "numbers": ("feature = [1]", "1:11", "array"),
+    "unit": (f"feature = [{FEATURE.replace('rad/s', 'rpm')}]", "1:35", "deg/s"),
+    "no unit": ('feature = [{ name = "w_x", lower = 0, upper = 1 }]', "1:12", "unit"),
+    "unknown": (f"feature = [{FEATURE[:-2]}, least = 1 }}]", "1:67", "least"),
+    "upside down": ('feature = [{ name = "w_x", unit = "rad/s", lower = 5, upper = -5 }]', "1:63", "above"),
+    "scale": (f"feature = [{FEATURE[:-2]}, scale = 0 }}]", "1:75", "above 0"),
+    "tiny scale": (f"feature = [{FEATURE[:-2]}, scale = 1e-9 }}]", "1:75", "131072"),
+    "twice": (f"feature = [{FEATURE}, {FEATURE}]", "1:69", "again"),
+    "window": (f"feature = [{FEATURE.replace('w_x', 'w_x[-1]')}]", "1:21", "window"),
+    "text": (f"feature = [{FEATURE.replace('-5', chr(34) + 'five' + chr(34))}]", "1:52", "five"),
+    "not finite": (f"feature = [{FEATURE.replace('-5', 'nan')}]", "1:52", "nan"),
+    "columns alone": ('feature = [{ name = "volts", unit = "V", lower = 0, upper = 5 }]', "", "columns alone"),
+    "no TOML": ("feature = [", "*:*", "TOML"),
+    "outputs": (f'feature = [{FEATURE}]\noutput = {{ names = ["u1", "u2", "u2", "u4"] }}', "2:20", "u2"),
+    "output mean": (f"feature = [{FEATURE}]\noutput = {{ mean = [1, 2] }}", "2:19", "4"),
+    "output table": (f"feature = [{FEATURE}]\noutput = 3", "2:10", "table"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG_TABLES)
+def test_wrong_tables(pinnquad, case):
+    text, place, keyword = WRONG_TABLES[case]
+    safetensors("net.safetensors", Network(1, 4).tensors)
+    Path("features.toml").write_text(text + "\n" + AIRFRAME)
+    refused_features(pinnquad, place, keyword)
+
+
+@pytest.mark.parametrize("airframe, place, keyword", [
+    ("", "1:1", "airframe"), ("airframe = 3", "2:12", "3"), ("[airframe]", "2:1", "none of them"),
+    ('[airframe]\nname = "zeppelin"', "3:8", "zeppelin"), ('[airframe]\nmass = 3', "3:1", "mass"),
+    ('[airframe]\nname = "paper_quadrotor"\nfile = "a.toml"', "2:1", "both")])
+def test_wrong_airframe(pinnquad, airframe, place, keyword):
+    safetensors("net.safetensors", Network(1, 4).tensors)
+    Path("features.toml").write_text(f"feature = [{FEATURE}]\n{airframe}\n")
+    refused_features(pinnquad, place, keyword)
+
+
+def test_airframe_file(pinnquad):
+    """Beside features.toml, wherever the program runs."""
+    Path("there").mkdir()
+    pinnquad("airframe convert racer_5_inch --out there/mine.toml")
+    safetensors("net.safetensors", Network(1, 4).tensors)
+    Path("there/features.toml").write_text(f'feature = [{FEATURE}]\n[airframe]\nfile = "mine.toml"\n')
+    pinnquad("convert net.safetensors --features there/features.toml --out model")
+    assert json.loads(pinnquad("block --json model/model.block").out)["airframe"] == "racer_5_inch"
+
+
+def test_widths(pinnquad):
+    """Features, outputs and activations that are not the network's."""
+    safetensors("net.safetensors", Network(3, 4).tensors)
+    features_toml()
+    refused_features(pinnquad, "", "5 features")
+    safetensors("net.safetensors", Network(5, 3).tensors)
+    refused_features(pinnquad, "", "4 outputs")
+    safetensors("net.safetensors", Network(5, 8, "relu", 4).tensors)
+    refused_features(pinnquad, "", "activations")
+    features_toml('activations = ["relu", "relu", "relu"]')
+    refused_features(pinnquad, "", "3")
+
+
+def header_of(**entry):
+    """A change of the entry of 0.weight."""
+    return lambda header: header["0.weight"].update(entry)
+
+
+HOSTILE = {
+    "array": (lambda header: b"[1, 2]", "JSON object"),
+    "no JSON": (lambda header: b"{", "JSON object"),
+    "bytes": (lambda header: b"\xff" * 40, "JSON object"),
+    "deep": (lambda header: b"[" * 100000, "nest"),
+    "twice": (lambda header: json.dumps(header).replace("0.bias", "0.weight").encode(), "twice"),
+    "no object": (lambda header: header.update({"0.weight": 3}), "number"),
+    "half": (header_of(dtype="F16"), "F16"),
+    "whole": (header_of(dtype="I64"), "I64"),
+    "no dtype": (header_of(dtype=3), "dtype"),
+    "no shape": (header_of(shape="wide"), "shape"),
+    "negative": (header_of(shape=[-4, -5]), "-4"),
+    "fraction": (header_of(shape=[4.5, 5]), "4.5"),
+    "huge": (header_of(shape=[2**63, 2]), "2^28"),
+    "huge product": (header_of(shape=[2**20, 2**20, 2**24]), "2^28"),
+    "another shape": (header_of(shape=[5, 5]), "100 bytes"),
+    "offsets": (header_of(data_offsets=[0]), "data_offsets"),
+    "negative offset": (header_of(data_offsets=[-1, 79]), "data_offsets"),
+    "backwards": (header_of(data_offsets=[80, 0]), "80"),
+    "beyond": (header_of(data_offsets=[8, 2**62]), "96"),
+    "overlap": (lambda header: header["0.bias"].update(data_offsets=[64, 80]), "one before"),
+    "hole": (lambda header: header["0.weight"].update(shape=[4, 4], data_offsets=[0, 64]), "hole"),
+    "behind": (lambda header: header.pop("0.bias") and None, "80 bytes"),
+    "a matrix of one dimension": (header_of(shape=[20]), "two dimensions"),
+    "convolution": (header_of(shape=[4, 5, 1]), "two dimensions"),
+    "bias": (lambda header: header["0.bias"].update(shape=[2, 2]), "[4]"),
+    "names": (lambda header: header.update({"weight": header.pop("0.weight")}), "Sequential"),
+    "two networks": (lambda header: header.update({"a.0.weight": header.pop("0.weight")}), "beside"),
+    "unknown": (lambda header: header.update({"0.scale": header.pop("0.bias")}), "0.scale"),
+}
+
+
+@pytest.mark.parametrize("case", HOSTILE)
+def test_hostile(pinnquad, case):
+    change, keyword = HOSTILE[case]
+    safetensors("net.safetensors", Network(5, 4).tensors, change=change)
+    features_toml()
+    refused_network(pinnquad, "net.safetensors", keyword)
+
+
+def refused_network(pinnquad, name, keyword):
+    pinnquad.refused(f"convert {name} --features features.toml --out model", at=name, keyword=keyword)
+    assert listing(".") == ["features.toml", name], "nothing is left behind"
+
+
+@pytest.mark.parametrize("content, keyword", [
+    (b"", "0 bytes"), (b"\x02\0\0", "3 bytes"), (b"\xff" * 8, "16 MiB"), (struct.pack("<Q", 100) + b"{}", "cut short"),
+    (struct.pack("<Q", 2) + b"{}", "none")])
+def test_cut_short(pinnquad, content, keyword):
+    Path("net.safetensors").write_bytes(content)
+    features_toml()
+    refused_network(pinnquad, "net.safetensors", keyword)
+
+
+@pytest.mark.parametrize("number", [math.nan, math.inf])
+def test_not_finite(pinnquad, number):
+    network = Network(5, 4)
+    network.tensors["0.bias"] = (4,), [0, number, 0, 0]
+    safetensors("net.safetensors", network.tensors)
+    features_toml()
+    refused_network(pinnquad, "net.safetensors", "0.bias")
+
+
+def test_arguments(pinnquad):
+    safetensors("net.safetensors", Network(5, 4).tensors)
+    features_toml(per_feature=mean_and_scale)
+    block = SOURCE / "examples/models/demo_quadrotor.block"
+    for words, keyword in {"net.safetensors --out model": "--features", "features.toml --out model": ".onnx",
+                           f"{block} --out net.txt": ".onnx",
+                           f"{block} --features features.toml --out net.onnx": "--features",
+                           "net.safetensors --features features.toml --out model --name 3": "--name",
+                           "none.safetensors --features features.toml --out model": "none.safetensors",
+                           "net.safetensors --features features.toml --out features.toml": "features.toml"}.items():
+        pinnquad.refused(f"convert {words}", keyword=keyword)
+        assert listing(".") == ["features.toml", "net.safetensors"]
+    no_partial_files()
+
+
+# ONNX
+
+def has_onnx(pinnquad):
+    """Skips where the program was built without, or Python has no package onnx."""
+    onnx = pytest.importorskip("onnx")
+    pytest.importorskip("onnx.numpy_helper")
+    Path("probe.onnx").touch()
+    features_toml()
+    if "built without" in pinnquad("convert probe.onnx --features features.toml --out model", code=2).err:
+        pytest.skip("pinnquad was built without ONNX")
+    Path("probe.onnx").unlink()
+    return onnx
+
+
+class Graph:
+    """A chain of nodes under construction: net.onnx."""
+
+    def __init__(self, onnx, inputs=5, outputs=4, number="FLOAT"):
+        self.onnx, self.nodes, self.constants, self.x = onnx, [], [], "x"
+        self.number = getattr(onnx.TensorProto, number)
+        self.shapes = [("rows", inputs), ("rows", outputs)]
+        self.opset, self.change = 13, lambda model: None
+
+    def constant(self, values, shape, number=None):
+        name = f"c{len(self.constants)}"
+        self.constants.append(self.onnx.helper.make_tensor(name, number or self.number, shape, values))
+        return name
+
+    def node(self, op, *inputs, **attributes):
+        self.x = f"y{len(self.nodes)}"
+        self.nodes.append(self.onnx.helper.make_node(op, list(inputs), [self.x], name=f"{op}_{len(self.nodes)}",
+                                                     **attributes))
+        return self.x
+
+    def write(self):
+        helper = self.onnx.helper
+        described = [helper.make_tensor_value_info(name, self.number, shape)
+                     for name, shape in zip(("x", self.x), self.shapes)]
+        graph = helper.make_graph(self.nodes, "net", described[:1], described[1:], self.constants)
+        model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", self.opset)])
+        model.ir_version = 7
+        self.change(model)
+        Path("net.onnx").write_bytes(model.SerializeToString())
+
+
+def linear(graph, layer, inputs, how):
+    """A layer of Network by Gemm or MatMul and Add."""
+    outputs, weights, biases = layer
+    columns = [weights[row * inputs + column] for column in range(inputs) for row in range(outputs)]
+    if how == "gemm":
+        graph.node("Gemm", graph.x, graph.constant(weights, [outputs, inputs]), graph.constant(biases, [outputs]), transB=1)
+    elif how == "scaled":
+        graph.node("Gemm", graph.x, graph.constant([2 * v for v in columns], [inputs, outputs]),
+                   graph.constant([4 * v for v in biases], [1, outputs]), alpha=0.5, beta=0.25)
+    elif how == "transposed":
+        matrix = graph.constant(weights, [outputs, inputs])
+        x = graph.x
+        transposed = graph.node("Transpose", matrix, perm=[1, 0])
+        graph.node("Add", graph.node("MatMul", x, transposed), graph.constant(biases, [outputs]))
+    else:
+        graph.node("Add", graph.constant(biases, [outputs]),
+                   graph.node("MatMul", graph.x, graph.constant(columns, [inputs, outputs])))
+
+
+def activation(graph, name):
+    x, number = graph.x, lambda value: graph.constant([value], [])
+    if name == "gelu":
+        gate = graph.node("Add", graph.node("Erf", graph.node("Div", x, number(math.sqrt(2)))), number(1.0))
+        graph.node("Mul", graph.node("Mul", x, gate), number(0.5))
+    elif name == "silu":
+        graph.node("Mul", graph.node("Sigmoid", x), x)
+    else:
+        graph.node({"relu": "Relu", "tanh": "Tanh", "sigmoid": "Sigmoid", "softplus": "Softplus", "sine": "Sin"}[name], x)
+
+
+@pytest.mark.parametrize("how", ["gemm", "scaled", "matmul", "transposed"])
+@pytest.mark.parametrize("name", [name for name in ACTIVATIONS if name != "identity"])
+def test_onnx(pinnquad, how, name):
+    """Each activation and each way to write a layer, batch norm behind the first."""
+    onnx = has_onnx(pinnquad)
+    network = Network(5, 12, "norm", name, 12, name, 4)
+    graph, width = Graph(onnx, number="DOUBLE" if how == "scaled" else "FLOAT"), 5
+    graph.node("Flatten", graph.node("Identity", "x"))
+    for layer in network.layers:
+        if layer[0] == "norm":
+            graph.node("BatchNormalization", graph.x, *(graph.constant(values, [width]) for values in layer[1:]))
+        elif isinstance(layer[0], int):
+            linear(graph, layer, width, how)
+            width = layer[0]
+        else:
+            activation(graph, layer[0])
+    graph.write()
+    onnx.checker.check_model(onnx.load("net.onnx"), full_check=True)
+    features_toml(per_feature=mean_and_scale)
+    header = converted(pinnquad, "net.onnx")
+    standardised = lambda row: [(row[n] - (lower + upper) / 2 - 0.1) / ((upper - lower) / 4) for n, lower, upper in FEATURES]
+    assert worst(header, lambda row: network(standardised(row))) <= TOLERANCE
+
+
+def wrong_onnx(case):
+    """change(graph), and a word of the refusal; the sound graph is a Gemm and a Relu."""
+    op = lambda name, *more, **how: lambda graph: graph.node(name, graph.x, *(more), **how)
+    model = lambda change: lambda graph: setattr(graph, "change", change)
+    weights = lambda change: model(lambda m: change(m.graph.initializer[0]))
+    width = lambda change: model(lambda m: change(m.graph.input[0].type.tensor_type))
+    return {
+        "unknown": (op("LeakyRelu"), "'LeakyRelu_2'"),
+        "domain": (op("Relu", domain="com.example"), "com.example"),
+        "skip": (lambda g: g.node("Add", g.x, g.x), "skip"),
+        "product": (lambda g: g.node("Mul", g.x, g.x), "GELU or SiLU"),
+        "softmax": (op("Softmax"), "'Softmax_2'"),
+        "erf": (op("Erf"), "GELU"),
+        "quotient": (lambda g: g.node("Div", g.constant([1.0], []), g.x), "divisor"),
+        "by zero": (lambda g: g.node("Div", g.x, g.constant([0.0], [])), "0"),
+        "shape": (lambda g: g.node("Add", g.x, g.constant([1.0] * 3, [3])), "[3]"),
+        "column": (lambda g: g.node("Add", g.x, g.constant([1.0] * 4, [4, 1])), "[4, 1]"),
+        "matrix": (lambda g: g.node("MatMul", g.x, g.constant([1.0] * 12, [3, 4])), "[3, 4]"),
+        "made of nothing": (lambda g: g.node("Add", g.x, "nowhere"), "nowhere"),
+        "axis": (op("Flatten", axis=0), "axis"),
+        "cast": (op("Cast", to=7), "INT64"),
+        "training": (lambda g: g.node("BatchNormalization", g.x, *[g.constant([1.0] * 4, [4]) for _ in range(4)],
+                                      training_mode=1), "training_mode"),
+        "variance": (lambda g: g.node("BatchNormalization", g.x, *[g.constant([-1.0] * 4, [4]) for _ in range(4)]), "-1"),
+        "half": (lambda g: g.node("Add", g.x, g.constant([1.0] * 4, [4], g.onnx.TensorProto.FLOAT16)), "FLOAT16"),
+        "whole": (lambda g: g.node("Add", g.x, g.constant([1] * 4, [4], g.onnx.TensorProto.INT64)), "INT64"),
+        "NaN": (lambda g: g.node("Add", g.x, g.constant([math.nan], [])), "NaN"),
+        "inputs": (lambda g: g.node("Relu", g.x, g.x), "1 inputs"),
+        "features": (width(lambda t: t.shape.dim[1].ClearField("dim_value")), "dynamic"),
+        "named": (width(lambda t: setattr(t.shape.dim[1], "dim_param", "columns")), "'columns'"),
+        "no features": (width(lambda t: setattr(t.shape.dim[1], "dim_value", -3)), "-3"),
+        "huge": (width(lambda t: setattr(t.shape.dim[1], "dim_value", 2**62)), "features"),
+        "rank": (width(lambda t: t.shape.dim.add()), "3 dimensions"),
+        "input type": (width(lambda t: setattr(t, "elem_type", 10)), "FLOAT16"),
+        "two inputs": (model(lambda m: m.graph.input.add().CopyFrom(m.graph.input[0]) or
+                             setattr(m.graph.input[1], "name", "z")), "one input"),
+        "two outputs": (model(lambda m: m.graph.output.add().CopyFrom(m.graph.output[0])), "one output"),
+        "no output": (model(lambda m: setattr(m.graph.output[0], "name", "c0")), "c0"),
+        "output width": (model(lambda m: setattr(m.graph.output[0].type.tensor_type.shape.dim[1], "dim_value", 9)), "9"),
+        "twice": (model(lambda m: m.graph.node.add().CopyFrom(m.graph.node[1])), "again"),
+        "external": (weights(lambda t: setattr(t, "data_location", 1)), "external"),
+        "negative dims": (weights(lambda t: t.dims.__setitem__(0, -4)), "-4"),
+        "huge dims": (weights(lambda t: t.dims.__setitem__(0, 2**40)), "2^28"),
+        "huge product": (weights(lambda t: (t.dims.__setitem__(0, 2**28), t.dims.__setitem__(1, 2**28))), "2^28"),
+        "other dims": (weights(lambda t: t.dims.__setitem__(0, 5)), "25 numbers"),
+        "raw": (weights(lambda t: setattr(t, "raw_data", b"123")), "20 numbers"),
+        "opset": (lambda g: setattr(g, "opset", 6), "version 6"),
+    }[case]
+
+
+WRONG_ONNX = ["unknown", "domain", "skip", "product", "softmax", "erf", "quotient", "by zero", "shape", "column", "matrix",
+              "made of nothing", "axis", "cast", "training", "variance", "half", "whole", "NaN", "inputs", "features",
+              "named", "no features", "huge", "rank", "input type", "two inputs", "two outputs", "no output",
+              "output width", "twice", "external", "negative dims", "huge dims", "huge product", "other dims", "raw",
+              "opset"]
+
+
+@pytest.mark.parametrize("case", WRONG_ONNX)
+def test_wrong_onnx(pinnquad, case):
+    change, keyword = wrong_onnx(case)
+    graph = Graph(has_onnx(pinnquad))
+    linear(graph, Network(5, 4).layers[0], 5, "gemm")
+    graph.node("Relu", graph.x)
+    change(graph)
+    graph.write()
+    refused_network(pinnquad, "net.onnx", keyword)
+
+
+def test_cut_onnx(pinnquad):
+    """At every place: one line, or by chance a model that is whole."""
+    graph = Graph(has_onnx(pinnquad))
+    linear(graph, Network(5, 4).layers[0], 5, "gemm")
+    graph.write()
+    whole = Path("net.onnx").read_bytes()
+    for length in range(0, len(whole), 7):
+        Path("net.onnx").write_bytes(whole[:length])
+        refused_network(pinnquad, "net.onnx", "expected")
+
+
+def test_without_onnx(pinnquad):
+    """Where it was built without, it says what to install."""
+    Path("net.onnx").write_bytes(b"none")
+    features_toml()
+    done = pinnquad.refused("convert net.onnx --features features.toml --out model", at="net.onnx")
+    assert "libonnx-dev" in done.err or "an ONNX model" in done.err
+
+
+# back
+
+SHIPPED = [*sorted((SOURCE / "examples/models").glob("*.block")), SOURCE / "tests/models/v4/own_racer.block"]
+
+
+@pytest.mark.parametrize("block", SHIPPED, ids=lambda path: path.stem)
+def test_back_to_onnx(pinnquad, block):
+    """A valid ONNX model that numpy finds to answer as the golden vectors do."""
+    onnx, numpy = has_onnx(pinnquad), pytest.importorskip("numpy")
+    pinnquad("convert", block, "--out", "net.onnx")
+    model = onnx.load("net.onnx")
+    onnx.checker.check_model(model, full_check=True)
+    header = Header(block.with_suffix(".hpp"))
+    assert {"features", "airframe", "contents_hash"} <= {fact.key for fact in model.metadata_props}
+    answers_as(onnx, numpy, model, header)
+
+
+def answers_as(onnx, numpy, model, header):
+    exact = "using Scalar = double" in header.text
+    listed = lambda name: [float(n) for n in re.findall(r"-?\d+\.?\d*(?:e[-+]?\d+)?(?=f?[,}\s])", header.listed(name))]
+    x = numpy.array(listed("golden_features"), "f8" if exact else "f4").reshape(-1, len(header.names()))
+    u = numpy.array(listed("golden_commands")).reshape(-1, 4)
+    assert numpy.abs(run(onnx, numpy, model, x) - u).max() <= TOLERANCE
+
+
+def run(onnx, numpy, model, x):
+    """The nodes of a model one by one."""
+    values = {tensor.name: onnx.numpy_helper.to_array(tensor) for tensor in model.graph.initializer}
+    values[model.graph.input[0].name] = x
+    sigmoid = lambda v: 1 / (1 + numpy.exp(-v))
+    operators = {"Sub": lambda a, b: a - b, "Div": lambda a, b: a / b, "Mul": lambda a, b: a * b,
+                 "Add": lambda a, b: a + b, "Gemm": lambda a, b, c: a @ b.T + c, "Relu": lambda a: numpy.maximum(a, 0),
+                 "Tanh": numpy.tanh, "Sigmoid": sigmoid, "Softplus": lambda a: numpy.log1p(numpy.exp(a)),
+                 "Sin": numpy.sin, "Erf": numpy.vectorize(math.erf), "Min": numpy.minimum, "Max": numpy.maximum,
+                 "Gather": lambda a, places: a[:, places], "Clip": numpy.clip}
+    for node in model.graph.node:
+        values[node.output[0]] = operators[node.op_type](*(values[name] for name in node.input))
+    return values[model.graph.output[0].name]
+
+
+@pytest.mark.parametrize("ending", ["onnx", "safetensors"])
+@pytest.mark.parametrize("name", [name for name in ACTIVATIONS if name != "identity"])
+def test_there_and_back(pinnquad, ending, name):
+    """A network that comes back answers as before it went."""
+    if ending == "onnx":
+        has_onnx(pinnquad)
+    network = Network(5, 8, name, 8, name, 4)
+    safetensors("net.safetensors", network.tensors)
+    features_toml(f'activations = "{name}"', per_feature=mean_and_scale)
+    first = converted(pinnquad, "net.safetensors")
+    pinnquad("convert model/model.block --out", f"back.{ending}")
+    order = [next(feature for feature in FEATURES if feature[0] == n) for n in first.names()]
+    word = "tanh" if name == "sigmoid" else name  # as the model has it
+    features_toml(f'activations = "{word}"', features=order)
+    second = converted(pinnquad, f"back.{ending}")
+    for (row, commands), (again, others) in zip(golden(first), golden(second)):
+        assert row == pytest.approx(again, rel=1e-6) and commands == pytest.approx(others, abs=TOLERANCE)
+    if ending == "safetensors":
+        raw = Path("back.safetensors").read_bytes()
+        metadata = json.loads(raw[8 : 8 + struct.unpack("<Q", raw[:8])[0]])["__metadata__"]
+        assert metadata["activations"] == f"{word}, {word}" and metadata["features"].startswith("wdot_x [rad/s^2]")
+
+
+def test_not_back(pinnquad, flown):
+    """What safetensors can't hold; what is no model."""
+    pinnquad.refused("convert", SHIPPED[-1], "--out", "net.safetensors", at=str(SHIPPED[-1]), keyword="columns")
+    Path("cut.block").write_bytes(SHIPPED[0].read_bytes()[:1000])
+    pinnquad.refused("convert cut.block --out net.onnx", at="cut.block", keyword="cut short")
+    assert listing(".") == ["cut.block"]
+
+
+def test_residual_back(pinnquad, made):
+    """Of a base with a residual between bounds that is not shown the angular acceleration: gathered, clipped, added."""
+    onnx, numpy = has_onnx(pinnquad), pytest.importorskip("numpy")
+    folder = made("fly d3 --seed 1 --samples 1500 --out flight.csv")
+    pinnquad("train --flight", folder / "flight.csv", "--recipe", "structured", "--out", "trained", code=(0, 1))
+    if "Saturated" not in Path("trained/model.hpp").read_text():
+        pytest.skip("the fit chose no residual")
+    pinnquad("convert trained/model.block --out net.onnx")
+    model = onnx.load("net.onnx")
+    onnx.checker.check_model(model, full_check=True)
+    assert {"Gather", "Max", "Min"} <= {node.op_type for node in model.graph.node}
+    answers_as(onnx, numpy, model, Header("trained/model.hpp"))
+
+
+# PyTorch
+
+def torch_network(torch, name, norm, number):
+    nn = torch.nn
+
+    class Sine(nn.Module):
+        def forward(self, x):
+            return torch.sin(x)
+
+    made = {"relu": nn.ReLU, "tanh": nn.Tanh, "sigmoid": nn.Sigmoid, "gelu": nn.GELU, "silu": nn.SiLU,
+            "softplus": nn.Softplus, "sine": Sine}[name]
+    torch.manual_seed(3)
+    network = nn.Sequential(nn.Linear(5, 24), *[nn.BatchNorm1d(24)] * norm, made(), nn.Linear(24, 24, bias=False), made(),
+                            nn.Linear(24, 4)).to(number)
+    if norm:  # statistics as a training leaves them
+        for _ in range(20):
+            network(3 * torch.randn(64, 5, dtype=number))
+    return network.eval()
+
+
+@pytest.mark.parametrize("number", ["float32", "float64"])
+@pytest.mark.parametrize("norm", [False, True])
+@pytest.mark.parametrize("name", [name for name in ACTIVATIONS if name != "identity"])
+def test_torch(pinnquad, name, norm, number):
+    """torch.nn.Sequential by its state_dict and by torch.onnx.export, against what PyTorch makes of the golden vectors."""
+    torch = pytest.importorskip("torch")
+    has_onnx(pinnquad)
+    number = getattr(torch, number)
+    network = torch_network(torch, name, norm, number)
+    tensors = {key: (tuple(tensor.shape), tensor.flatten().tolist()) for key, tensor in network.state_dict().items()
+               if "num_batches" not in key}
+    safetensors("net.safetensors", tensors, "f" if number == torch.float32 else "d")
+    torch.onnx.export(network, torch.zeros(1, 5, dtype=number), "net.onnx", opset_version=13, input_names=["x"],
+                      dynamic_axes={"x": {0: "rows"}})
+    features_toml(f'activations = "{name}"', per_feature=mean_and_scale)
+    for source in "net.safetensors", "net.onnx":
+        header = converted(pinnquad, source)
+        rows = [[(row[n] - (lower + upper) / 2 - 0.1) / ((upper - lower) / 4) for n, lower, upper in FEATURES]
+                for row, _ in golden(header)]
+        answers = iter(network(torch.tensor(rows, dtype=number)).tolist())
+        assert worst(header, lambda row: next(answers)) <= TOLERANCE
