@@ -208,10 +208,7 @@ void take_airframe(const std::string& path, TomlTable& root, ForeignMeaning& mea
   }
 }
 
-}  // namespace
-
-ForeignMeaning read_features_file(const std::string& path) {
-  const toml::table content = logs::read_toml_file(path, "a features file");
+ForeignMeaning meaning_of(const toml::table& content, const std::string& path) {
   TomlTable root(path, content, key_of_file);
   ForeignMeaning meaning;
   meaning.path = path;
@@ -255,6 +252,16 @@ ForeignMeaning read_features_file(const std::string& path) {
   take_airframe(path, root, meaning);
   root.require_no_more();
   return meaning;
+}
+
+}  // namespace
+
+ForeignMeaning read_features_file(const std::string& path) {
+  return meaning_of(logs::read_toml_file(path, "a features file"), path);
+}
+
+ForeignMeaning parse_features(const std::string& text, const std::string& path) {
+  return meaning_of(logs::parse_toml(text, path), path);
 }
 
 }  // namespace programs

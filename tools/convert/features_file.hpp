@@ -42,4 +42,7 @@ struct ForeignMeaning {
 /// unknown, missing or of another kind, and for values that no network has.
 ForeignMeaning read_features_file(const std::string& path);
 
+/// The same of a text; `path` names it.
+ForeignMeaning parse_features(const std::string& text, const std::string& path);
+
 }  // namespace programs

@@ -9,7 +9,7 @@ namespace programs {
 ForeignNetwork read_onnx(const std::string& /*bytes*/, const std::string& path) {
   throw std::invalid_argument(
       path +
-      ": this pinnquad was built without ONNX; as root: apt-get install libonnx-dev, then build "
+      ": this pinnquad was built without ONNX; as root: apt-get install libonnx-dev libprotobuf-dev, then build "
       "it again");
 }
 
