@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -41,6 +42,12 @@ struct ConvertOptions {
 };
 
 programs::ForeignNetwork read_network(const ConvertOptions& options, const programs::ForeignMeaning& meaning) {
+  constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 26;
+  std::error_code absent;
+  const std::uintmax_t size = std::filesystem::file_size(options.source, absent);
+  if (!absent && size > most_bytes) {
+    throw InputError(options.source, 0, 0, "a network of at most 64 MiB", std::to_string(size) + " bytes");
+  }
   const std::string bytes = file_text(options.source);
   const bool is_onnx = std::filesystem::path(options.source).extension() == ".onnx";
   programs::ForeignNetwork network =

@@ -4,14 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <tuple>
+#include <type_traits>
 
 #include "convert/folded_network.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/exported/run_time_features.hpp"
 #include "pinnquad/exported/run_time_network.hpp"
 #include "pinnquad/exported/run_time_outputs.hpp"
+#include "pinnquad/io/decimal.hpp"
 
 namespace programs {
 namespace {
@@ -179,6 +182,15 @@ std::vector<std::size_t> output_order(const ForeignMeaning& meaning) {
   return of_file;
 }
 
+/// Throws InputError where float has no such number.
+template <class Scalar>
+Scalar narrowed(double number, const ForeignNetwork& network) {
+  if (std::is_same_v<Scalar, float> && std::abs(number) > double(std::numeric_limits<float>::max())) {
+    throw InputError(network.source, 0, 0, "numbers that float holds (--double holds more)", number_text(number));
+  }
+  return static_cast<Scalar>(number);
+}
+
 /// The names of the layers, in a block's description ("Inputs") or as a header's type ("InputSize").
 template <class Scalar>
 std::string network_text(const char* inputs_word, std::size_t inputs, const std::vector<FoldedLayer>& layers) {
@@ -217,7 +229,7 @@ pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& net
   const std::vector<FoldedLayer> layers = layers_of(network, meaning, order.of_file, to_network, output_order(meaning));
   for (const FoldedLayer& layer : layers) {
     for (const Numbers* numbers : {&layer.dense.weights, &layer.dense.bias}) {
-      for (const double number : *numbers) model.parameters.push_back(static_cast<Scalar>(number));
+      for (const double number : *numbers) model.parameters.push_back(narrowed<Scalar>(number, network));
     }
   }
   model.output_mean.assign(network.outputs, Scalar(0));
@@ -229,7 +241,7 @@ pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& net
     }
     const Commands<double> u = source_commands(network, meaning, Numbers(golden.begin(), golden.end()));
     auto& commands = model.golden_commands.emplace_back();
-    for (std::size_t i = 0; i < u.size(); ++i) commands[i] = static_cast<Scalar>(u[i]);
+    for (std::size_t i = 0; i < u.size(); ++i) commands[i] = narrowed<Scalar>(u[i], network);
   }
 
   model.name = name;

@@ -79,13 +79,13 @@ ForeignFeature feature_of(const std::string& path, const toml::table& table) {
   }
   feature.lower = keys.number("lower", logs::of_either_sign);
   feature.upper = keys.number("upper", logs::of_either_sign);
-  if (!(feature.lower < feature.upper)) {
+  if (!(static_cast<float>(feature.lower) < static_cast<float>(feature.upper))) {
     const toml::node& node = keys.required("upper", "a number");
     keys.refuse(node, "a value above `lower`, " + number_text(feature.lower), logs::described(node));
   }
   feature.is_standardised = keys.optional("mean") != nullptr || keys.optional("scale") != nullptr;
   feature.mean = keys.number("mean", logs::of_either_sign, 0);
-  feature.scale = keys.number("scale", logs::above_zero, 1);
+  feature.scale = keys.number("scale", {1e-9, logs::largest_number, "a value from 1e-9 to 1e9"}, 1);
   if (feature.is_standardised) {
     const double centre = feature.mean, reach = pinnquad::detail::furthest_deviations * feature.scale;
     if (!(centre - feature.lower <= reach && feature.upper - centre <= reach)) {

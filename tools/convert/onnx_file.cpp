@@ -70,6 +70,10 @@ class Graph {
     require_opset();
     for (const auto& tensor : model_.graph().initializer()) stored_[tensor.name()] = &tensor;
     const std::size_t inputs = take_input();
+    constexpr int most_nodes = 1000;
+    if (model_.graph().node_size() > most_nodes) {
+      refuse("at most " + std::to_string(most_nodes) + " nodes", std::to_string(model_.graph().node_size()));
+    }
     int number = 0;
     for (const auto& node : model_.graph().node()) {
       name_ = "node " + (node.name().empty() ? std::to_string(number) : "'" + printable(node.name()) + "'") + " (" +
@@ -305,6 +309,9 @@ class Graph {
 
   /// Adds what a node makes: how it is worked out, and what it is of the chain.
   void put(const Node& node, Value value, Operation operation) {
+    constexpr std::size_t most_numbers = std::size_t{1} << 24;
+    numbers_ += value.width + (value.chain ? value.chain->step.dense.weights.size() : 0);
+    if (numbers_ > most_numbers) refuse_node("at most 2^24 numbers in all", "more");
     operations_.push_back(std::move(operation));
     value.slot = operations_.size();
     if (depends(node.output(0)) || stored_.count(node.output(0)) || made_.count(node.output(0))) {
@@ -582,6 +589,7 @@ class Graph {
   std::map<std::string, Constant> made_;  ///< of constants by nodes
   std::map<std::string, Value> values_;
   std::vector<Operation> operations_;  ///< the n-th makes slot n + 1; slot 0 is the input
+  std::size_t numbers_ = 0;            ///< of weights, and between the nodes
   std::string name_;                   ///< of the node at hand, for messages
 };
 
