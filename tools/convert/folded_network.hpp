@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A chain of affine maps and activations as layers of the library: dense ones and its activations alone. Batch norm,
-// scales and shifts, and the two affine maps that make a sigmoid of a tanh, are folded into the dense layers, in double.
+// scales and shifts, and the two affine maps that make a sigmoid of a tanh, are folded into the dense layers, in
+// double.
 #pragma once
 
 #include <cstddef>
@@ -50,7 +51,7 @@ class Folder {
   }
 
  private:
-  /// What is left to be put into layers: y = scale x + shift, behind a dense map where there is one.
+  /// Not yet in a layer: y = scale x + shift, behind a dense map where there is one.
   void clear() {
     dense_ = {};
     scale_.assign(width_, 1);

@@ -41,7 +41,7 @@ struct Link {
   ForeignStep step;
 };
 
-/// What a value is of its chain's last number b, on the way to an activation that ONNX makes of several nodes:
+/// The place of a value behind its chain's last number b, within an activation that ONNX makes of several nodes:
 /// c b, c erf(a b) + d or c sigmoid(a b) + d.
 enum class Inner { plain, erf, sigmoid };
 

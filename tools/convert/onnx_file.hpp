@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Networks in ONNX (https://onnx.ai), read and written by Debian's libonnx. Where the program was built without it, each
-// function throws std::invalid_argument, one line that says what to install.
+// Networks in ONNX (https://onnx.ai), read and written by Debian's libonnx. Where the program was built without it,
+// each function throws std::invalid_argument, one line that says what to install.
 #pragma once
 
 #include <map>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Files of tensors by name: eight bytes of length, a JSON header, raw bytes (https://github.com/huggingface/safetensors,
-// as its README describes the format). Read as torch.nn.Sequential's state_dict names them, and written so.
+// Files of tensors by name: eight bytes of length, a JSON header, raw bytes
+// (https://github.com/huggingface/safetensors). Read as torch.nn.Sequential's state_dict names them, and written so.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ struct Tensor {
 using Tensors = std::map<std::string, Tensor>;
 
 /// The tensors of the bytes of a file, those of whole numbers left out. Throws InputError, one line: cut short, no JSON
-/// or another one than the format's, offsets that overlap, leave holes or lead out of the file, a name twice, numbers of
-/// another type than F32, F64 and, left out, I64, and NaN or Inf.
+/// or another one than the format's, offsets that overlap, leave holes or lead out of the file, a name twice, numbers
+/// of another type than F32, F64 and, left out, I64, and NaN or Inf.
 Tensors read_safetensors(const std::string& bytes, const std::string& path);
 
 /// The chain of a state_dict: Linear and BatchNorm1d by their numbers, what has no numbers by the features file. Throws
