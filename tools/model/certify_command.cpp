@@ -271,6 +271,12 @@ void print_rounding(const Findings& findings) {
       findings.taps > 1 ? "; over a smaller one that is held it may fall" : "");
 }
 
+/// Of a model that is not proven.
+void print_provable() {
+  std::printf(
+      "provable   an affine network, and what pinnquad train fits to the same flights (docs/structured_models.md)\n");
+}
+
 void print_text(const BlockModel& model, const Findings& findings) {
   std::printf("model      %s: %s, for %s\n", printable(model.path()).c_str(), model.answer().c_str(),
               model.airframe_name().c_str());
@@ -311,6 +317,7 @@ void print_text(const BlockModel& model, const Findings& findings) {
       std::printf("%s%-5s %.6f s^2/rad%s\n", way == 0 ? "least      " : "           ", axes[findings.ways[way].axis],
                   findings.search.least[way], findings.ways[way].held ? ", held" : "");
     }
+    print_provable();
     return;
   }
   const programs::Counterexample& found = *findings.search.found;
@@ -323,6 +330,7 @@ void print_text(const BlockModel& model, const Findings& findings) {
   std::printf("more       %s%s larger by %.6g: the signed sum falls from %.6f to %.6f (derivative %.6f s^2/rad)\n",
               findings.names[found.asked.places.front()].c_str(), found.asked.held ? " at all instants" : "",
               found.step, found.sum, found.sum_of_more, found.derivative);
+  print_provable();
 }
 
 int certify(const CertifyOptions& options) {
