@@ -124,6 +124,8 @@ Numbers commands_of(const ExportedNetwork& network, const Numbers& features) {
 
 }  // namespace
 
+bool ExportedNetwork::scales_outputs() const { return !are(output_deviation, 1) || !are(output_mean, 0); }
+
 bool ExportedNetwork::is_plain_output() const {
   if (!of_features.empty() || !are(of_outputs.bias, 0) || of_outputs.inputs != of_outputs.outputs()) return false;
   for (std::size_t i = 0; i < of_outputs.weights.size(); ++i) {
@@ -211,7 +213,7 @@ std::string safetensors_of(const ExportedNetwork& network, const std::string& pa
     folder.add(dense_step(std::move(picked)));
   }
   for (const ForeignStep& step : part.steps) folder.add(step);
-  if (!are(network.output_deviation, 1) || !are(network.output_mean, 0)) {
+  if (network.scales_outputs()) {
     folder.add(affine_step(network.output_deviation, network.output_mean));
   }
   if (!network.is_plain_output()) folder.add(dense_step(network.of_outputs));

@@ -31,6 +31,7 @@ struct ExportedNetwork {
   ForeignDense of_outputs;  ///< commands of the outputs
   Numbers of_features;      ///< commands by the features in physical units, row by row; empty: none
 
+  bool scales_outputs() const;   ///< by other numbers than 1 and 0
   bool is_plain_output() const;  ///< the commands are the outputs
 };
 

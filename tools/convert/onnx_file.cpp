@@ -706,7 +706,10 @@ class GraphWriter {
       if (!part.lower.empty()) v = clipped(v, part.lower, part.upper);
       sum = sum.empty() ? v : node("Add", {sum, v});
     }
-    std::string u = node("Add", {node("Mul", {sum, row(network_.output_deviation)}), row(network_.output_mean)});
+    std::string u = sum;
+    if (network_.scales_outputs()) {
+      u = node("Add", {node("Mul", {sum, row(network_.output_deviation)}), row(network_.output_mean)});
+    }
     if (!network_.is_plain_output()) u = gemm(u, network_.of_outputs);
     if (!network_.of_features.empty()) {
       const ForeignDense dense{network_.inputs, network_.of_features, Numbers(network_.of_outputs.outputs(), 0)};
