@@ -38,6 +38,7 @@ struct FlyOptions {
   std::string out;
   std::uint64_t seed = 1;
   std::optional<std::size_t> samples;
+  std::optional<double> interval_ms;
   std::string airframe = PaperQuadrotor::name;
   std::optional<double> max_speed_m_s;
   std::string ground_effect;  ///< empty: the flight's own
@@ -91,6 +92,9 @@ class ChosenFlight {
         without_(flight_vehicle<PaperFlight>(airframe.value, GroundEffectModel::none)),
         airframe_(airframe.value),
         plan_(PaperFlight::plan()) {
+    if (options.interval_ms) {
+      plan_.controls_per_sample = static_cast<int>(std::lround(1e-3 * *options.interval_ms / plan_.control_period_s()));
+    }
     if (!options.sticks.empty()) {
       sticks_ = RecordedSticks(read_sticks_csv(options.sticks));
       constexpr double rounding = 1e-6;
@@ -319,7 +323,9 @@ void add_options(CLI::App& app, FlyOptions& options) {
       ->type_name("N");
   add_number(
       app, "--samples", options.samples, std::size_t{1}, std::size_t{10000000},
-      "rows to record, one every 0.05 s (default: d1, harder 15000, d2 6000, d3 5000; with --sticks as long as these)");
+      "rows to record (default: d1, harder 15000, d2 6000, d3 5000; with --sticks as long as these)");
+  add_number(app, "--interval", options.interval_ms, 2.0, 1000.0,
+             "ms from row to row, rounded to control ticks of 2 ms (default: 50)");
   app.add_option("--airframe", options.airframe,
                  "what flies: a file (examples/airframes), or one of: " + programs::airframe_names())
       ->type_name("NAME|FILE.toml")

@@ -171,7 +171,7 @@ class Loop {
     auto bias = plan_.model.with([](const auto& model) { return bias_settings<double>(model.records()); });
     bias.across_time_constant_s = 0.1;  // the delay is told
     bias.most_across_m_s2 = 6;
-    const LoopKnowledge<Told> known{plan_.model, plan_.columns, told_, bias, plan_.sensors.delay_s};
+    const LoopKnowledge<Told> known{plan_.model, plan_.columns, told_, bias, plan_.sensors.delay_s, plan_.wrench};
     const AnyPolicy policy = loop_policy(cell.controller, known, gains);
     Errors errors;
     errors.period_s = period_s;
@@ -348,7 +348,7 @@ class Journal {
 
 nlohmann::json plan_of(const LoopCampaign& plan) {
   const LoopSensors& sensors = plan.sensors;
-  return {{"format", 1},
+  nlohmann::json said = {{"format", 1},
           {"model", plan.model.path()},
           {"contents", hexadecimal(plan.model.contents_hash())},
           {"airframe", plan.airframe_name},
@@ -364,6 +364,8 @@ nlohmann::json plan_of(const LoopCampaign& plan) {
             {"attitude_rad", sensors.attitude_rad},
             {"body_rates_rad_s", sensors.body_rates_rad_s}}},
           {"delay_s", sensors.delay_s}};
+  if (plan.wrench != nullptr) said["wrench"] = hexadecimal(plan.wrench->contents_hash());
+  return said;
 }
 
 std::vector<Cell> cells_of(const LoopCampaign& plan) {

@@ -28,6 +28,7 @@ struct LoopCampaign {
   std::string airframe_name{};
   std::vector<std::string> controllers{}, conditions{}, trajectories{}, gains{};
   std::string vehicle = "nominal";
+  const pinnquad::BlockModel* wrench = nullptr;  ///< a residual wrench of this airframe (loop/wrench_block.hpp)
   int seeds = 5;
   int budget = 40;  ///< evaluations of the search, for each controller
   double duration_s = 40;

@@ -12,9 +12,12 @@
 
 #include "flight/block_feed_forward.hpp"
 #include "loop/any_policy.hpp"
+#include "loop/wrench_block.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/control/filtered_motion.hpp"
 #include "pinnquad/control/known_drag.hpp"
+#include "pinnquad/control/l1_adaptive.hpp"
+#include "pinnquad/control/wind_filter.hpp"
 
 namespace programs {
 
@@ -23,15 +26,22 @@ struct LoopController {
   const char* summary;
   bool asks_model = false;  ///< of the block
   bool learns = false;
+  bool asks_wrench = false;  ///< of --wrench
 };
 
-inline constexpr std::array<LoopController, 11> loop_controllers = {{
+inline constexpr std::array<LoopController, 17> loop_controllers = {{
     {"pid", "cascaded PID: the rigid body's allocation, integral of the feedback", false, true},
     {"formula", "the analytic inverse with nominal drag"},
     {"geometric", "the same, and the attitude leans against nominal drag"},
     {"formula_adaptive", "the analytic inverse, with a bias learnt in flight", false, true},
     {"indi", "incremental inversion of the rigid body (INDI): rates and force", false, true},
     {"observer", "disturbance observer: geometric, and a low-pass of what it lacks", false, true},
+    {"l1", "L1 adaptive: geometric, and the low-pass of a piecewise-constant estimate", false, true},
+    {"wrench", "the rigid body with the learnt residual wrench; the attitude leans against it", false, false, true},
+    {"wrench_indi", "incremental inversion of that", false, true, true},
+    {"full", "the same, and wind, thrust and force by a Kalman filter through the network", false, true, true},
+    {"full_nominal", "full, with nominal drag in place of the learnt residual wrench", false, true},
+    {"full_bias", "full, without a residual wrench", false, true},
     {"structured", "the model of the block", true},
     {"structured_drag", "the same, and the attitude leans against nominal drag", true},
     {"adaptive", "the model, with a bias learnt in flight; beyond its bound formula_adaptive", true, true},
@@ -64,7 +74,8 @@ struct LoopKnowledge {
   const std::vector<double>& columns;  ///< of the model, in their order
   const Vehicle& vehicle;              ///< with its effects
   pinnquad::BiasSettings<double> bias{};
-  double delay_s = 0;  ///< by which states come late
+  double delay_s = 0;                            ///< by which states come late
+  const pinnquad::BlockModel* wrench = nullptr;  ///< a residual wrench (loop/wrench_block.hpp), where one is given
 };
 
 /// Throws std::out_of_range for a name that is none.
@@ -112,6 +123,36 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& kno
   if (name == "formula_adaptive") return AnyPolicy(adaptive(formula));
   if (name == "indi") return AnyPolicy(incremental(rigid_body, at_once));
   if (name == "observer") return AnyPolicy(incremental(leaning(formula), slower));
+
+  if (name == "l1") {
+    L1Settings<double> l1;
+    l1.force_cutoff_rad_s *= gains.learning;
+    l1.torque_cutoff_rad_s *= gains.learning;
+    const auto inverse = leaning(formula);
+    return AnyPolicy(L1Adaptive<double, std::decay_t<decltype(inverse)>, Vehicle>(inverse, known.vehicle, l1,
+                                                                                 known.delay_s));
+  }
+
+  const double rotor_scale = known.vehicle.rotor_scale(known.vehicle.surroundings({}, 0));
+  const auto with_wrench = [&](const auto& residual) {
+    return WrenchInverse<double, std::decay_t<decltype(residual)>>(airframe, residual, rotor_scale,
+                                                                   known.vehicle.site().gravity_m_s2);
+  };
+  const auto full = [&](const auto& residual) {
+    WindFilterSettings<double> walks;
+    for (double* walk : {&walks.wind_walk_m_s, &walks.thrust_walk, &walks.force_walk_m_s2}) *walk *= gains.learning;
+    const FlownMotion<double> often({10'000, lag_s, known.delay_s});
+    const WindInverse<double, std::decay_t<decltype(residual)>> wind(with_wrench(residual), walks, often);
+    return AnyPolicy(incremental(wind, at_once));
+  };
+  if (name == "full_nominal") return full(NominalWrench<Vehicle>(known.vehicle));
+  if (name == "full_bias") return full(NominalWrench<Body>(Body(airframe, known.vehicle.site())));
+  if (known.wrench != nullptr) {
+    const BlockWrench learnt = wrench_of(*known.wrench);
+    if (name == "wrench") return AnyPolicy(with_wrench(learnt));
+    if (name == "wrench_indi") return AnyPolicy(incremental(with_wrench(learnt), at_once));
+    if (name == "full") return full(learnt);
+  }
 
   const auto handing_over = [](const auto& first, const auto& second) {
     return AnyPolicy(HandsOver<double, std::decay_t<decltype(first)>, std::decay_t<decltype(second)>>(first, second));

@@ -48,7 +48,7 @@ struct LoopOptions {
   int seeds = 5, budget = 40;
   double duration_s = 40, noise = 1, delay_ms = 0;
   unsigned threads = 0;
-  std::string vehicle = "nominal", out;
+  std::string vehicle = "nominal", wrench, out;
 
   bool compares() const { return !(controllers.empty() && conditions.empty() && out.empty()); }
 };
@@ -137,6 +137,23 @@ void print_table(const LoopOptions& options, const BlockModel& model, const std:
   if (!reasons.empty()) std::printf("  the analytic inverse stood in for the model: %s\n", reasons.c_str());
 }
 
+/// The residual wrench that is given. Throws InputError for another block, std::invalid_argument for a controller that
+/// flies one where none is given.
+std::optional<BlockModel> wrench_for(const LoopOptions& options, const programs::LoopCampaign& plan) {
+  if (!options.wrench.empty()) {
+    std::optional<BlockModel> block(programs::read_model(options.wrench));
+    programs::require_wrench(*block, plan.airframe, plan.airframe_name);
+    return block;
+  }
+  for (const programs::LoopController& each : programs::loop_controllers) {
+    const auto& asked = plan.controllers;
+    if (!each.asks_wrench || std::find(asked.begin(), asked.end(), each.name) == asked.end()) continue;
+    throw std::invalid_argument(std::string("--controllers ") + each.name +
+                                " flies a residual wrench: --wrench FILE, which train --recipe wrench writes");
+  }
+  return {};
+}
+
 /// Controllers side by side.
 int compare(const LoopOptions& options, const BlockModel& model, const std::vector<double>& columns,
             const programs::NamedAirframe& airframe) {
@@ -154,6 +171,8 @@ int compare(const LoopOptions& options, const BlockModel& model, const std::vect
   plan.trajectories = or_usual(options.trajectories, {});
   plan.gains = or_usual(options.gains, {});
   plan.vehicle = options.vehicle;
+  const std::optional<BlockModel> wrench = wrench_for(options, plan);
+  if (wrench) plan.wrench = &*wrench;
   plan.seeds = options.seeds;
   plan.budget = options.budget;
   plan.duration_s = options.duration_s;

@@ -32,6 +32,7 @@
 #include "training/training_report.hpp"
 #include "training/training_table.hpp"
 #include "training/watched_flight.hpp"
+#include "training/wrench_run.hpp"
 
 namespace {
 
@@ -636,6 +637,7 @@ int programs::train(const TrainOptions& options) {
     throw std::invalid_argument("--name " + options.model_name +
                                 ": a C++ identifier was expected, no keyword and no name that C++ reserves");
   }
+  if (options.recipe == wrench_recipe) return train_wrench(options);
   const Selection selection = selection_of(options);
   if (!options.export_choice.empty()) require_known_export(options.export_choice, selection.kinds);
   std::optional<NamedAirframe> given;

@@ -92,6 +92,7 @@ class AdaptiveInverse {
   /// for it by itself; else it waits.
   void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
     const Scalar step_s = clock_.step_s(now_us);
+    if constexpr (learns_in_flight<FeedForward, Scalar>) inverse_.learn(now_us, known, state, commands);
     const bool learnt = motion_.tick(now_us, known, state, commands) && compare(now_us, state.position_m, step_s);
     if (!learnt) bias_.wait(step_s);
     motion_.velocity(now_us, state.velocity_m_s);

@@ -49,7 +49,7 @@ class TrackingController {
       feed_forward_.learn(time_us, flew_ && !saturated(last_), state, last_);
       flew_ = false;
     }
-    asked.acceleration_m_s2 -= across_of(feed_forward_, state);
+    lean(state, asked);
     Accelerations<Scalar> motion, feedback;
     const Status demanded = controller_(state, asked, motion, feedback);
     if (demanded != Status::ok) return demanded;
@@ -85,6 +85,37 @@ class TrackingController {
   Status feed_forward_status() const noexcept { return feed_forward_status_; }
 
  private:
+  /// Takes what the policy knows of across the thrust from the acceleration asked for, and how it changes along the
+  /// trajectory from jerk and snap: central differences over 2 x 20 ms of the motion that the point says.
+  void lean(const State<Scalar>& state, TrajectoryPoint<Scalar>& asked) const noexcept {
+    if constexpr (knows_across<FeedForward, Scalar>) {
+      constexpr Scalar h = Scalar(0.02);
+      const Vector3<Scalar> now = across_of(feed_forward_, state);
+      FlatMotion<Scalar> flat;
+      if (flat_motion(asked, controller_.gravity_m_s2(), flat) == Status::ok) {
+        const auto at = [&](Scalar t) noexcept {
+          State<Scalar> there = state;
+          there.velocity_m_s = asked.velocity_m_s + t * asked.acceleration_m_s2 + (Scalar(0.5) * t * t) * asked.jerk_m_s3;
+          const Vector3<Scalar> acceleration = asked.acceleration_m_s2 - now + t * asked.jerk_m_s3 + (Scalar(0.5) * t * t) * asked.snap_m_s4;
+          Matrix<Scalar, 3, 3> axes;
+          const Scalar yaw = asked.yaw_rad + t * asked.yaw_rate_rad_s;
+          using std::cos;
+          using std::sin;
+          const Vector3<Scalar> force = acceleration - Vector3<Scalar>(Scalar(0), Scalar(0), controller_.gravity_m_s2());
+          if (body_axes(force, Heading<Scalar>{sin(yaw), cos(yaw)}, axes) == Status::ok) there.attitude = from_rotation_matrix(axes);
+          there.body_rates_rad_s = flat.body_rates_rad_s + t * flat.angular_acceleration_rad_s2;
+          return across_of(feed_forward_, there);
+        };
+        const Vector3<Scalar> before = at(-h), middle = at(Scalar(0)), after = at(h);
+        asked.jerk_m_s3 -= (after - before) / (Scalar(2) * h);
+        asked.snap_m_s4 -= (after - Scalar(2) * middle + before) / (h * h);
+      }
+      asked.acceleration_m_s2 -= now;
+    } else {
+      static_cast<void>(state), static_cast<void>(asked);
+    }
+  }
+
   Airframe<Scalar> airframe_;
   Rotors<Scalar> rotors_;
   FlightController<Scalar> controller_;

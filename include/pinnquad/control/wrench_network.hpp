@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// A residual wrench that was learnt (training/wrench_fit.hpp): a small network from the air's velocity, body rates and
+// rotor state to force / mass and angular acceleration. An ordinary exported model: features as below, and as outputs
+// what the rotors would have to make against it (AccelerationOutputs), so that its block and header are as any other's.
+#pragma once
+
+#include <array>
+
+#include "pinnquad/control/wrench_inverse.hpp"
+#include "pinnquad/features/motion_parts.hpp"
+#include "pinnquad/inference/pipeline.hpp"
+#include "pinnquad/nn/jacobian.hpp"
+#include "pinnquad/outputs/wrench_outputs.hpp"
+
+namespace pinnquad {
+
+/// The commands of a rotor behind its lag, in the order of the commands.
+struct RotorState1 {
+  static constexpr const char* name = "rotor_1";
+  static constexpr const char* unit = "1";
+};
+struct RotorState2 {
+  static constexpr const char* name = "rotor_2";
+  static constexpr const char* unit = "1";
+};
+struct RotorState3 {
+  static constexpr const char* name = "rotor_3";
+  static constexpr const char* unit = "1";
+};
+struct RotorState4 {
+  static constexpr const char* name = "rotor_4";
+  static constexpr const char* unit = "1";
+};
+
+/// X of a wrench network: velocity through the air, body rates, rotors.
+using WrenchFeatures =
+    WithColumns<Joined<BodyVelocity, BodyRates>, RotorState1, RotorState2, RotorState3, RotorState4>;
+
+/// Two layers of 32 are enough, and a smooth activation has a smooth Jacobian.
+using WrenchNet = Mlp<float, InputSize<WrenchFeatures::size>, Hidden<2, 32>, OutputSize<AccelerationOutputs::size>, Tanh>;
+
+/// A residual wrench (control/wrench_inverse.hpp) by a model's numbers, which must stay where they are. Inputs are moved
+/// into the envelope of the training rows.
+template <class Network>
+class WrenchNetwork {
+  using Number = typename Network::Scalar;
+  static constexpr int inputs = Network::inputs, outputs = Network::outputs;
+  static_assert(inputs == WrenchFeatures::size && outputs == AccelerationOutputs::size,
+                "pinnquad: a wrench network has the inputs of WrenchFeatures and the outputs of AccelerationOutputs");
+
+ public:
+  WrenchNetwork(const detail::Scales<Number>& scales, const Number* parameters) noexcept
+      : scales_(scales), parameters_(parameters) {}
+  /// Of an exported header.
+  template <class Model>
+  static WrenchNetwork of() noexcept {
+    static_assert(std::is_same_v<typename Model::Network, Network> &&
+                      std::is_same_v<typename Model::Features, WrenchFeatures> &&
+                      std::is_same_v<typename Model::Outputs, AccelerationOutputs>,
+                  "pinnquad: this model is no wrench network (training/wrench_fit.hpp)");
+    return WrenchNetwork(detail::scales_of(Model{}), Model::parameters.data());
+  }
+
+  template <class Scalar>
+  Accelerations<Scalar> operator()(const WrenchInputs<Scalar>& in) const noexcept {
+    Number x[inputs], y[outputs];
+    standardise(in, x);
+    Network::forward(parameters_, static_cast<const Number*>(x), static_cast<Number*>(y));
+    Accelerations<Scalar> result;
+    for (int i = 0; i < 3; ++i) {
+      result.linear_m_s2[i] = -restored<Scalar>(y, i);
+      result.angular_rad_s2[i] = -restored<Scalar>(y, 3 + i);
+    }
+    return result;
+  }
+
+  /// The force / mass, and how it changes with the air's velocity, both body; flat beyond the envelope.
+  template <class Scalar>
+  Vector3<Scalar> force_and_slope(const WrenchInputs<Scalar>& in, Matrix<Scalar, 3, 3>& by_velocity) const noexcept {
+    Number x[inputs], y[outputs], jacobian[outputs * inputs];
+    const unsigned moved = standardise(in, x);
+    JacobianPass<Network>::run(parameters_, static_cast<const Number*>(x), static_cast<Number*>(y),
+                               static_cast<Number*>(jacobian));
+    Vector3<Scalar> force;
+    for (int i = 0; i < 3; ++i) {
+      force[i] = -restored<Scalar>(y, i);
+      for (int k = 0; k < 3; ++k) {
+        const Number slope = -jacobian[i * inputs + k] * scales_.output_deviation[i] / scales_.input_deviation[k];
+        by_velocity(i, k) = (moved >> static_cast<unsigned>(k) & 1u) != 0 ? Scalar(0) : Scalar(slope);
+      }
+    }
+    return force;
+  }
+
+ private:
+  /// Bit i of the result: input i was moved.
+  template <class Scalar>
+  unsigned standardise(const WrenchInputs<Scalar>& in, Number* x) const noexcept {
+    for (int i = 0; i < 3; ++i) {
+      x[i] = Number(in.air_velocity_m_s[i]);
+      x[3 + i] = Number(in.body_rates_rad_s[i]);
+    }
+    for (int i = 0; i < rotor_count; ++i) x[6 + i] = Number(in.rotors[static_cast<std::size_t>(i)]);
+    unsigned moved = 0;
+    for (int i = 0; i < inputs; ++i) {
+      const Number asked = (x[i] - scales_.input_mean[i]) / scales_.input_deviation[i];
+      x[i] = detail::saturated(scales_, i, asked);
+      if (x[i] < asked || asked < x[i]) moved |= 1u << static_cast<unsigned>(i);
+    }
+    return moved;
+  }
+  template <class Scalar>
+  Scalar restored(const Number* y, int i) const noexcept {
+    return Scalar(y[i] * scales_.output_deviation[i] + scales_.output_mean[i]);
+  }
+
+  detail::Scales<Number> scales_;
+  const Number* parameters_;
+};
+
+}  // namespace pinnquad

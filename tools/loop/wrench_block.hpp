@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// A residual wrench from its block, which `train --recipe wrench` writes.
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "pinnquad/control/wrench_network.hpp"
+#include "pinnquad/deploy/block_model.hpp"
+
+namespace programs {
+
+using BlockWrench = pinnquad::WrenchNetwork<pinnquad::WrenchNet>;
+
+/// Throws InputError, one line, for a block of another kind or of another vehicle.
+inline void require_wrench(const pinnquad::BlockModel& block, const pinnquad::Airframe<double>& airframe,
+                           const std::string& airframe_name) {
+  using Features = pinnquad::WrenchFeatures;
+  bool fits = !block.is_double() && block.features().size() == Features::size &&
+              pinnquad::detail::describes<pinnquad::AccelerationOutputs>(block.schema()) &&
+              pinnquad::detail::describes<pinnquad::WrenchNet>(block.answer());
+  for (std::size_t i = 0; fits && i < std::size_t(Features::size); ++i) {
+    fits = block.features()[static_cast<int>(i)].name == Features::names[i];
+  }
+  if (!fits) {
+    throw pinnquad::InputError(block.path(), 0, 0, "a residual wrench, as train --recipe wrench writes it",
+                               "a model of another kind: " + block.answer());
+  }
+  const auto numbers_of = [](const pinnquad::Airframe<double>& of) {
+    std::vector<double> numbers;
+    pinnquad::each_number(of, [&](auto number) { numbers.push_back(static_cast<double>(number)); });
+    return numbers;
+  };
+  if (numbers_of(block.airframe()) != numbers_of(airframe)) {
+    throw pinnquad::InputError(block.path(), 0, 0, "a residual wrench of the vehicle that flies, " + airframe_name,
+                               "one of " + block.airframe_name());
+  }
+}
+
+/// The block must stay where it is, and have passed require_wrench().
+inline BlockWrench wrench_of(const pinnquad::BlockModel& block) {
+  return block.with([]([[maybe_unused]] const auto& model) -> BlockWrench {
+    if constexpr (std::is_same_v<decltype(model.parameters()), const float*>) {
+      return BlockWrench(model.scales(), model.parameters());
+    } else {
+      throw std::logic_error("a wrench network is of float");
+    }
+  });
+}
+
+}  // namespace programs
