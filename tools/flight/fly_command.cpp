@@ -321,9 +321,8 @@ void add_options(CLI::App& app, FlyOptions& options) {
   add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,
              "seed of pilot and recorder noise; the same seed gives the same flight")
       ->type_name("N");
-  add_number(
-      app, "--samples", options.samples, std::size_t{1}, std::size_t{10000000},
-      "rows to record (default: d1, harder 15000, d2 6000, d3 5000; with --sticks as long as these)");
+  add_number(app, "--samples", options.samples, std::size_t{1}, std::size_t{10000000},
+             "rows to record (default: d1, harder 15000, d2 6000, d3 5000; with --sticks as long as these)");
   add_number(app, "--interval", options.interval_ms, 2.0, 1000.0,
              "ms from row to row, rounded to control ticks of 2 ms (default: 50)");
   app.add_option("--airframe", options.airframe,

@@ -349,21 +349,21 @@ class Journal {
 nlohmann::json plan_of(const LoopCampaign& plan) {
   const LoopSensors& sensors = plan.sensors;
   nlohmann::json said = {{"format", 1},
-          {"model", plan.model.path()},
-          {"contents", hexadecimal(plan.model.contents_hash())},
-          {"airframe", plan.airframe_name},
-          {"vehicle", plan.vehicle},
-          {"mass_kg", plan.airframe.mass_kg},
-          {"columns", plan.columns},
-          {"seeds", plan.seeds},
-          {"budget", plan.budget},
-          {"duration_s", plan.duration_s},
-          {"noise",
-           {{"position_m", sensors.position_m},
-            {"velocity_m_s", sensors.velocity_m_s},
-            {"attitude_rad", sensors.attitude_rad},
-            {"body_rates_rad_s", sensors.body_rates_rad_s}}},
-          {"delay_s", sensors.delay_s}};
+                         {"model", plan.model.path()},
+                         {"contents", hexadecimal(plan.model.contents_hash())},
+                         {"airframe", plan.airframe_name},
+                         {"vehicle", plan.vehicle},
+                         {"mass_kg", plan.airframe.mass_kg},
+                         {"columns", plan.columns},
+                         {"seeds", plan.seeds},
+                         {"budget", plan.budget},
+                         {"duration_s", plan.duration_s},
+                         {"noise",
+                          {{"position_m", sensors.position_m},
+                           {"velocity_m_s", sensors.velocity_m_s},
+                           {"attitude_rad", sensors.attitude_rad},
+                           {"body_rates_rad_s", sensors.body_rates_rad_s}}},
+                         {"delay_s", sensors.delay_s}};
   if (plan.wrench != nullptr) said["wrench"] = hexadecimal(plan.wrench->contents_hash());
   return said;
 }

@@ -129,8 +129,8 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& kno
     l1.force_cutoff_rad_s *= gains.learning;
     l1.torque_cutoff_rad_s *= gains.learning;
     const auto inverse = leaning(formula);
-    return AnyPolicy(L1Adaptive<double, std::decay_t<decltype(inverse)>, Vehicle>(inverse, known.vehicle, l1,
-                                                                                 known.delay_s));
+    return AnyPolicy(
+        L1Adaptive<double, std::decay_t<decltype(inverse)>, Vehicle>(inverse, known.vehicle, l1, known.delay_s));
   }
 
   const double rotor_scale = known.vehicle.rotor_scale(known.vehicle.surroundings({}, 0));

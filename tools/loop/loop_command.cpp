@@ -196,6 +196,9 @@ int compare(const LoopOptions& options, const BlockModel& model, const std::vect
 
 int loop(const LoopOptions& options) {
   const BlockModel model = programs::read_model(options.model);
+  if (programs::is_wrench(model)) {
+    throw InputError(model.path(), 0, 0, "an inverse-dynamics model", "a residual wrench, which --wrench takes");
+  }
   if (model.features().window().latest_s > 0) {
     throw std::invalid_argument(model.path() + ": its window looks ahead of the present, which no loop can");
   }
@@ -285,6 +288,11 @@ programs::Command programs::loop_command(CLI::App& program) {
           "sags and legs, of which they know nothing")
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>(campaign_vehicles.begin(), campaign_vehicles.end())))
+      ->group("Comparison");
+  line->add_option("--wrench", options->wrench,
+                   "residual wrench of the vehicle, which train --recipe wrench writes: for the controllers wrench, "
+                   "wrench_indi, full")
+      ->type_name("FILE")
       ->group("Comparison");
   number("--seeds", options->seeds, 1, 1000, "seeds of noise, wind, gusts, random paths, the weak rotor");
   number("--budget", options->budget, 1, 100000, "evaluations of the search, the same for each controller");

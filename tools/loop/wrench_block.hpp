@@ -15,9 +15,8 @@ namespace programs {
 
 using BlockWrench = pinnquad::WrenchNetwork<pinnquad::WrenchNet>;
 
-/// Throws InputError, one line, for a block of another kind or of another vehicle.
-inline void require_wrench(const pinnquad::BlockModel& block, const pinnquad::Airframe<double>& airframe,
-                           const std::string& airframe_name) {
+/// True for a block that train --recipe wrench wrote.
+inline bool is_wrench(const pinnquad::BlockModel& block) {
   using Features = pinnquad::WrenchFeatures;
   bool fits = !block.is_double() && block.features().size() == Features::size &&
               pinnquad::detail::describes<pinnquad::AccelerationOutputs>(block.schema()) &&
@@ -25,7 +24,13 @@ inline void require_wrench(const pinnquad::BlockModel& block, const pinnquad::Ai
   for (std::size_t i = 0; fits && i < std::size_t(Features::size); ++i) {
     fits = block.features()[static_cast<int>(i)].name == Features::names[i];
   }
-  if (!fits) {
+  return fits;
+}
+
+/// Throws InputError, one line, for a block of another kind or of another vehicle.
+inline void require_wrench(const pinnquad::BlockModel& block, const pinnquad::Airframe<double>& airframe,
+                           const std::string& airframe_name) {
+  if (!is_wrench(block)) {
     throw pinnquad::InputError(block.path(), 0, 0, "a residual wrench, as train --recipe wrench writes it",
                                "a model of another kind: " + block.answer());
   }

@@ -62,8 +62,7 @@ void add_kinds(CLI::App& app, TrainOptions& options, GivenWords& words) {
   app.add_option(
          "--recipe", words.recipe,
          "kinds of models to compare, by a name, and the one to export; of flights, where --models names none. " +
-             recipes +
-             "; wrench: the residual wrench of the vehicle, for pinnquad loop --wrench (docs/loop.md), alone")
+             recipes + "; wrench: the residual wrench of the vehicle, for pinnquad loop --wrench (docs/loop.md), alone")
       ->capture_default_str();
   app.add_option("--loss", words.losses,
                  "what the networks of a recipe are trained under, any of: " + programs::listed(programs::loss_names) +

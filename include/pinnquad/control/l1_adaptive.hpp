@@ -36,8 +36,8 @@ class L1Observer {
     predicted_ += period_s * known + (kept - Scalar(1)) * error_ + held * estimate_;
     error_ = predicted_ - measured;
     estimate_ = -kept / held * error_;
-    const Scalar bound = estimate_ > most ? most : (estimate_ < -most ? -most : estimate_);
-    filtered_ += (Scalar(1) - exp(-cutoff_rad_s * period_s)) * (bound - filtered_);
+    const Scalar next = filtered_ + (Scalar(1) - exp(-cutoff_rad_s * period_s)) * (estimate_ - filtered_);
+    filtered_ = next > most ? most : (next < -most ? -most : next);  // the estimate alone is mostly noise
   }
 
  private:
@@ -48,7 +48,7 @@ class L1Observer {
 template <class Scalar>
 struct L1Settings {
   Scalar linear_predictor_1_s = Scalar(5), angular_predictor_1_s = Scalar(10);
-  Scalar force_cutoff_rad_s = Scalar(8), torque_cutoff_rad_s = Scalar(8);
+  Scalar force_cutoff_rad_s = Scalar(12), torque_cutoff_rad_s = Scalar(12);
   Scalar most_m_s2 = Scalar(6), most_rad_s2 = Scalar(40);  ///< of each axis
 };
 

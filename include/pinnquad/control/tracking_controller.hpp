@@ -38,7 +38,8 @@ class TrackingController {
   /// fractions, then desaturated. Where the policy declines, u_ff is the allocation of the reference motion's
   /// rigid-body wrench, without air.
   /// A policy that learns (control/adaptive_inverse.hpp) is shown the state and the commands of the tick before first,
-  /// and what it finds across the thrust is taken from the acceleration that is asked for.
+  /// and what it finds across the thrust is taken from the motion that is asked for, with its rate of change along the
+  /// trajectory.
   /// `ok`. `limited`: the policy limited, or the sum was desaturated. `fell_back`: the policy fell back, or declined
   /// (feed_forward_status() says why). Any other Status of the controller, and `output_not_finite`: the commands are
   /// untouched.
@@ -85,35 +86,47 @@ class TrackingController {
   Status feed_forward_status() const noexcept { return feed_forward_status_; }
 
  private:
-  /// Takes what the policy knows of across the thrust from the acceleration asked for, and how it changes along the
-  /// trajectory from jerk and snap: central differences over 2 x 20 ms of the motion that the point says.
+  /// What the policy knows of across the thrust is taken from the acceleration asked for; how it changes along the
+  /// trajectory, from jerk and snap: differences over 20 ms before and after, of the motion that the point says.
   void lean(const State<Scalar>& state, TrajectoryPoint<Scalar>& asked) const noexcept {
     if constexpr (knows_across<FeedForward, Scalar>) {
       constexpr Scalar h = Scalar(0.02);
-      const Vector3<Scalar> now = across_of(feed_forward_, state);
+      const Vector3<Scalar> across = across_of(feed_forward_, state);
+      TrajectoryPoint<Scalar> leaning = asked;
+      leaning.acceleration_m_s2 -= across;
       FlatMotion<Scalar> flat;
-      if (flat_motion(asked, controller_.gravity_m_s2(), flat) == Status::ok) {
-        const auto at = [&](Scalar t) noexcept {
-          State<Scalar> there = state;
-          there.velocity_m_s = asked.velocity_m_s + t * asked.acceleration_m_s2 + (Scalar(0.5) * t * t) * asked.jerk_m_s3;
-          const Vector3<Scalar> acceleration = asked.acceleration_m_s2 - now + t * asked.jerk_m_s3 + (Scalar(0.5) * t * t) * asked.snap_m_s4;
-          Matrix<Scalar, 3, 3> axes;
-          const Scalar yaw = asked.yaw_rad + t * asked.yaw_rate_rad_s;
-          using std::cos;
-          using std::sin;
-          const Vector3<Scalar> force = acceleration - Vector3<Scalar>(Scalar(0), Scalar(0), controller_.gravity_m_s2());
-          if (body_axes(force, Heading<Scalar>{sin(yaw), cos(yaw)}, axes) == Status::ok) there.attitude = from_rotation_matrix(axes);
-          there.body_rates_rad_s = flat.body_rates_rad_s + t * flat.angular_acceleration_rad_s2;
-          return across_of(feed_forward_, there);
-        };
-        const Vector3<Scalar> before = at(-h), middle = at(Scalar(0)), after = at(h);
-        asked.jerk_m_s3 -= (after - before) / (Scalar(2) * h);
-        asked.snap_m_s4 -= (after - Scalar(2) * middle + before) / (h * h);
+      if (flat_motion(leaning, controller_.gravity_m_s2(), flat) == Status::ok) {
+        const Vector3<Scalar> before = across_at(state, leaning, flat, asked, -h);
+        const Vector3<Scalar> now = across_at(state, leaning, flat, asked, Scalar(0));
+        const Vector3<Scalar> after = across_at(state, leaning, flat, asked, h);
+        leaning.jerk_m_s3 -= (after - before) / (Scalar(2) * h);
+        leaning.snap_m_s4 -= (after - Scalar(2) * now + before) / (h * h);
       }
-      asked.acceleration_m_s2 -= now;
+      asked = leaning;
     } else {
       static_cast<void>(state), static_cast<void>(asked);
     }
+  }
+  /// Across the thrust, a time after the point, on the trajectory: velocity of the point, attitude and body rates of
+  /// one that leans.
+  Vector3<Scalar> across_at(const State<Scalar>& state, const TrajectoryPoint<Scalar>& leaning,
+                            const FlatMotion<Scalar>& flat, const TrajectoryPoint<Scalar>& point,
+                            Scalar time_s) const noexcept {
+    using std::cos;
+    using std::sin;
+    const Scalar half_square = Scalar(0.5) * time_s * time_s;
+    State<Scalar> there = state;
+    there.velocity_m_s = point.velocity_m_s + time_s * point.acceleration_m_s2 + half_square * point.jerk_m_s3;
+    Vector3<Scalar> force = leaning.acceleration_m_s2 + time_s * leaning.jerk_m_s3 + half_square * leaning.snap_m_s4;
+    force[2] -= controller_.gravity_m_s2();
+    const Scalar yaw = point.yaw_rad + time_s * point.yaw_rate_rad_s;
+    Matrix<Scalar, 3, 3> axes;
+    there.attitude = flat.attitude;
+    if (body_axes(force, Heading<Scalar>{sin(yaw), cos(yaw)}, axes) == Status::ok) {
+      there.attitude = from_rotation_matrix(axes);
+    }
+    there.body_rates_rad_s = flat.body_rates_rad_s + time_s * flat.angular_acceleration_rad_s2;
+    return across_of(feed_forward_, there);
   }
 
   Airframe<Scalar> airframe_;

@@ -17,11 +17,11 @@ template <class Scalar>
 struct WindFilterSettings {
   Scalar force_noise_m_s2 = Scalar(1);  ///< of a specific force, each axis
   Scalar wind_start_m_s = Scalar(2), thrust_start = Scalar(0.1), force_start_m_s2 = Scalar(0.3);
-  Scalar wind_walk_m_s = Scalar(1), thrust_walk = Scalar(0.03), force_walk_m_s2 = Scalar(0.1);
+  Scalar wind_walk_m_s = Scalar(0.4), thrust_walk = Scalar(0.01), force_walk_m_s2 = Scalar(0.05);
   Scalar most_wind_m_s = Scalar(20), most_force_m_s2 = Scalar(4);
   Scalar least_thrust = Scalar(0.5), most_thrust = Scalar(1.5);
-  Scalar gate = Scalar(16.3);         ///< squared innovation over its variance, 3 degrees of freedom: 0.1 % lie beyond
-  Scalar patience_s = Scalar(0.25);   ///< refused for so long it is no outlier
+  Scalar gate = Scalar(16.3);        ///< squared innovation over its variance, 3 degrees of freedom: 0.1 % lie beyond
+  Scalar patience_s = Scalar(0.25);  ///< refused for so long it is no outlier
 };
 
 namespace detail {
@@ -198,7 +198,8 @@ class WindInverse {
  public:
   using Inverse = WrenchInverse<Scalar, Residual>;
 
-  WindInverse(const Inverse& inverse, const WindFilterSettings<Scalar>& settings, const FlownMotion<Scalar>& motion) noexcept
+  WindInverse(const Inverse& inverse, const WindFilterSettings<Scalar>& settings,
+              const FlownMotion<Scalar>& motion) noexcept
       : inverse_(inverse), filter_(settings), motion_(motion) {}
 
   const Inverse& inverse() const noexcept { return inverse_; }

@@ -47,9 +47,9 @@ class NominalWrench<Quadrotor<Scalar, Effects...>> {
 /// The disturbance that a WrenchInverse is told beside its residual wrench.
 template <class Scalar>
 struct WindAndThrust {
-  Vector3<Scalar> wind_m_s = Vector3<Scalar>::Zero();      ///< NED
-  Scalar thrust_scale{1};                                  ///< of all rotors
-  Vector3<Scalar> force_m_s2 = Vector3<Scalar>::Zero();    ///< force / mass that nothing explains, NED
+  Vector3<Scalar> wind_m_s = Vector3<Scalar>::Zero();    ///< NED
+  Scalar thrust_scale{1};                                ///< of all rotors
+  Vector3<Scalar> force_m_s2 = Vector3<Scalar>::Zero();  ///< force / mass that nothing explains, NED
 };
 
 /// A feed-forward policy: thrust and torque are solved with the residual wrench at the rotors' present state, and what
@@ -102,7 +102,8 @@ class WrenchInverse {
   }
 
   Vector3<Scalar> across_m_s2(const State<Scalar>& state) const noexcept {
-    Vector3<Scalar> across = residual_(inputs(state)).linear_m_s2 + world_to_body<Scalar>(state.attitude, told_.force_m_s2);
+    Vector3<Scalar> across =
+        residual_(inputs(state)).linear_m_s2 + world_to_body<Scalar>(state.attitude, told_.force_m_s2);
     across[2] = Scalar(0);
     return body_to_world<Scalar>(state.attitude, across);
   }

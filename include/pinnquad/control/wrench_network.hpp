@@ -10,6 +10,7 @@
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/inference/pipeline.hpp"
 #include "pinnquad/nn/jacobian.hpp"
+#include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/outputs/wrench_outputs.hpp"
 
 namespace pinnquad {
@@ -33,11 +34,11 @@ struct RotorState4 {
 };
 
 /// X of a wrench network: velocity through the air, body rates, rotors.
-using WrenchFeatures =
-    WithColumns<Joined<BodyVelocity, BodyRates>, RotorState1, RotorState2, RotorState3, RotorState4>;
+using WrenchFeatures = WithColumns<Joined<BodyVelocity, BodyRates>, RotorState1, RotorState2, RotorState3, RotorState4>;
 
 /// Two layers of 32 are enough, and a smooth activation has a smooth Jacobian.
-using WrenchNet = Mlp<float, InputSize<WrenchFeatures::size>, Hidden<2, 32>, OutputSize<AccelerationOutputs::size>, Tanh>;
+using WrenchNet =
+    Mlp<float, InputSize<WrenchFeatures::size>, Hidden<2, 32>, OutputSize<AccelerationOutputs::size>, Tanh>;
 
 /// A residual wrench (control/wrench_inverse.hpp) by a model's numbers, which must stay where they are. Inputs are moved
 /// into the envelope of the training rows.

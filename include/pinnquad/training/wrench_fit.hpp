@@ -64,9 +64,14 @@ inline Flight with_rotor_states(const Flight& flight, const Airframe<double>& ai
   for (std::size_t row = 0; row < flight.size(); ++row) {
     const Sample& sample = flight[row];
     const double step_s = sample.time_s - before_s;
-    if (row == 0 || step_s > 5 * period_s) rotors.restart(sample.commands);
-    const double parts = std::max(1.0, std::ceil(step_s / control_step_s));  // as a loop between the rows does
-    for (double part = 0; part < parts; ++part) static_cast<void>(rotors.follow(0, step_s / parts, sample.commands));
+    if (row == 0 || step_s > 5 * period_s) {
+      rotors.restart(sample.commands);
+    } else {  // as a loop does between the rows
+      const double parts = std::max(1.0, std::ceil(step_s / control_step_s - 1e-6));
+      for (double part = 0; part < parts; ++part) {
+        static_cast<void>(rotors.follow(0, step_s / parts, sample.commands));
+      }
+    }
     before_s = sample.time_s;
     for (std::size_t i = 0; i < states.size(); ++i) states[i].push_back(rotors.then()[i]);
   }
@@ -84,9 +89,9 @@ inline Accelerations<double> residual_wrench_of(const Sample& sample, const Comm
   State<double> state;
   state.position_m[2] = vehicle.site().ground_z_m - sample.altitude_m;
   const Wrench<double> made = vehicle.rotors().wrench(rotors, vehicle.rotor_scale(vehicle.surroundings(state, 0.0)));
-  return {SpecificForce::of<double>(motion) - made.force_N / airframe.mass_kg,
-          motion.angular_acceleration_rad_s2 -
-              angular_acceleration(airframe, motion.body_rates_rad_s, made.torque_N_m)};
+  return {
+      SpecificForce::of<double>(motion) - made.force_N / airframe.mass_kg,
+      motion.angular_acceleration_rad_s2 - angular_acceleration(airframe, motion.body_rates_rad_s, made.torque_N_m)};
 }
 
 namespace detail {
@@ -114,9 +119,9 @@ struct WrenchJudgement {
   std::array<double, 6> r_squared{}, deviation{};
 };
 inline WrenchJudgement judge_wrench(const WrenchModel& model, const RowSet& rows) {
-  const detail::Scales<float> scales{model.input.mean.data(),      model.input.standard_deviation.data(),
-                                     model.output.mean.data(),     model.output.standard_deviation.data(),
-                                     model.envelope_lower.data(),  model.envelope_upper.data()};
+  const detail::Scales<float> scales{model.input.mean.data(),     model.input.standard_deviation.data(),
+                                     model.output.mean.data(),    model.output.standard_deviation.data(),
+                                     model.envelope_lower.data(), model.envelope_upper.data()};
   const WrenchNetwork<WrenchNet> network(scales, model.network.parameters.data());
   std::array<double, 6> sum{}, squares{}, errors{};
   double count = 0;
@@ -175,7 +180,8 @@ WrenchModel fit_wrench(const RowSet& training, const RowSet& validation, const G
     detail::each_wrench_row(rows, value, [&](const auto& x, const auto& y) {
       if (row++ % step != 0) return;
       for (std::size_t i = 0; i < x.size(); ++i) {
-        data.features.push_back(static_cast<float>((x[i] - context.input.mean[i]) / context.input.standard_deviation[i]));
+        data.features.push_back(
+            static_cast<float>((x[i] - context.input.mean[i]) / context.input.standard_deviation[i]));
       }
       for (std::size_t k = 0; k < y.size(); ++k) {
         data.outputs.push_back(
