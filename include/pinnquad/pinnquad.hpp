@@ -55,3 +55,4 @@
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/trainer.hpp"
 #include "pinnquad/training/training_data.hpp"
+#include "pinnquad/training/wrench_fit.hpp"

@@ -97,6 +97,35 @@ def test_harder_vehicle(pinnquad):
     assert hard["structured"] > 2 * easy["structured"] and hard["adaptive"] < 0.5 * hard["structured"]
 
 
+def test_a_residual_wrench_is_trained_and_flown(pinnquad):
+    """From flight to block to loop: the full stack beside INDI, and beside itself without the network."""
+    light = "--airframe=light_quadrotor"
+    pinnquad("fly harder --interval=10 --samples=6000 --out=flight.csv", light)
+    pinnquad("train --flight=flight.csv --recipe=wrench --seeds=1 --epochs=40 --out=w", light)
+    report = json.loads(Path("w/wrench.json").read_text())
+    assert all(report["test_r_squared"][f"force_{axis}"] > 0.8 for axis in "xyz"), report
+    assert "struct TrainedWrench" in Path("w/wrench.hpp").read_text()
+    result = compared(pinnquad, light, "--wrench=w/wrench.block", "--vehicle=harder", "--gains=equal", "--seeds=1",
+                      "--controllers=indi,wrench_indi,full,full_nominal,full_bias,l1", "--conditions=calm,wind_4,payload",
+                      "--trajectories=eight", "--duration=20")
+    assert not any(row["crashed"] for row in result["rows"])
+    calm, wind, payload = (errors_of(result, name) for name in ("calm", "wind_4", "payload"))
+    for flown in calm, wind, payload:
+        assert flown["full"] < 0.6 * flown["indi"] and flown["full"] < 0.6 * flown["full_bias"], result["rows"]
+        assert flown["full"] < 0.75 * flown["full_nominal"] and flown["wrench_indi"] < 0.7 * flown["indi"], result["rows"]
+    assert wind["full"] < wind["wrench_indi"], "the wind is found"
+    assert payload["l1"] < 3 * calm["l1"], "a payload is found"
+    flown = ("--controllers=full", "--seeds=1", "--out=d")
+    pinnquad.refused("loop --model", MODEL, light, "--wrench", MODEL, *flown, at=f"{MODEL}*")
+    pinnquad.refused("loop --model", MODEL, "--wrench=w/wrench.block", *flown, at="w/wrench.block*")
+    pinnquad.refused("loop w/wrench.block", at="w/wrench.block*")
+    pinnquad.refused("loop --model", MODEL, *flown, keyword="--wrench")
+    pinnquad("fly harder --samples=3000 --out=slow.csv", light)
+    pinnquad.refused("train --flight=slow.csv --recipe=wrench --out=d", light, keyword="--interval")
+    pinnquad.refused("train --flight=flight.csv --recipe=wrench --loss=vanilla --out=d", light, keyword="--loss")
+    assert not Path("d").exists()
+
+
 @pytest.mark.parametrize("words, keyword", [
     (("--controllers=autopilot", "--out=c"), "--controllers"),
     (("--conditions=snow", "--out=c"), "--conditions"),
