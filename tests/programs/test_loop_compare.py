@@ -116,9 +116,9 @@ def test_a_residual_wrench_is_trained_and_flown(pinnquad):
     assert wind["full"] < wind["wrench_indi"], "the wind is found"
     assert payload["l1"] < 3 * calm["l1"], "a payload is found"
     flown = ("--controllers=full", "--seeds=1", "--out=d")
-    pinnquad.refused("loop --model", MODEL, light, "--wrench", MODEL, *flown, at=f"{MODEL}*")
-    pinnquad.refused("loop --model", MODEL, "--wrench=w/wrench.block", *flown, at="w/wrench.block*")
-    pinnquad.refused("loop w/wrench.block", at="w/wrench.block*")
+    pinnquad.refused("loop --model", MODEL, light, "--wrench", MODEL, *flown, at=MODEL.name)
+    pinnquad.refused("loop --model", MODEL, "--wrench=w/wrench.block", *flown, at="w/wrench.block")
+    pinnquad.refused("loop w/wrench.block", at="w/wrench.block")
     pinnquad.refused("loop --model", MODEL, *flown, keyword="--wrench")
     pinnquad("fly harder --samples=3000 --out=slow.csv", light)
     pinnquad.refused("train --flight=slow.csv --recipe=wrench --out=d", light, keyword="--interval")
