@@ -117,11 +117,11 @@ reject() {
 }
 at_most() { if [ "$2" -gt "$3" ]; then reject "$1" "$2, at most $3"; fi; }
 
+doubles="__aeabi_d[a-z0-9]*|__aeabi_cd[a-z]*|__aeabi_[a-z]*2d|__[a-z]*df[a-z0-9]*"
 forbidden="malloc|calloc|realloc|free|_malloc_r|_free_r|_sbrk|_sbrk_r|abort|raise|[a-z]*printf|_[a-z]*printf_r"
-forbidden="$forbidden|__aeabi_d[a-z0-9]*|__aeabi_cd[a-z]*|__aeabi_[a-z]*2d|__[a-z]*df[a-z0-9]*"
 forbidden="$forbidden|__cxa_[a-z_]*|_Unwind_[A-Za-z_]*"
 forbidden="$forbidden|__gxx_personality_v0|__assert[a-z_]*|_Zn[wa][a-z].*|_Zd[la]P.*|_ZTV.*|_ZTI.*|_ZGV.*"
-forbidden="$forbidden|fmaf?|fmaxf?|__emutls.*"
+forbidden="$forbidden|fmaf?|fmaxf?|__emutls.*|$doubles"
 
 # judge_symbols <image>: nothing of the heap, of doubles in software, of exceptions, of assertions, of a software fma
 judge_symbols() {

@@ -18,7 +18,7 @@ if [ "$(uname -m)" = x86_64 ]; then
   grep -qw fma /proc/cpuinfo || { echo "SKIPPED: this machine has no fused multiply-add to compare with"; exit 77; }
 fi
 "$compiler" -std=c++17 -O1 "-I$root/include" -isystem "$eigen" "$here/write_model.cpp" -o "$work/write_model"
-"$work/write_model" "$work/paper_model.hpp" "$work/structured_model.hpp"
+"$work/write_model" "$work/paper_model.hpp" "$work/structured_model.hpp" "$work/structured_model.block"
 for what in forward predict; do
   "$compiler" -std=c++17 -O2 $fma -DNDEBUG -ffp-contract=off "-I$root/include" -isystem "$eigen" "-I$work" \
     "${model_flags[@]}" "$here/under_test.cpp" "$here/measure_$what.cpp" -o "$work/host_$what"

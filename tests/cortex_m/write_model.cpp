@@ -6,6 +6,7 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
@@ -48,8 +49,8 @@ void write(const std::string& path, const std::string& name) {
   write_model_header(path, name, model, golden, {"random weights", 0, 0, 7, 0, "none"});
 }
 
-/// A base and a residual of the recipe `structured`.
-void write_structured(const std::string& path, const std::string& name) {
+/// A base and a residual of the recipe `structured`; as a block, too.
+void write_structured(const std::string& path, const std::string& block, const std::string& name) {
   using Features = InverseFeatures;
   using Residual = Mlp<float, InputSize<residual_inputs<Features>>, Hidden<2, 32>, OutputSize<4>, Relu>;
   using Answer = MonotonePredictor<Features, Residual>;
@@ -77,14 +78,16 @@ void write_structured(const std::string& path, const std::string& name) {
   for (auto& x : golden) {
     for (float& v : x) v = float(8 * uniform(engine, -1.0, 1.0));
   }
-  write_model_header(path, name, model, golden, {"random weights", 0, 0, 8, 0, "none"});
+  const Provenance provenance{"random weights", 0, 0, 8, 0, "none"};
+  write_model_header(path, name, model, golden, provenance);
+  write_weight_file(block, model_block(model, golden, provenance, name));
 }
 
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 3) return 2;
+  if (count != 4) return 2;
   write(arguments[1], "PaperModel");
-  write_structured(arguments[2], "StructuredModel");
+  write_structured(arguments[2], arguments[3], "StructuredModel");
   return 0;
 }

@@ -103,6 +103,54 @@ void outlasts_all() {
 
 }  // namespace
 
+TEST_CASE("the biases have the time constants of the block that flies, unless the settings say some") {
+  using Times = pinnquad::SignedSums<float>;
+  const Times usual = pinnquad::BiasSettings<float>{}.time_constants_s;
+  const Times own = pinnquad::bias_settings<QuickCrazyflieModel>().time_constants_s;
+  const Block telling = sound_block<QuickCrazyflieModel>(), silent = other_block<QuickCrazyflieModel>();
+  CoreSettings of_the_user;
+  of_the_user.bias_time_constants_s[0] = 1.5f;
+  of_the_user.bias_time_constants_s[3] = 3;
+  const auto check = [&](const CoreSettings& settings, const Times& of_telling, const Times& of_silent) {
+    pinnquad::autopilot::NeuralController<QuickCrazyflieModel> core(settings);
+    const auto flies = [&core](const Block& block) {
+      pinnquad::Commands<float> commands{};
+      pinnquad::autopilot::StepReport report;
+      REQUIRE(core.offer_model(block.data(), block.size()) == Status::ok);
+      static_cast<void>(core.step(1000, commands, report));
+      CHECK(core.analytic_bias().settings().time_constants_s == core.bias().settings().time_constants_s);
+      return core.bias().settings().time_constants_s;
+    };
+    CHECK(flies(telling) == of_telling);
+    CHECK(flies(silent) == of_silent);
+    CHECK(flies(telling) == of_telling);
+  };
+  check({}, own, usual);
+  check(of_the_user, {1.5f, 0.2f, 0.2f, 3}, {1.5f, usual[1], usual[2], 3});
+}
+
+TEST_CASE("a rotor at 85 % that the usual time constants lose is flown by those of the model") {
+  using Stack = CrazyflieStackOf<QuickCrazyflieModel>;
+  const std::vector<Fault> weak = {{6, 100, FaultKind::bent_rotor, 0.85, "a rotor at 85 %", Reaction::flies}};
+  CoreSettings usual;
+  for (std::size_t k = 0; k < 4; ++k) {
+    usual.bias_time_constants_s[k] = pinnquad::BiasSettings<float>{}.time_constants_s[k];
+  }
+  const auto fly = [&weak](const CoreSettings& settings) {
+    FaultyFlight<Stack> flight(settings);
+    REQUIRE(flight.boot());
+    return flight.fly(hover, duration_s, weak);
+  };
+  const FlightFigures own = fly({}), slow = fly(usual);
+  std::printf(
+      "a rotor at 85 %%: RMSE from 8 s on %.2f cm, up to %.2f m off; with the usual time constants %.2f, %.2f\n",
+      100 * own.late_rmse_m, own.max_error_m, 100 * slow.late_rmse_m, slow.max_error_m);
+  CHECK_FALSE(own.crashed);
+  CHECK(own.late_rmse_m < 0.03);
+  CHECK(own.max_error_m < 0.3);
+  CHECK((slow.crashed || slow.max_error_m > 0.8));
+}
+
 TEST_CASE("a payload, a weak rotor or battery and wind are carried; PX4's core") {
   carries_all<Px4Stack>(Eight(4, 9), 0.85);
 }

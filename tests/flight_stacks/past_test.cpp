@@ -216,3 +216,18 @@ TEST_CASE("a model of the motion alone has nothing of it") {
   CHECK((controller.record().came & voltage_bit) == 0);
   CHECK((report.stale_inputs & voltage_bit) == 0);
 }
+
+TEST_CASE("a model of the voltage without a window: the motion that its bias learns from is kept while it is asked") {
+  using Features = pinnquad::WithColumns<pinnquad::AccelerationFeatures, pinnquad::BatteryVoltage>;
+  pinnquad::autopilot::detail::ModelInputs<Features> inputs;
+  inputs.tick(1000);
+  REQUIRE(inputs.voltage(1000, 15) == Status::ok);
+  pinnquad::MotionInputs<float> motion;
+  motion.velocity_m_s = {1, 2, 3};
+  const auto* const asked = &inputs.lasting(motion);
+  const auto at = reinterpret_cast<std::uintptr_t>(asked), first = reinterpret_cast<std::uintptr_t>(&inputs);
+  REQUIRE(at >= first);
+  REQUIRE(at < first + sizeof inputs);
+  CHECK(asked->velocity_m_s == motion.velocity_m_s);
+  CHECK(asked->columns[0] == 15);
+}

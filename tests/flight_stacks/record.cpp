@@ -81,6 +81,7 @@ int main(int count, char** arguments) {
   if (std::strcmp(arguments[1], "payload") == 0) {
     return record<Px4Stack>(arguments[2], arguments[3], 4, 9, 1.5, {payload.begin(), payload.end()});
   }
-  return std::strcmp(arguments[1], "px4") == 0 ? record<Px4Stack>(arguments[2], arguments[3], 4, 9, 1.5)
-                                               : record<CrazyflieStack>(arguments[2], arguments[3], 1.5, 6, 1);
+  return std::strcmp(arguments[1], "px4") == 0
+             ? record<Px4Stack>(arguments[2], arguments[3], 4, 9, 1.5)
+             : record<CrazyflieStackOf<QuickCrazyflieModel>>(arguments[2], arguments[3], 1.5, 6, 1);
 }

@@ -123,6 +123,11 @@ class Px4StackOf {
 /// The paper's quadrotor.
 using Px4Stack = Px4StackOf<DemoQuadModel>;
 
+/// As a training writes it that chose time constants of the bias.
+struct QuickCrazyflieModel : CrazyflieModel {
+  static constexpr std::array<float, 4> bias_time_constants_s = {{0.2f, 0.2f, 0.2f, 0.2f}};
+};
+
 /// Crazyflie's firmware: 500 Hz; x east, y north, z up; degrees.
 template <class ModelType, class Controller = NeuralController<ModelType>>
 class CrazyflieStackOf {

@@ -91,6 +91,8 @@ class MotionBias {
   }
 
   constexpr const BiasSettings<Scalar>& settings() const noexcept { return settings_; }
+  /// From now on, as of another model; what was learnt stays.
+  constexpr void time_constants(const SignedSums<Scalar>& times_s) noexcept { settings_.time_constants_s = times_s; }
   constexpr const SignedSums<Scalar>& sums() const noexcept { return sums_; }
   const Vector3<Scalar>& across_m_s2() const noexcept { return across_; }
   /// `ok`: it learns. `limited`: at a bound. `warming_up`: nothing has been learnt yet, or for longer than `hold_s`.

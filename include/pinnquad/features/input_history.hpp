@@ -188,7 +188,11 @@ class InputHistory {
     return Status::ok;
   }
   const Inputs& inputs() const noexcept { return inputs_; }
-  static const Inputs& lasting(const Present& present) noexcept { return present; }
+  /// In the place of inputs(), until the next take(): a reference to `present` would outlive a temporary one.
+  const Inputs& lasting(const Present& present) noexcept {
+    inputs_ = present;
+    return inputs_;
+  }
   void clear() noexcept {}
 
  private:

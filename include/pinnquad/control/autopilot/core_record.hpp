@@ -150,8 +150,7 @@ struct CoreSettings {
   float descent_m_s{3};
   float take_off_s{1};  ///< time that thrust takes to come at take-off
   // BiasSettings, of the network's bias and the analytic inverse's; and the delay of FlownMotionSettings
-  float bias_time_constants_s[4]{BiasSettings<float>{}.time_constants_s[0], BiasSettings<float>{}.time_constants_s[1],
-                                 BiasSettings<float>{}.time_constants_s[2], BiasSettings<float>{}.time_constants_s[3]};
+  float bias_time_constants_s[4]{};  ///< 0: what the model's block says, or the usual one
   float most_bias[4]{BiasSettings<float>{}.most[0], BiasSettings<float>{}.most[1], BiasSettings<float>{}.most[2],
                      BiasSettings<float>{}.most[3]};
   float across_time_constant_s{BiasSettings<float>{}.across_time_constant_s};

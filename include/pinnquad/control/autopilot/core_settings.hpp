@@ -24,13 +24,21 @@ inline FlightController<float> outer_loop(const CoreSettings& settings, const Ai
   return FlightController<float>(gains, limits, gravity_m_s2);
 }
 
-/// The biases' settings. A model's own time constants belong into CoreSettings::bias_time_constants_s.
+/// The time constants of both biases: those of the settings, and where they say 0 the model's own.
+inline SignedSums<float> bias_time_constants_s(const CoreSettings& settings,
+                                               const BiasSettings<float>& own = {}) noexcept {
+  SignedSums<float> times_s = own.time_constants_s;
+  for (std::size_t k = 0; k < times_s.size(); ++k) {
+    if (settings.bias_time_constants_s[k] > 0) times_s[k] = settings.bias_time_constants_s[k];
+  }
+  return times_s;
+}
+
+/// The settings of both biases until a model says time constants of its own.
 inline BiasSettings<float> bias_settings(const CoreSettings& settings) noexcept {
   BiasSettings<float> result;
-  for (std::size_t k = 0; k < result.most.size(); ++k) {
-    result.time_constants_s[k] = settings.bias_time_constants_s[k];
-    result.most[k] = settings.most_bias[k];
-  }
+  result.time_constants_s = bias_time_constants_s(settings);
+  for (std::size_t k = 0; k < result.most.size(); ++k) result.most[k] = settings.most_bias[k];
   result.across_time_constant_s = settings.across_time_constant_s;
   result.most_across_m_s2 = settings.most_across_m_s2;
   result.hold_s = settings.bias_hold_s;

@@ -51,6 +51,11 @@ class FlownBiases {
   /// True while the network's bias has stood at its bound for too long.
   bool alarm() const noexcept { return alarm_.raised(); }
 
+  /// Of both: where the network declines, its bias moves with the analytic inverse's.
+  void time_constants(const SignedSums<float>& times_s) noexcept {
+    network_.time_constants(times_s);
+    analytic_.time_constants(times_s);
+  }
   void another_model() noexcept {
     if (!given_) network_.reset();
     alarm_.reset();

@@ -156,7 +156,7 @@ class NeuralController {
     report = {};
     model_inputs_.tick(now_us);
     const Inverse* inverse = models_.take();
-    take_checksum(models_.checksum(inverse));
+    if (checksum_ != models_.checksum(inverse)) take_model(*inverse);
     Reaction reaction = inverse == nullptr ? Reaction::gives_up : judge_ages(now_us, report);
     take_off_.update(now_us, situation_, vertical_motion(reaction));
     learn(now_us, reaction, inverse);
@@ -227,9 +227,12 @@ class NeuralController {
     answered_ = true;
   }
 
-  void take_checksum(std::uint32_t checksum) noexcept {
-    if (checksum_ != 0 && checksum != checksum_) biases_.another_model();
-    checksum_ = checksum;
+  /// Not that of the last tick. A replay's first tick has the biases already.
+  PINNQUAD_NOINLINE void take_model(const Inverse& inverse) noexcept {
+    if (checksum_ != 0) biases_.another_model();
+    checksum_ = models_.checksum(&inverse);
+    const BiasSettings<float> own = pinnquad::bias_settings<float>(inverse.model().records);
+    biases_.time_constants(detail::bias_time_constants_s(settings_, own));
   }
 
   Reaction judge_ages(std::uint64_t now_us, StepReport& report) noexcept {

@@ -1,0 +1,95 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# inner_loop.sh <repository> <working folder> <compiler> <Eigen>: the whole inner loop on both processors at -Os and
+# -O2, within its limits of instructions and stack; answers and bias as on the host. A planted fifth more is refused.
+set -euo pipefail
+root=$1 work=$2 compiler=$3 eigen=$4
+# shellcheck source=machine.sh
+source "$root/tests/cortex_m/machine.sh"
+need_tools
+[ -f "$work/prepared" ] || { echo "SKIPPED: the host's results are not there (cortex_m.prepare)"; exit 77; }
+mkdir -p "$work/inner_loop"
+
+fma=
+if [ "$(uname -m)" = x86_64 ]; then fma=-mfma; fi
+
+# loop_flags <loop>: the flight stacks' core with the shipped structured model, with one that has a residual network,
+# and the library's AdaptiveInverse in a TrackingController
+loop_flags() {
+  local block=$root/examples/models/structured_quadrotor.block
+  case $1 in
+    core) loop_flags=("${shipped_flags[@]}" "-DBLOCK_FILE=\"$block\"") ;;
+    residual) loop_flags=("${structured_flags[@]}" "-DBLOCK_FILE=\"$work/structured_model.block\"") ;;
+    library) loop_flags=("${shipped_flags[@]}" "-DBLOCK_FILE=\"$block\"" -DLIBRARY_LOOP) ;;
+  esac
+}
+
+# Instructions of the longest tick, by loop and optimisation: a tenth above what is measured. Bytes of stack.
+declare -A most_instructions=([core-Os]=26500 [core-O2]=13000 [residual-Os]=34200 [residual-O2]=22600
+  [library-Os]=16700 [library-O2]=8000)
+most_stack=1560
+# A start reckons the airframe in double precision, which an M4F has not; a tick does not.
+forbidden=${forbidden%"|$doubles"}
+
+# run_loop <target> <optimisation> <loop> <image> [flag]...
+run_loop() {
+  local target=$1 optimisation=$2 image=$4 start_up=$work/inner_loop/$1.start_up.o part
+  loop_flags "$3"
+  shift 4
+  for part in inner_loop measure_inner_loop; do
+    compile "$target" "$optimisation" "$here/$part.cpp" "$image.$part.o" "${loop_flags[@]}" "$@"
+  done
+  [ -f "$start_up" ] || compile "$target" -O1 "$here/start_up.cpp" "$start_up"
+  link_image "$target" "$image" "$start_up" "$image.inner_loop.o" "$image.measure_inner_loop.o"
+  run_image "$target" "$image" "$image.txt"
+}
+
+# judge_loop <loop> <optimisation> <image>
+judge_loop() {
+  judge_symbols "$3"
+  at_most "instructions" "$(largest instructions "$3.txt")" "${most_instructions[$1$2]}"
+  at_most "stack" "$(largest stack "$3.txt")" "$most_stack"
+}
+
+count_of() { awk -v name="$2" '$1 == "instructions" && $2 == name { print $3 }' "$1"; }
+
+for loop in core residual library; do
+  loop_flags "$loop"
+  host=$work/inner_loop/host.$loop
+  "$compiler" -std=c++17 -O2 $fma -DNDEBUG -ffp-contract=off "-I$root/include" -isystem "$eigen" "-I$work" \
+    "${loop_flags[@]}" "$here/inner_loop.cpp" "$here/measure_inner_loop.cpp" -o "$host"
+  "$host" >"$host.txt"
+  grep -q '^status start 0$' "$host.txt" || reject "status" "the host's $loop does not start"
+  grep -q '^status bias 0$' "$host.txt" || reject "status" "the host's $loop learns no bias"
+  targets="m4f m7_dp"
+  [ "$loop" = core ] || targets=m7_dp
+  for target in $targets; do
+    for optimisation in -Os -O2; do
+      image=$work/inner_loop/$target$optimisation.$loop
+      run_loop "$target" "$optimisation" "$loop" "$image"
+      if ! cmp -s <(grep '^status' "$image.txt") <(grep '^status' "$host.txt"); then
+        reject "status" "$loop on $target $optimisation says something else than on the host"
+      fi
+      apart=$(ulps commands "$image.txt" "$host.txt" 0 3)
+      at_most "ulps of the $loop's commands" "$apart" 16
+      judge_loop "$loop" "$optimisation" "$image"
+      echo "$target $optimisation $loop: $(count_of "$image.txt" learning) instructions where the bias learns," \
+        "$(count_of "$image.txt" between) between, $(count_of "$image.txt" far) far from the training flights;" \
+        "$(largest stack "$image.txt") B stack, commands $apart ulp from the host"
+    done
+  done
+done
+
+honest=$rejected
+image=$work/inner_loop/planted
+fifth=$(($(largest instructions "$work/inner_loop/m7_dp-O2.core.txt") / 5))
+run_loop m7_dp -O2 core "$image" "-DPLANTED_INSTRUCTIONS=$fifth"
+said=$(judge_loop core -O2 "$image")
+if grep -q '^rejected: instructions' <<<"$said"; then
+  echo "a fifth more: $said"
+else
+  echo "FAILED: a fifth more instructions pass"
+  exit 1
+fi
+if [ "$honest" -gt 0 ]; then exit 1; fi
