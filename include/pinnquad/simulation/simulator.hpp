@@ -152,6 +152,8 @@ class Simulator {
                   "SwitchableQuadrotor (simulation/switchable_quadrotor.hpp)");
     quadrotor_.set_ground_effect(model);
   }
+  /// The same for all of the vehicle: another airframe, site or values of the effects.
+  void set_quadrotor(const Vehicle& quadrotor) { quadrotor_ = quadrotor; }
 
  private:
   template <class Actual>

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT
+"""Builds the module of the Python package pinnquad by CMake; pyproject.toml says the rest."""
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+ROOT = Path(__file__).resolve().parent
+
+
+def version():
+    """The one that include/pinnquad/version.hpp states."""
+    text = (ROOT / "include/pinnquad/version.hpp").read_text()
+    return ".".join(re.search(rf"VERSION_{part} (\d+)", text)[1] for part in ("MAJOR", "MINOR", "PATCH"))
+
+
+class CMakeBuild(build_ext):
+    def build_extension(self, ext):
+        for program, package in (("cmake", "cmake"), ("ninja", "ninja-build"), ("c++", "g++")):
+            if not shutil.which(program):
+                raise SystemExit(f"pinnquad: {program} is needed. On Debian or Ubuntu, as root: apt-get install {package}")
+        build = Path(self.build_temp).resolve()
+        parts = {"TESTS": "OFF", "EXAMPLES": "OFF", "TOOLS": "OFF", "BENCH": "OFF", "LOGS": "ON", "PYTHON": "ON",
+                 "AT_ONCE": "ON"}
+        subprocess.run(
+            ["cmake", "-S", str(ROOT), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+             "-DCMAKE_POSITION_INDEPENDENT_CODE=ON", f"-DPython_EXECUTABLE={sys.executable}",
+             *[f"-DPINNQUAD_BUILD_{part}={value}" for part, value in parts.items()]], check=True)
+        jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1))
+        subprocess.run(["cmake", "--build", str(build), "-j", jobs, "--target", "pinnquad_python"], check=True)
+        module = Path(self.get_ext_fullpath(ext.name))
+        module.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(next((build / "python").glob("_core*.so")), module)
+
+
+(ROOT / "build").mkdir(exist_ok=True)
+setup(version=version(), options={"egg_info": {"egg_base": "build"}}, ext_modules=[Extension("pinnquad._core", [])], cmdclass={"build_ext": CMakeBuild})

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// What the parts of the Python module share: a part binds its types in a source of its own, in this order. A program's
+// edge: names, arrays and None become types and values here, and only here.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "logs/airframe_file.hpp"
+#include "pinnquad/core/finite.hpp"
+#include "pinnquad/data/dataset.hpp"
+#include "pinnquad/deploy/block_model.hpp"
+
+namespace python {
+
+namespace py = pybind11;
+using pinnquad::logs::NamedAirframe;
+using Triple = std::array<double, 3>;
+
+void bind_errors(py::module_& module);
+void bind_airframes(py::module_& module);
+void bind_flights(py::module_& module);
+void bind_simulators(py::module_& module);
+void bind_vehicles(py::module_& module);
+void bind_models(py::module_& module);
+void bind_training(py::module_& module);
+
+/// Throws pinnquad.Error of Python.
+[[noreturn]] void refuse(const std::string& text);
+/// The exception types pinnquad.Error and pinnquad.FlightEnded.
+py::handle error_type();
+py::handle flight_ended_type();
+
+/// Throws ValueError: "no pilot named 'icarus'; known: random, hover".
+template <class Names>
+[[noreturn]] void refuse_name(const char* what, const std::string& name, const Names& known) {
+  std::string text = "no " + std::string(what) + " named '" + pinnquad::printable(name) + "'; known: ";
+  bool first = true;
+  for (const auto& one : known) {
+    text += std::string(first ? "" : ", ") + one;
+    first = false;
+  }
+  throw py::value_error(text);
+}
+
+/// An argument, or ValueError: finite, and not below `least`.
+double checked(const char* name, double value, double least);
+const Triple& checked(const char* name, const Triple& values);
+
+/// An Airframe, or the name of one, or the path of its file. Throws TypeError and what chosen_airframe() throws.
+NamedAirframe airframe_of(py::handle given);
+/// A Dataset, a Flight, or a sequence of flights. A dataset is not copied.
+std::shared_ptr<const pinnquad::Dataset> dataset_of(py::handle given);
+
+inline Triple triple(const pinnquad::Vector3<double>& v) { return {v[0], v[1], v[2]}; }
+
+template <std::size_t Count>
+py::array_t<double> array_of(const std::array<double, Count>& numbers) {
+  return py::array_t<double>(static_cast<py::ssize_t>(Count), numbers.data());  // a copy
+}
+inline py::array_t<double> array_of(const pinnquad::Vector3<double>& v) { return array_of(triple(v)); }
+
+/// Numbers where they lie, for as long as `owner` lives; read-only.
+py::array view_of(const double* numbers, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
+                  py::handle owner);
+inline py::bytes bytes_of(const std::vector<unsigned char>& bytes) {
+  return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+/// Looks for Ctrl-C twenty times a second, from a thread that has let go of the GIL.
+class SignalWatch {
+ public:
+  /// Throws KeyboardInterrupt.
+  void look() {
+    if (Clock::now() < next_) return;
+    next_ = Clock::now() + std::chrono::milliseconds(50);
+    const py::gil_scoped_acquire with_gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point next_ = Clock::now() + std::chrono::milliseconds(50);
+};
+
+/// Marks an object as in use by a thread without the GIL; looked at and set only by who holds it.
+class Busy {
+ public:
+  explicit Busy(bool& flag) : flag_(flag) { flag_ = true; }
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
+  ~Busy() { flag_ = false; }
+
+ private:
+  bool& flag_;
+};
+
+}  // namespace python

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// Models of blocks: loaded, asked one motion or many, judged, certified.
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "pinnquad/io/atomic_file.hpp"
+#include "python/bindings.hpp"
+
+namespace python {
+
+namespace {
+
+using namespace pinnquad;
+
+std::shared_ptr<BlockModel> load(const std::filesystem::path& path) {
+  return std::make_shared<BlockModel>(path.string());
+}
+
+/// Features as they are given: float32 or float64, one motion or a row for each, contiguous. Throws TypeError and
+/// ValueError, one line.
+struct GivenFeatures {
+  GivenFeatures(const BlockModel& model, const py::object& given) : features(model.features().size()) {
+    array = py::array::ensure(given);
+    if (!array) {
+      PyErr_Clear();
+      throw py::type_error("predict: expected an array of numbers");
+    }
+    is_double = py::isinstance<py::array_t<double>>(array);
+    if (!is_double && !py::isinstance<py::array_t<float>>(array)) {
+      throw py::type_error("predict: expected float32 or float64, found " +
+                           py::str(array.dtype()).cast<std::string>());
+    }
+    const py::ssize_t dimensions = array.ndim();
+    if (dimensions < 1 || dimensions > 2 || array.shape(dimensions - 1) != features) {
+      throw py::value_error("predict: expected shape (" + std::to_string(features) + ",) or (rows, " +
+                            std::to_string(features) + "), found " +
+                            py::str(array.attr("shape")).cast<std::string>());
+    }
+    if ((array.flags() & py::array::c_style) == 0) {
+      throw py::value_error("predict: expected a C-contiguous array; numpy.ascontiguousarray() makes one");
+    }
+    rows = dimensions == 2 ? static_cast<std::size_t>(array.shape(0)) : 1;
+  }
+
+  py::array array;
+  py::ssize_t features;
+  bool is_double = false;
+  std::size_t rows = 0;
+};
+
+/// The first that is not finite, among `count` numbers; count where all are.
+template <class Number>
+std::size_t first_not_finite(const Number* numbers, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_finite(numbers[i])) return i;
+  }
+  return count;
+}
+
+/// Answers to rows in the model's own scalar. `statuses`: null where none are asked for, then every row is answered.
+template <class Number, class Model, class Scalar>
+void answer(const Model& model, const Number* x, std::size_t rows, Scalar* u, std::uint8_t* statuses,
+            SignalWatch& watch) {
+  const auto size = static_cast<std::size_t>(model.features().size());
+  std::vector<Scalar> own(size), work(model.workspace());
+  constexpr std::size_t rows_per_look = 256;
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t i = 0; i < size; ++i) own[i] = static_cast<Scalar>(x[row * size + i]);
+    Status status = Status::ok;
+    if (statuses != nullptr) {
+      if (first_not_finite(own.data(), size) < size) {
+        status = Status::not_finite;
+      } else if (!model.inside_envelope(own.data())) {
+        status = Status::outside_envelope;
+      }
+      statuses[row] = static_cast<std::uint8_t>(status);
+    }
+    Scalar* const commands = u + row * rotor_count;
+    if (status == Status::ok) {
+      model.commands(own.data(), commands, work.data());
+      if (statuses != nullptr && first_not_finite(commands, rotor_count) < rotor_count) {
+        statuses[row] = static_cast<std::uint8_t>(status = Status::output_not_finite);
+      }
+    }
+    if (status != Status::ok) {
+      for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = std::numeric_limits<Scalar>::quiet_NaN();
+    }
+    if (row % rows_per_look == rows_per_look - 1) watch.look();
+  }
+}
+
+template <class Number>
+void require_finite(const GivenFeatures& given) {
+  const auto* x = static_cast<const Number*>(given.array.data());
+  const auto size = static_cast<std::size_t>(given.features), count = given.rows * size;
+  const std::size_t at = first_not_finite(x, count);
+  if (at == count) return;
+  throw py::value_error("predict: row " + std::to_string(at / size) + ", feature " + std::to_string(at % size) +
+                        ": expected a finite number, found " + std::to_string(x[at]));
+}
+
+py::object predict(const BlockModel& model, const py::object& features, bool guarded) {
+  const GivenFeatures given(model, features);
+  if (!guarded) given.is_double ? require_finite<double>(given) : require_finite<float>(given);
+  return model.with([&](const auto& own) -> py::object {
+    using Scalar = std::remove_const_t<std::remove_pointer_t<decltype(own.parameters())>>;
+    const auto rows = static_cast<py::ssize_t>(given.rows), rotors = static_cast<py::ssize_t>(rotor_count);
+    const bool one = given.array.ndim() == 1;
+    py::array_t<Scalar> commands(one ? std::vector<py::ssize_t>{rotors} : std::vector<py::ssize_t>{rows, rotors});
+    py::array_t<std::uint8_t> statuses(guarded ? rows : 0);
+    Scalar* const u = commands.mutable_data();
+    std::uint8_t* const said = guarded ? statuses.mutable_data() : nullptr;
+    const void* const x = given.array.data();
+    {
+      const py::gil_scoped_release without_gil;
+      SignalWatch watch;
+      given.is_double ? answer(own, static_cast<const double*>(x), given.rows, u, said, watch)
+                      : answer(own, static_cast<const float*>(x), given.rows, u, said, watch);
+    }
+    if (!guarded) return std::move(commands);
+    return py::make_tuple(commands, one ? py::object(statuses[py::int_(0)]) : py::object(statuses));
+  });
+}
+
+RowSet rows_of(const Dataset& dataset) {
+  RowSet rows;
+  for (const Flight& flight : dataset.flights()) rows.add(flight, {0, flight.size()});
+  return rows;
+}
+
+py::array_t<double> features_of(const BlockModel& model, const py::object& flights) {
+  const std::shared_ptr<const Dataset> dataset = dataset_of(flights);
+  const RowSet rows = rows_of(*dataset);
+  const auto size = static_cast<std::size_t>(model.features().size());
+  py::array_t<double> result({rows.size(), size});
+  double* const x = result.mutable_data();
+  const py::gil_scoped_release without_gil;
+  SignalWatch watch;
+  std::fill_n(x, rows.size() * size, not_a_number);
+  model.answer(
+      rows,
+      [&](std::size_t row, const AnsweredRow& answered) {
+        std::copy(answered.features.begin(), answered.features.end(), x + row * size);
+        watch.look();
+      },
+      false);
+  return result;
+}
+
+}  // namespace
+
+void bind_models(py::module_& module) {
+  py::class_<BlockModel, std::shared_ptr<BlockModel>>(
+      module, "Model", "A model of any network and features, as its block describes it. It never changes.")
+      .def_static("load", &load, py::arg("path"), "The block that `pinnquad train` writes (model.block).")
+      .def_static(
+          "of_bytes",
+          [](const py::bytes& bytes) { return std::make_shared<BlockModel>("bytes", static_cast<std::string>(bytes)); },
+          py::arg("bytes"), "Of a block in memory.")
+      .def("predict", [](const BlockModel& self, const py::object& x) { return predict(self, x, false); },
+           py::arg("features"),
+           "Commands, 0 to 1, of features in physical units: (features,) gives (4,), (rows, features) gives (rows, 4).\n"
+           "float32 or float64, C-contiguous; answers are of the block's own scalar. A number that is not finite is a\n"
+           "ValueError with its row. The envelope is not looked at: predict_guarded() does.")
+      .def("predict_guarded", [](const BlockModel& self, const py::object& x) { return predict(self, x, true); },
+           py::arg("features"),
+           "(commands, statuses) under the guard that flies: rows that it refuses are NaN, with their Status (not_finite,\n"
+           "outside_envelope, output_not_finite) in place of ok.")
+      .def("features", &features_of, py::arg("flights"),
+           "Its features of each row of a Flight or a Dataset, rows x features; NaN where a window has no rows.")
+      .def_property_readonly("feature_names", &BlockModel::feature_names)
+      .def_property_readonly("name", &BlockModel::name)
+      .def_property_readonly("airframe", [](const BlockModel& self) {
+        return NamedAirframe{self.airframe_name(), self.airframe()};
+      })
+      .def_property_readonly("envelope", [](const BlockModel& self) {
+        return py::make_tuple(py::array(py::cast(self.envelope_lower())), py::array(py::cast(self.envelope_upper())));
+      }, "The guard's (lower, upper) of each feature.")
+      .def("to_bytes", [](const BlockModel& self) {
+        return py::bytes(reinterpret_cast<const char*>(self.data()), self.size());
+      }, "The block.")
+      .def("__repr__", [](const BlockModel& self) {
+        return "<pinnquad.Model " + self.path() + ": " + self.answer() + ", " +
+               std::to_string(self.features().size()) + " features, for " + self.airframe_name() + ">";
+      })
+      .def(py::pickle(
+          [](const BlockModel& self) {
+            return py::bytes(reinterpret_cast<const char*>(self.data()), self.size());
+          },
+          [](const py::bytes& bytes) {
+            return std::make_shared<BlockModel>("a pickled block", static_cast<std::string>(bytes));
+          }));
+}
+
+}  // namespace python

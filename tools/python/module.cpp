@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// The module pinnquad._core: its parts, and how errors of the library become Python's.
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+#include "pinnquad/io/file_error.hpp"
+#include "pinnquad/version.hpp"
+#include "python/bindings.hpp"
+
+namespace python {
+
+namespace {
+
+PyObject* error = nullptr;  ///< live as long as the module
+PyObject* flight_ended = nullptr;
+
+}  // namespace
+
+py::handle error_type() { return error; }
+py::handle flight_ended_type() { return flight_ended; }
+
+void refuse(const std::string& text) {
+  PyErr_SetString(error, text.c_str());
+  throw py::error_already_set();
+}
+
+double checked(const char* name, double value, double least) {
+  if (!(value >= least) || !pinnquad::is_finite(value)) {
+    char limit[32];
+    std::snprintf(limit, sizeof limit, "%g", least);
+    throw py::value_error(std::string(name) + " must be a finite number not below " + limit);
+  }
+  return value;
+}
+
+const Triple& checked(const char* name, const Triple& values) {
+  for (const double value : values) {
+    if (!pinnquad::is_finite(value)) throw py::value_error(std::string(name) + " must be three finite numbers");
+  }
+  return values;
+}
+
+py::array view_of(const double* numbers, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
+                  py::handle owner) {
+  py::array array(py::dtype::of<double>(), std::move(shape), std::move(strides), numbers, owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+void bind_errors(py::module_& module) {
+  error = PyErr_NewExceptionWithDoc("pinnquad.Error",
+                                    "What the library refuses: a file that is not what it should be, a block, a "
+                                    "Status that is not ok. One line.",
+                                    nullptr, nullptr);
+  module.add_object("Error", error);
+  flight_ended = PyErr_NewExceptionWithDoc("pinnquad.FlightEnded",
+                                           "The flight has ended: the ground, or a step that cannot be calculated. "
+                                           "Attributes: time_s, altitude_m, position_m\n"
+                                           "and velocity_m_s (NED), reason. The recording up to there is kept.",
+                                           error, nullptr);
+  module.add_object("FlightEnded", flight_ended);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const pinnquad::InputError& refused) {
+      PyErr_SetString(error, refused.what());
+    } catch (const pinnquad::OutputError& refused) {
+      PyErr_SetString(PyExc_OSError, refused.what());
+    }
+  });
+}
+
+}  // namespace python
+
+PYBIND11_MODULE(_core, module) {
+  module.attr("__version__") = PINNQUAD_VERSION;
+  python::bind_errors(module);
+  python::bind_airframes(module);
+  python::bind_flights(module);
+  python::bind_simulators(module);
+  python::bind_models(module);
+}

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: MIT
+"""Inverse dynamics of quadrotors: simulate, train, judge, certify, predict. World NED, body FRD, SI units, radians.
+
+Rotors: front right, rear left, front left, rear right; a command is 0 to 1. docs/python.md shows the whole way.
+"""
+from ._core import (Airframe, Dataset, Error, Flight, FlightEnded, Model, Rotor, Simulator, Spin, __version__,
+                    airframe_names, ground_effects)
+from .effects import Effects

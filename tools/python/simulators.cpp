@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: MIT
+// The simulator of simulation/simulator.hpp: airframe, effects and pilot are chosen in Python, effects also in flight.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/simulation/recorder.hpp"
+#include "pinnquad/simulation/simulator.hpp"
+#include "python/effects.hpp"
+
+namespace python {
+
+namespace {
+
+using namespace pinnquad;
+using Engine = std::mt19937_64;
+
+/// One of the pilots that Python can name.
+struct ChosenPilot {
+  std::variant<RandomPilot<Engine>, NearGroundPilot<Engine>, SteadyPilot> pilot;
+
+  SetPoint<double> operator()(const State<double>& state, double time_s) {
+    return std::visit([&](auto& chosen) -> SetPoint<double> { return chosen(state, time_s); }, pilot);
+  }
+};
+
+constexpr std::array<const char*, 3> pilots = {"random", "near_ground", "hover"};
+using Running = Simulator<SwitchedQuadrotor, ChosenPilot, NoisyRecorder<Engine>>;
+
+/// Of a simulator as it began.
+struct Choices {
+  NamedAirframe airframe;
+  std::uint64_t seed;
+  Effects effects;
+  py::object effects_of_python;
+  std::string pilot;
+  Triple start_m;
+  double max_speed_m_s;
+  RecorderErrors errors;
+};
+
+FlightPlan plan_of(const Choices& choices) {
+  const Triple& start = checked("start_m", choices.start_m);
+  FlightPlan plan;
+  plan.start_m = Vector3<double>(start[0], start[1], start[2]);
+  if (start[2] >= paper_site<double>().ground_z_m) {
+    throw py::value_error("start_m must lie above the ground, which is at z = 0.877 m (NED: up is negative)");
+  }
+  return plan;
+}
+
+ChosenPilot pilot_of(const Choices& choices, const SwitchedQuadrotor& vehicle) {
+  checked("max_speed_m_s", choices.max_speed_m_s, 0.5);
+  if (choices.pilot == "hover") return {SteadyPilot{}};
+  const Vector3<double> start = plan_of(choices).start_m;
+  return with_quadrotor(vehicle, [&](const auto& quadrotor) -> ChosenPilot {
+    const double ground_z_m = quadrotor.site().ground_z_m;
+    if (choices.pilot == "random") {
+      return {RandomPilot<Engine>(Engine(choices.seed), pilot_style(quadrotor, start, choices.max_speed_m_s),
+                                  ground_z_m)};
+    }
+    if (choices.pilot == "near_ground") {
+      return {NearGroundPilot<Engine>(Engine(choices.seed),
+                                      near_ground_style(quadrotor, start, choices.max_speed_m_s), ground_z_m)};
+    }
+    refuse_name("pilot", choices.pilot, pilots);
+  });
+}
+
+/// The noise has an engine of its own: with and without noise the same seed flies the same flight.
+NoisyRecorder<Engine> recorder_of(const Choices& choices) {
+  constexpr std::uint64_t of_noise = 0x9e3779b97f4a7c15u;
+  checked("gyro_noise_rad_s", choices.errors.gyro_noise_rad_s, 0);
+  checked("derivative_interval_s", choices.errors.derivative_interval_s, 1e-6);
+  checked("command_latency_s", choices.errors.command_latency_s, 0);
+  checked("command_jitter_s", choices.errors.command_jitter_s, 0);
+  return NoisyRecorder<Engine>(Engine(choices.seed ^ of_noise), choices.errors);
+}
+
+class PythonSimulator {
+ public:
+  explicit PythonSimulator(Choices choices) : choices_(std::move(choices)), running_(made(choices_)) {
+    require_flying();
+  }
+  PythonSimulator(const PythonSimulator& other)
+      : choices_(other.idle().choices_), running_(other.running_), journal_(other.journal_) {}
+  PythonSimulator& operator=(const PythonSimulator&) = delete;
+
+  void fly(double seconds) {
+    run(seconds, {}, [this] { return running_.tick(); });
+  }
+
+  void step(const py::array_t<double, py::array::c_style | py::array::forcecast>& commands, double seconds) {
+    Commands<double> u{};
+    if (commands.ndim() != 1 || static_cast<std::size_t>(commands.size()) != u.size()) {
+      throw py::value_error("commands must be four numbers, one per rotor");
+    }
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      u[i] = commands.at(static_cast<py::ssize_t>(i));
+      if (!is_finite(u[i])) throw py::value_error("commands must be four finite numbers");
+    }
+    run(seconds, u, [this, u] { return running_.tick(u); });
+  }
+
+  const NamedAirframe& airframe() const { return choices_.airframe; }
+  py::object effects() const { return idle().choices_.effects_of_python; }
+  void set_effects(const py::object& effects) {
+    const SwitchedQuadrotor vehicle = vehicle_of(choices_.airframe, effects_of(effects));
+    idle().running_.set_quadrotor(vehicle);
+    choices_.effects_of_python = effects;
+    journal_.push_back({0, {}, effects});
+  }
+
+  double time_s() const { return idle().running_.time_s(); }
+  bool flying() const { return idle().running_.flying(); }
+
+  py::array_t<double> hover_commands() const {
+    Commands<double> commands{};
+    const Status status = idle().running_.hover_commands(commands);
+    if (status != Status::ok) refuse(std::string("no hover here: ") + to_string(status));
+    return array_of(commands);
+  }
+
+  py::dict state() const {
+    const VehicleState<double>& vehicle = idle().running_.vehicle();
+    const State<double>& body = vehicle.body;
+    const EulerAngles<double> euler = to_euler(body.attitude);
+    py::dict d;
+    d["time_s"] = vehicle.time_s;
+    d["position_m"] = array_of(body.position_m);
+    d["velocity_m_s"] = array_of(body.velocity_m_s);
+    d["attitude"] = array_of(Commands<double>{body.attitude.w, body.attitude.x, body.attitude.y, body.attitude.z});
+    d["euler_rad"] = array_of(Triple{euler.roll_rad, euler.pitch_rad, euler.yaw_rad});
+    d["body_rates_rad_s"] = array_of(body.body_rates_rad_s);
+    d["altitude_m"] = running_.altitude_m();
+    d["commands"] = array_of(running_.commands());
+    d["rotor_commands"] = array_of(vehicle.rotors);
+    with_quadrotor(running_.quadrotor(), [&](const auto& quadrotor) {
+      const auto loads = quadrotor.evaluate(body, vehicle.rotors, vehicle.time_s);
+      d["rotor_thrust_N"] = -loads.rotors.force_N[2];
+      d["aerodynamic_force_N"] = array_of(loads.aerodynamic.force_N);
+      d["wind_m_s"] = array_of(loads.surroundings.wind_m_s);
+      d["air_density_kg_m3"] = loads.surroundings.air_density_kg_m3;
+      d["thrust_scale"] = loads.surroundings.thrust_scale;
+    });
+    return d;
+  }
+
+  std::shared_ptr<Flight> recording() const { return named(idle().running_.recording()); }
+  std::shared_ptr<Flight> take_recording() {
+    Flight taken = idle().running_.take_recording();
+    journal_.push_back({0, {}, py::none()});
+    return named(std::move(taken));
+  }
+  std::size_t rows() const { return idle().running_.recording().size(); }
+
+  /// What a pickle holds: the choices at the start, and what was done since. The same seed gives the same bits.
+  py::tuple journal() const {
+    const RecorderErrors& e = idle().choices_.errors;
+    py::list done;
+    for (const Deed& deed : journal_) done.append(py::make_tuple(deed.ticks, deed.commands, deed.effects));
+    return py::make_tuple(choices_.airframe, choices_.seed, begun_with_, choices_.pilot, choices_.start_m,
+                          choices_.max_speed_m_s, e.gyro_noise_rad_s, e.derivative_interval_s, e.command_latency_s,
+                          e.command_jitter_s, done);
+  }
+  static PythonSimulator of_journal(const py::tuple& state) {
+    RecorderErrors errors;
+    errors.gyro_noise_rad_s = state[6].cast<double>();
+    errors.derivative_interval_s = state[7].cast<double>();
+    errors.command_latency_s = state[8].cast<double>();
+    errors.command_jitter_s = state[9].cast<double>();
+    PythonSimulator simulator({state[0].cast<NamedAirframe>(), state[1].cast<std::uint64_t>(), effects_of(state[2]),
+                               state[2].cast<py::object>(), state[3].cast<std::string>(), state[4].cast<Triple>(),
+                               state[5].cast<double>(), errors});
+    for (const py::handle done : state[10]) {
+      const auto deed = done.cast<std::tuple<std::uint64_t, std::optional<Commands<double>>, py::object>>();
+      simulator.repeat({std::get<0>(deed), std::get<1>(deed), std::get<2>(deed)});
+    }
+    return simulator;
+  }
+
+  std::string text() const {
+    char numbers[96];
+    std::snprintf(numbers, sizeof numbers, "%.3f s, %zu rows%s", time_s(), rows(), flying() ? "" : ", ended");
+    return "<pinnquad.Simulator " + printable(choices_.airframe.name) + ", seed " + std::to_string(choices_.seed) +
+           ": " + numbers + ">";
+  }
+
+ private:
+  /// Ticks under the pilot or under commands; without ticks other effects, or None for a recording that was taken.
+  struct Deed {
+    std::uint64_t ticks = 0;
+    std::optional<Commands<double>> commands;
+    py::object effects;
+  };
+
+  static Running made(const Choices& choices) {
+    const SwitchedQuadrotor vehicle = vehicle_of(choices.airframe, choices.effects);
+    return Running(vehicle, pilot_of(choices, vehicle), plan_of(choices), recorder_of(choices));
+  }
+
+  std::shared_ptr<Flight> named(Flight flight) const {
+    flight.name = choices_.airframe.name + ", seed " + std::to_string(choices_.seed);
+    return std::make_shared<Flight>(std::move(flight));
+  }
+
+  /// This simulator, if no other Python thread flies it.
+  const PythonSimulator& idle() const {
+    if (busy_) throw std::runtime_error("this simulator is flying in another thread");
+    return *this;
+  }
+  PythonSimulator& idle() {
+    static_cast<const PythonSimulator&>(*this).idle();
+    return *this;
+  }
+
+  void note(std::uint64_t ticks, const std::optional<Commands<double>>& commands) {
+    if (ticks == 0) return;
+    if (!journal_.empty() && journal_.back().ticks > 0 && journal_.back().commands == commands) {
+      journal_.back().ticks += ticks;
+    } else {
+      journal_.push_back({ticks, commands, py::none()});
+    }
+  }
+
+  void repeat(const Deed& deed) {
+    if (deed.ticks == 0) {
+      deed.effects.is_none() ? static_cast<void>(take_recording()) : set_effects(deed.effects);
+      return;
+    }
+    std::uint64_t left = deed.ticks;
+    while (left-- > 0) deed.commands ? running_.tick(*deed.commands) : running_.tick();
+    note(deed.ticks, deed.commands);
+  }
+
+  /// `tick` for a duration, without the GIL. An exception leaves the simulator at the tick it reached, able to fly on.
+  template <class Tick>
+  void run(double seconds, const std::optional<Commands<double>>& commands, const Tick& tick) {
+    constexpr std::uint64_t ticks_per_look = 64;
+    checked("seconds", seconds, 0);
+    idle();
+    require_flying();
+    std::uint64_t done = 0;
+    {
+      const Busy busy(busy_);
+      const struct Noted {
+        PythonSimulator& self;
+        const std::optional<Commands<double>>& commands;
+        std::uint64_t& done;
+        ~Noted() { self.note(done, commands); }
+      } noted{*this, commands, done};
+      const py::gil_scoped_release without_gil;
+      SignalWatch watch;
+      const double ticks = std::floor(seconds / running_.settings().control_period_s() + 0.5);
+      bool flies = true;
+      while (flies && static_cast<double>(done) < ticks) {
+        flies = tick();
+        if (++done % ticks_per_look == 0) watch.look();
+      }
+    }
+    require_flying();
+  }
+
+  /// Throws FlightEnded, with time, state and reason, if the flight has ended.
+  void require_flying() const {
+    if (running_.flying()) return;
+    const State<double>& body = running_.vehicle().body;
+    const char* reason =
+        running_.end() == FlightEnd::ground ? "it came down to the ground" : to_string(running_.status());
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "the flight ended at %.3f s, north %.2f m, east %.2f m, %.2f m above ground, at %.2f m/s: %s",
+                  running_.time_s(), body.position_m[0], body.position_m[1], running_.altitude_m(),
+                  body.velocity_m_s.norm(), reason);
+    const py::object error = py::reinterpret_borrow<py::object>(flight_ended_type())(text);
+    error.attr("time_s") = running_.time_s();
+    error.attr("altitude_m") = running_.altitude_m();
+    error.attr("position_m") = array_of(body.position_m);
+    error.attr("velocity_m_s") = array_of(body.velocity_m_s);
+    error.attr("reason") = reason;
+    PyErr_SetObject(flight_ended_type().ptr(), error.ptr());
+    throw py::error_already_set();
+  }
+
+  Choices choices_;
+  py::object begun_with_ = choices_.effects_of_python;
+  Running running_;
+  std::vector<Deed> journal_;
+  bool busy_ = false;
+};
+
+/// A field of the Effects of Python. Throws TypeError that names it.
+template <class Value>
+void take(py::handle effects, const char* name, Value& value) {
+  const py::object given = effects.attr(name);
+  try {
+    value = given.cast<Value>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(std::string("effects: ") + name + " can't be " + py::repr(given).cast<std::string>());
+  }
+}
+
+}  // namespace
+
+Effects effects_of(py::handle given) {
+  if (!py::isinstance(given, py::module_::import("pinnquad.effects").attr("Effects"))) {
+    throw py::type_error("effects must be pinnquad.Effects, found " + py::repr(py::type::of(given)).cast<std::string>());
+  }
+  Effects e;
+  take(given, "wind_m_s", e.wind_m_s);
+  take(given, "gust_m_s", e.gust_m_s);
+  checked("wind_m_s", e.wind_m_s);
+  checked("gust_m_s", e.gust_m_s);
+  const auto number = [given](const char* name, double& value, double least) {
+    take(given, name, value);
+    checked(name, value, least);
+  };
+  number("gust_period_s", e.gust_period_s, 0.01);
+  number("turbulence_m_s", e.turbulence_m_s, 0);
+  number("turbulence_height_m", e.turbulence_height_m, 0);
+  take(given, "turbulence_seed", e.turbulence_seed);
+  take(given, "standard_atmosphere", e.standard_atmosphere);
+  take(given, "drag", e.drag);
+  number("linear_drag_N_s_m", e.linear_drag_N_s_m, 0);
+  number("rate_damping_N_m_s", e.rate_damping_N_m_s, 0);
+  take(given, "ground_effect", e.ground_effect);
+  if (std::find(ground_effects.begin(), ground_effects.end(), e.ground_effect) == ground_effects.end()) {
+    refuse_name("ground effect", e.ground_effect, ground_effects);
+  }
+  take(given, "rotor_drag", e.rotor_drag);
+  take(given, "inflow", e.inflow);
+  take(given, "flapping", e.flapping);
+  take(given, "wake", e.wake);
+  number("battery_endurance_s", e.battery_endurance_s, 0);
+  number("battery_full_V", e.battery_full_V, 0);
+  number("battery_empty_V", e.battery_empty_V, 0);
+  take(given, "fault_rotor", e.fault_rotor);
+  number("fault_share", e.fault_share, 0);
+  number("fault_from_s", e.fault_from_s, 0);
+  number("payload_kg", e.payload_kg, 0);
+  number("payload_from_s", e.payload_from_s, 0);
+  take(given, "ground_contact", e.ground_contact);
+  number("leg_length_m", e.leg_length_m, 0);
+  return e;
+}
+
+SwitchedQuadrotor vehicle_of(const NamedAirframe& airframe, const Effects& effects) {
+  const SwitchedQuadrotor vehicle(airframe.value, paper_site<double>(), effects);
+  const Status status = with_quadrotor(vehicle, [](const auto& quadrotor) { return quadrotor.status(); });
+  if (status != Status::ok) {
+    refuse("airframe " + printable(airframe.name) + " with these effects: " + to_string(status));
+  }
+  return vehicle;
+}
+
+void bind_simulators(py::module_& module) {
+  const RecorderErrors no_errors;
+  const FlightPlan plan;
+  py::class_<PythonSimulator>(module, "Simulator",
+                              "A running simulation: vehicle, pilot, controller, recorder. World NED, body FRD, SI "
+                              "units. The same seed gives the same bits.")
+      .def(py::init([](const py::object& airframe, std::uint64_t seed, const py::object& effects,
+                       const std::string& pilot, const Triple& start_m, double max_speed_m_s, double gyro_noise_rad_s,
+                       double derivative_interval_s, double command_latency_s, double command_jitter_s) {
+             const py::object chosen =
+                 effects.is_none() ? py::module_::import("pinnquad.effects").attr("Effects")() : effects;
+             RecorderErrors errors;
+             errors.gyro_noise_rad_s = gyro_noise_rad_s;
+             errors.derivative_interval_s = derivative_interval_s;
+             errors.command_latency_s = command_latency_s;
+             errors.command_jitter_s = command_jitter_s;
+             return new PythonSimulator(
+                 {airframe_of(airframe), seed, effects_of(chosen), chosen, pilot, start_m, max_speed_m_s, errors});
+           }),
+           py::arg("airframe") = PaperQuadrotor::name, py::arg("seed") = 1, py::kw_only(),
+           py::arg("effects") = py::none(), py::arg("pilot") = "random", py::arg("start_m") = triple(plan.start_m),
+           py::arg("max_speed_m_s") = PilotStyle{}.max_speed_m_s,
+           py::arg("gyro_noise_rad_s") = no_errors.gyro_noise_rad_s,
+           py::arg("derivative_interval_s") = no_errors.derivative_interval_s,
+           py::arg("command_latency_s") = no_errors.command_latency_s,
+           py::arg("command_jitter_s") = no_errors.command_jitter_s,
+           "airframe        an Airframe, one of airframe_names(), or a TOML file\n"
+           "seed            of the pilot and, apart from it, of the recorder's noise\n"
+           "effects         Effects; set_effects() changes them in flight\n"
+           "pilot           'random': agile, 10 to 60 m above ground; 'near_ground': 0.1 to 2 m; 'hover'\n"
+           "start_m         NED, m; the ground is at z = 0.877 m\n"
+           "max_speed_m_s   that the pilot asks for\n"
+           "gyro_noise_rad_s, derivative_interval_s, command_latency_s, command_jitter_s\n"
+           "                errors of the recording alone (docs/simulator.md)\n\n"
+           "It starts in hover; a row is recorded every 0.05 s. ValueError for what makes no sense, pinnquad.Error\n"
+           "for an airframe that can't fly, FlightEnded where no hover is possible.")
+      .def("fly", &PythonSimulator::fly, py::arg("seconds"),
+           "Flies on as the pilot wants, for so many seconds (rounded to ticks of 2 ms). Other threads run meanwhile;\n"
+           "Ctrl-C stops it at a tick. FlightEnded at the ground or where a step cannot be calculated.")
+      .def("step", &PythonSimulator::step, py::arg("commands"), py::arg("seconds") = plan.control_period_s(),
+           "Flies on with these four motor commands, 0 to 1, instead of the pilot's; else as fly().")
+      .def("set_effects", &PythonSimulator::set_effects, py::arg("effects"),
+           "From the next tick on the vehicle flies with these Effects.")
+      .def_property_readonly("effects", &PythonSimulator::effects, "The present Effects.")
+      .def_property_readonly("airframe", &PythonSimulator::airframe, py::return_value_policy::copy,
+                             "A copy of the airframe.")
+      .def_property_readonly("time_s", &PythonSimulator::time_s, "Seconds flown since the start.")
+      .def_property_readonly("flying", &PythonSimulator::flying, "False once the flight has ended.")
+      .def_property_readonly("rows", &PythonSimulator::rows, "Rows recorded, those taken left out.")
+      .def_property_readonly(
+          "state", &PythonSimulator::state,
+          "The true state now, a dict: time_s, position_m and velocity_m_s (NED), attitude (w, x, y, z: body to world),\n"
+          "euler_rad (roll, pitch, yaw), body_rates_rad_s, altitude_m above ground, commands (last told to the motors,\n"
+          "not clipped), rotor_commands (behind the rotors' lag), rotor_thrust_N (along body -z), aerodynamic_force_N\n"
+          "(body), wind_m_s (NED), air_density_kg_m3, thrust_scale (of a sagging battery).")
+      .def("hover_commands", &PythonSimulator::hover_commands,
+           "The four commands of a hover at the present place and time, through all effects; not clipped.")
+      .def("recording", &PythonSimulator::recording, "The rows so far, as a Flight of their own.")
+      .def("take_recording", &PythonSimulator::take_recording, "The same, and forgets them; the flight goes on.")
+      .def(
+          "copy", [](const PythonSimulator& self) { return new PythonSimulator(self); },
+          "A simulator that flies on from here like this one, and apart from it.")
+      .def(
+          "__copy__", [](const PythonSimulator& self) { return new PythonSimulator(self); })
+      .def("__deepcopy__", [](const PythonSimulator& self, const py::dict&) { return new PythonSimulator(self); })
+      .def(py::pickle([](const PythonSimulator& self) { return self.journal(); },
+                      [](const py::tuple& state) { return PythonSimulator::of_journal(state); }))
+      .def("__repr__", &PythonSimulator::text);
+  module.attr("ground_effects") = py::tuple(py::cast(ground_effects));
+}
+
+}  // namespace python
