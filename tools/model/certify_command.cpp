@@ -18,16 +18,16 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/console.hpp"
-#include "model/counterexample.hpp"
+#include "model/findings.hpp"
 #include "model/given_model.hpp"
-#include "model/response.hpp"
-#include "model/searched_model.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "training/certificate_words.hpp"
 
 namespace {
 
 using namespace pinnquad;
+using programs::bias_time_constants_s, programs::Findings, programs::has_base, programs::in_words,
+    programs::least_thrust_slope;
 
 constexpr int exit_neither = 3;
 constexpr std::array<const char*, 3> axes = {Roll::name, Pitch::name, Yaw::name};
@@ -38,170 +38,6 @@ struct CertifyOptions {
   std::uint64_t seed = 1;
   bool json = false;
 };
-
-/// All that is known of a model in the end.
-struct Findings {
-  std::optional<ProvenSigns> proof;
-  std::optional<Certificate> certificate;    ///< of a structure
-  std::optional<programs::Response> thrust;  ///< of the structure, to more thrust at all instants
-  /// Of a window, to an acceleration that is held with the body rates that it makes; where it can be worked out.
-  std::array<std::optional<programs::Response>, 3> with_rates;
-  programs::Search search;                ///< where nothing is proven
-  std::vector<programs::AskedMore> ways;  ///< of the search
-  std::vector<std::string> names;         ///< of the features
-  std::size_t taps = 1;                   ///< with an angular acceleration
-
-  bool proven() const { return proof.has_value(); }
-  bool by_path_bound() const { return proof && proof->by == SignProof::path_bound; }
-};
-
-const char* in_words(SignProof by) {
-  switch (by) {
-    case SignProof::structure:
-      return "structure: an affine base in which each signed sum sees the angular acceleration about its own axis "
-             "alone, with a slope above 0, and a residual that sees none";
-    case SignProof::path_bound:
-      return "structure and path bound: an affine base in which each signed sum sees the angular acceleration about "
-             "its own axis alone, and a network whose weights leave the slopes above 0 on every path from it";
-    case SignProof::affinity: return "the model is affine: its derivatives are the same everywhere";
-  }
-  return "";
-}
-
-bool has_base(const BlockModel& model) {
-  return model.with([](const auto& own) { return own.records().base.count != 0; });
-}
-
-/// To what moves several features at once. The body rates move a base too, which is no part of the response.
-void add_responses(const BlockModel& model, Findings& findings) {
-  const auto along = [&](const std::optional<programs::Direction>& direction) {
-    if (!direction) return std::optional<programs::Response>();
-    return model.with([&](const auto& own) {
-      return std::optional(programs::response_along(*direction, own.network(), own.parameters(),
-                                                    own.scales().input_deviation, own.scales().output_deviation));
-    });
-  };
-  findings.thrust = along(programs::more_thrust(findings.names));
-  const RunTimeWindow& window = model.features().window();
-  if (has_base(model) || window.taps < 2) return;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    findings.with_rates[axis] = along(programs::held_with_rates(
-        findings.names, axis, {window.period_s, window.earliest_s}, model.envelope_lower(), model.envelope_upper()));
-  }
-}
-
-Findings findings_of(const CertifyOptions& options, const BlockModel& model) {
-  Findings findings;
-  findings.names = model.feature_names();
-  findings.taps = model.angular_accelerations().size();
-  if (findings.taps == 0) {
-    throw InputError(model.path(), 0, 0, "a model that is asked for an angular acceleration", "one that is not");
-  }
-  findings.proof = model.proven_signs();
-  if (findings.proven() && findings.proof->by != SignProof::affinity) {
-    findings.certificate = model.certificate();
-    add_responses(model, findings);
-  }
-  if (findings.proven()) return findings;
-  const programs::SearchedModel searched = programs::searched_model(model);
-  findings.search = programs::search_counterexample(searched, options.seed, options.seconds);
-  findings.ways = searched.ways;
-  return findings;
-}
-
-const char* verdict_of(const Findings& findings) {
-  return findings.proven() ? "proven" : (findings.search.found ? "counterexample" : "neither");
-}
-
-nlohmann::json by_axis(const std::array<double, 3>& values) {
-  nlohmann::json all = nlohmann::json::object();
-  for (std::size_t axis = 0; axis < 3; ++axis) all[axes[axis]] = values[axis];
-  return all;
-}
-
-/// The thrust slope at every input: the base's with what the residual's paths may take off; -infinity where nobody can
-/// bound them.
-double least_thrust_slope(const Findings& findings) {
-  return findings.certificate->held_thrust_slope + findings.thrust->residual_least[0];
-}
-
-void add_thrust(const BlockModel& model, const Findings& findings, nlohmann::json& report) {
-  if (!findings.thrust) return;
-  report["thrust_slope"] = findings.certificate->thrust_slope;
-  report["held_thrust_slope"] = findings.certificate->held_thrust_slope;
-  report["airframe_thrust_slope"] = hover_thrust_slope(model.airframe());
-  report["least_thrust_slope"] = least_thrust_slope(findings);  // null where nobody can bound it
-}
-
-/// Time constants of the bias that is learnt in flight; none where the model says none.
-std::optional<std::array<double, 4>> bias_time_constants_s(const BlockModel& model) {
-  return model.with([](const auto& own) {
-    std::optional<std::array<double, 4>> times_s;
-    if (!own.records().has_bias) return times_s;
-    times_s.emplace();
-    for (std::size_t k = 0; k < 4; ++k) (*times_s)[k] = static_cast<double>(own.records().bias_time_constants_s[k]);
-    return times_s;
-  });
-}
-
-void print_json(const BlockModel& model, const Findings& findings) {
-  nlohmann::json report = {{"model", model.path()},
-                           {"answer", model.answer()},
-                           {"airframe", model.airframe_name()},
-                           {"verdict", verdict_of(findings)}};
-  if (findings.proven()) {
-    report["argument"] = in_words(findings.proof->by);
-    report["inputs"] = "all finite features";
-    report["slope"] = by_axis(findings.proof->slope);
-    report["held_slope"] = by_axis(findings.proof->held_slope);
-    report["airframe_slope"] = by_axis(hover_slopes(model.airframe()));
-  }
-  if (findings.proven() && findings.certificate) {
-    report["residual_lower"] = findings.certificate->residual_lower;
-    report["residual_upper"] = findings.certificate->residual_upper;
-    report["command_bound"] = findings.certificate->command_bound;
-    if (const auto times_s = bias_time_constants_s(model)) {
-      report["bias"] = {{"time_constants_s", *times_s}, {"widens_command_bound", largest_bias(model.airframe())}};
-    }
-    add_thrust(model, findings, report);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto& response = findings.with_rates[axis];
-      if (response) report["held_slope_with_body_rates"][axes[axis]] = response->least(axis + 1);
-    }
-    if (std::isfinite(findings.certificate->rounding)) {
-      const double* step = findings.certificate->sure_step;
-      report["rounding"] = findings.certificate->rounding;
-      report["sure_step"] = by_axis({step[0], step[1], step[2]});
-    }
-    if (findings.by_path_bound()) {
-      const double* other = findings.certificate->other_sums;
-      report["other_sums"] = by_axis({other[0], other[1], other[2]});
-    }
-  }
-  if (!findings.proven()) {
-    report["evaluations"] = findings.search.evaluations;
-    report["seconds"] = findings.search.seconds;
-    for (std::size_t way = 0; way < findings.ways.size(); ++way) {
-      const programs::AskedMore& asked = findings.ways[way];
-      report[asked.held ? "least_held_derivative" : "least_derivative"][axes[asked.axis]] = findings.search.least[way];
-    }
-  }
-  if (!findings.proven() && findings.search.found) {
-    const programs::Counterexample& found = *findings.search.found;
-    nlohmann::json features = nlohmann::json::object();
-    for (std::size_t i = 0; i < found.x.size(); ++i) features[findings.names[i]] = found.x[i];
-    nlohmann::json moved = nlohmann::json::array();
-    for (const std::size_t place : found.asked.places) moved.push_back(findings.names[place]);
-    report["counterexample"] = {{"axis", axes[found.asked.axis]},
-                                {"features", features},
-                                {"moved", moved},
-                                {"step", found.step},
-                                {"derivative", found.derivative},
-                                {"signed_sum", found.sum},
-                                {"signed_sum_after_step", found.sum_of_more}};
-  }
-  std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
-}
 
 void print_bias(const BlockModel& model) {
   const auto times_s = bias_time_constants_s(model);
@@ -335,8 +171,13 @@ void print_text(const BlockModel& model, const Findings& findings) {
 
 int certify(const CertifyOptions& options) {
   const BlockModel model = programs::read_model(options.model);
-  const Findings findings = findings_of(options, model);
-  options.json ? print_json(model, findings) : print_text(model, findings);
+  const Findings findings = programs::findings_of(model, options.seconds, options.seed);
+  if (options.json) {
+    const nlohmann::json report = programs::findings_json(model, findings);
+    std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  } else {
+    print_text(model, findings);
+  }
   if (findings.proven()) return 0;
   return findings.search.found ? programs::exit_failed : exit_neither;
 }

@@ -16,11 +16,9 @@
 #include "command_line/console.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
+#include "model/evaluation.hpp"
 #include "model/given_model.hpp"
 #include "pinnquad/data/csv.hpp"
-#include "training/derivatives.hpp"
-#include "training/judgement.hpp"
-#include "training/model_figures.hpp"
 #include "training/training_flights.hpp"
 
 namespace {
@@ -34,65 +32,7 @@ struct EvaluateOptions {
   bool json = false;
 };
 
-/// A model on the rows of a flight.
-struct EvaluatedModel {
-  std::size_t without_features = 0;  ///< rows without a whole window
-  std::size_t outside_envelope = 0;
-  programs::PredictedRows answered;
-  programs::DerivativeFigures derivatives;
-};
-
-EvaluatedModel evaluated(const BlockModel& model, const RowSet& rows) {
-  EvaluatedModel result;
-  programs::Predictions predictions(rows.size());
-  std::vector<bool> counts(rows.size(), false);
-  programs::DerivativeSigns signs;
-  programs::ProgressLine progress("judging " + std::to_string(rows.size()) + " rows");
-  model.answer(rows, [&](std::size_t row, const AnsweredRow& answer) {
-    progress.update(static_cast<double>(row) / static_cast<double>(rows.size()));
-    predictions[row] = answer.commands;
-    counts[row] = true;
-    signs.add(answer.derivatives);
-    result.outside_envelope += answer.inside_envelope ? 0 : 1;
-  });
-  result.answered = programs::rows_that_count(rows, predictions, counts);
-  result.without_features = rows.size() - result.answered.rows.size();
-  result.derivatives = signs.figures();
-  return result;
-}
-
-/// The rows to judge: all of the flights, or of each (of the last one, where there are more than two) those that
-/// `train` tests on.
-RowSet chosen_rows(const EvaluateOptions& options, const Dataset& dataset) {
-  if (options.rows == "test") {
-    return dataset.size() < 3 ? split_each_flight(dataset).test : split_by_flight(dataset).test;
-  }
-  RowSet all;
-  for (const Flight& flight : dataset.flights()) all.add(flight, {0, flight.size()});
-  return all;
-}
-
-void print_json(const EvaluateOptions& options, const BlockModel& model, const Dataset& dataset,
-                const EvaluatedModel& evaluation, const programs::Judgement& judged) {
-  nlohmann::json all = nlohmann::json::object();
-  for (const programs::Figure& figure : programs::figures()) all[figure.name] = figure.of(judged, figure.index);
-  nlohmann::json report = {{"model", model.path()},
-                           {"answer", model.answer()},
-                           {"airframe", model.airframe_name()},
-                           {"flight", pinnquad::flight_names(dataset)},
-                           {"rows", evaluation.answered.rows.size()},
-                           {"rows_without_features", evaluation.without_features},
-                           {"rows_judged", options.rows},
-                           {"rows_outside_envelope", evaluation.outside_envelope},
-                           {"golden_vectors", model.golden_count()},
-                           {"golden_difference", model.golden_difference()},
-                           {"figures", all}};
-  report.update(programs::figures_of_model(judged));
-  std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
-}
-
-void print_table(const BlockModel& model, const Dataset& dataset, const EvaluatedModel& evaluation,
-                 const programs::Judgement& judged) {
+void print_table(const BlockModel& model, const Dataset& dataset, const programs::EvaluatedModel& evaluation) {
   std::printf("model       %s: %s, for %s\n", printable(model.path()).c_str(), model.answer().c_str(),
               model.airframe_name().c_str());
   std::printf("rows        %zu of %s, %zu outside the training envelope\n", evaluation.answered.rows.size(),
@@ -101,26 +41,24 @@ void print_table(const BlockModel& model, const Dataset& dataset, const Evaluate
     std::printf("            %zu more without a whole window of instants, which count for nothing\n",
                 evaluation.without_features);
   }
-  programs::print_figures(judged);
+  programs::print_figures(evaluation.judged);
 }
 
 int evaluate(const EvaluateOptions& options) {
   const BlockModel model = programs::read_model(options.model);
   const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows, model.columns());
-  const EvaluatedModel evaluation = evaluated(model, chosen_rows(options, dataset));
-  if (evaluation.answered.rows.empty()) {
-    throw std::invalid_argument("--flight: no row of " + pinnquad::flight_names(dataset) +
-                                " has the whole window of instants that the model asks for");
-  }
-  programs::Judgement judged = programs::judge(GivenAirframe(model.airframe_name(), model.airframe()),
-                                               evaluation.answered.rows, evaluation.answered.predictions);
-  judged.derivatives = evaluation.derivatives;
+  const RowSet rows = programs::rows_to_judge(dataset, options.rows);
+  programs::ProgressLine progress("judging " + std::to_string(rows.size()) + " rows");
+  const programs::EvaluatedModel evaluation =
+      programs::evaluated(model, rows, [&progress](double share) { progress.update(share); });
+  progress.clear();
   if (options.json) {
-    print_json(options, model, dataset, evaluation, judged);
+    const nlohmann::json report = programs::evaluation_json(model, dataset, options.rows, evaluation);
+    std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
-    print_table(model, dataset, evaluation, judged);
+    print_table(model, dataset, evaluation);
   }
-  const double r_squared = judged.errors.mean.r_squared;
+  const double r_squared = evaluation.judged.errors.mean.r_squared;
   if (std::isfinite(r_squared) && r_squared >= 0) return 0;
   programs::complain("evaluate", model.path() + ": worse than the mean of the commands on these rows");
   return programs::exit_failed;

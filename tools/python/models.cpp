@@ -4,8 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "model/evaluation.hpp"
+#include "model/findings.hpp"
 #include "pinnquad/io/atomic_file.hpp"
-#include "python/bindings.hpp"
+#include "python/interruptible.hpp"
+#include "python/json.hpp"
 
 namespace python {
 
@@ -148,6 +151,33 @@ py::array_t<double> features_of(const BlockModel& model, const py::object& fligh
   return result;
 }
 
+py::object evaluate(const BlockModel& model, const py::object& flights, const std::string& rows) {
+  if (rows != "all" && rows != "test") refuse_name("rows", rows, std::array<const char*, 2>{"all", "test"});
+  const std::shared_ptr<const Dataset> dataset = dataset_of(flights);
+  nlohmann::json report;
+  {
+    const py::gil_scoped_release without_gil;
+    SignalWatch watch;
+    const programs::EvaluatedModel evaluation =
+        programs::evaluated(model, programs::rows_to_judge(*dataset, rows), [&watch](double) { watch.look(); });
+    report = programs::evaluation_json(model, *dataset, rows, evaluation);
+  }
+  return to_python(report);
+}
+
+py::object certify(const BlockModel& model, double seconds, std::uint64_t seed) {
+  checked("seconds", seconds, 0.01);
+  nlohmann::json report;
+  run_interruptible([&] { report = programs::findings_json(model, programs::findings_of(model, seconds, seed)); });
+  return to_python(report);
+}
+
+void save(const BlockModel& model, const std::filesystem::path& path) {
+  AtomicFile file(path.string());
+  file.stream().write(reinterpret_cast<const char*>(model.data()), static_cast<std::streamsize>(model.size()));
+  file.commit();
+}
+
 }  // namespace
 
 void bind_models(py::module_& module) {
@@ -177,6 +207,7 @@ void bind_models(py::module_& module) {
       .def_property_readonly("envelope", [](const BlockModel& self) {
         return py::make_tuple(py::array(py::cast(self.envelope_lower())), py::array(py::cast(self.envelope_upper())));
       }, "The guard's (lower, upper) of each feature.")
+      .def("save", &save, py::arg("path"), "Writes the block, whole or not at all. Training.save() writes the header too.")
       .def("to_bytes", [](const BlockModel& self) {
         return py::bytes(reinterpret_cast<const char*>(self.data()), self.size());
       }, "The block.")
@@ -191,6 +222,13 @@ void bind_models(py::module_& module) {
           [](const py::bytes& bytes) {
             return std::make_shared<BlockModel>("a pickled block", static_cast<std::string>(bytes));
           }));
+  module.def("evaluate", &evaluate, py::arg("model"), py::arg("flights"), py::arg("rows") = "all",
+             "Judges a model on a Flight or a Dataset: the dict that `pinnquad evaluate --json` prints. rows 'test': those\n"
+             "that train() holds out of these flights.");
+  module.def("certify", &certify, py::arg("model"), py::arg("seconds") = 5.0, py::arg("seed") = 1,
+             "What is proven of the signs of a model's slopes, or two motions that refute it: the dict that\n"
+             "`pinnquad certify --json` prints; 'verdict' is 'proven', 'counterexample' or 'neither'. `seconds` of the\n"
+             "processor are spent on the search where nothing is proven.");
 }
 
 }  // namespace python

@@ -79,5 +79,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_airframes(module);
   python::bind_flights(module);
   python::bind_simulators(module);
+  python::bind_vehicles(module);
   python::bind_models(module);
+  python::bind_training(module);
 }

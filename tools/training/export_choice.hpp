@@ -124,4 +124,20 @@ inline pinnquad::Provenance provenance_of(const Fold& fold, const pinnquad::Data
   return from;
 }
 
+/// The same with what is known of the model itself. `biases`: time constants of its bias; `airframe_known`: the header's
+/// airframe is the vehicle's.
+inline pinnquad::Provenance provenance_of(const TrainedNetwork& model, pinnquad::Provenance from,
+                                          const std::optional<pinnquad::SignedSums<double>>& biases,
+                                          bool airframe_known) {
+  if (const std::optional<pinnquad::ProvenSigns> signs = model.block()->proven_signs()) {
+    from.proven_slopes = signs->held_slope;
+  } else {
+    from.signs_unproven = true;
+  }
+  from.slopes = model.slopes();
+  from.bias_time_constants_s = biases;
+  from.airframe_known = airframe_known;
+  return from;
+}
+
 }  // namespace programs

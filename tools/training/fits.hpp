@@ -38,6 +38,7 @@ struct FitPlan {
   unsigned threads = 1;
   FitSettings settings{};
   pinnquad::PastRows past{};  ///< how a bias is made of rows
+  bool shows_progress = true;  ///< on stderr
 
   FitTask task(const Fold& fold, std::uint64_t seed) const {
     return {airframe, fold.split.train, fold.split.validation, absent, sample_period_s, seed, epochs, settings};
@@ -212,8 +213,8 @@ inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{})
       for (std::size_t i = begin; i < end; ++i) sum += shares[i].load();
       return sum / static_cast<double>(end - begin);
     };
-    run_parallel("fitting " + std::to_string(end - begin) + " models", end - begin, plan.threads, share_done,
-                 [&](std::size_t i) { fit(begin + i); });
+    const std::string job = plan.shows_progress ? "fitting " + std::to_string(end - begin) + " models" : "";
+    run_parallel(job, end - begin, plan.threads, share_done, [&](std::size_t i) { fit(begin + i); });
   };
   run(0, of_first_seed);
   if (of_first_seed < jobs.size()) run(of_first_seed, jobs.size());

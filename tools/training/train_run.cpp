@@ -419,17 +419,12 @@ class Training {
   }
 
   void write(const Exported& made, const programs::ModelKind& kind, const Verdict& verdict) {
-    Provenance from = programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
-                                              plan_.settings, made.seed, plan_.epochs, verdict);
-    if (const std::optional<ProvenSigns> signs = made.model->block()->proven_signs()) {
-      from.proven_slopes = signs->held_slope;
-    } else {
-      from.signs_unproven = true;
-    }
-    from.slopes = made.model->slopes();
     const std::optional<SignedSums<double>>& bias = judged_.kinds[*chosen_].bias_time_constants_s;
-    from.bias_time_constants_s = bias;
-    from.airframe_known = vehicle_.is_known();
+    const Provenance from = programs::provenance_of(
+        *made.model,
+        programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind, plan_.settings, made.seed,
+                                plan_.epochs, verdict),
+        bias, vehicle_.is_known());
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
     const pinnquad::Exported written = made.model->export_to({header, block, made.model->has_trust() ? trust : ""},

@@ -3,6 +3,6 @@
 
 Rotors: front right, rear left, front left, rear right; a command is 0 to 1. docs/python.md shows the whole way.
 """
-from ._core import (Airframe, Dataset, Error, Flight, FlightEnded, Model, Rotor, Simulator, Spin, __version__,
-                    airframe_names, ground_effects)
+from ._core import (Airframe, Dataset, Error, Flight, FlightEnded, Model, Rotor, Simulator, Spin, Status, Training,
+                    Vehicles, __version__, airframe_names, certify, evaluate, ground_effects, train)
 from .effects import Effects

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+// The recipes of `pinnquad train` on flights in memory: fitted, judged, and exported where Python asks for it. The same
+// flights, seeds and epochs give the bytes that the command writes.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "pinnquad/control/flown_motion.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
+#include "python/interruptible.hpp"
+#include "python/json.hpp"
+#include "training/export_choice.hpp"
+#include "training/held_out_dynamics.hpp"
+#include "training/kind_figures.hpp"
+#include "training/train_input.hpp"
+
+namespace python {
+
+namespace {
+
+using pinnquad::logs::ImportedDataset;
+using programs::JudgedKind;
+
+struct TrainChoices {
+  std::string recipe;
+  std::vector<std::string> losses, hold_out;
+  int seeds = 5, epochs = 0;
+  std::uint64_t seed = 1;
+  std::optional<bool> altitude;
+  bool pinned_slopes = false;
+  std::optional<double> lag_s;
+  unsigned threads = 0;
+};
+
+/// One training, from flights to a judged model that can be exported.
+class Training {
+ public:
+  Training(ImportedDataset dataset, NamedAirframe airframe, const TrainChoices& choices)
+      : dataset_(std::move(dataset)),
+        airframe_(std::move(airframe)),
+        recipe_(programs::chosen_recipe(choices.recipe)),
+        plan_(plan_of(choices)) {
+    fits_ = programs::fit_all(plan_);
+    programs::stop_if_interrupted();
+    judged_ = programs::judge_fits(plan_, fits_);
+    const std::string key = programs::Recipe::exported_of(plan_.kinds);
+    while (chosen_ < plan_.kinds.size() && key != plan_.kinds[chosen_].key) ++chosen_;
+    if (chosen_ == plan_.kinds.size() || !judged().applicable()) {
+      throw std::invalid_argument("no model to export: " + (chosen_ == plan_.kinds.size()
+                                                               ? std::string("the recipe trains none")
+                                                               : judged().not_applicable));
+    }
+    fit_ = programs::best_fit(fits_.finished, chosen_, kind().takes_validation(plan_.settings));
+    if (fit_ == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
+    verdict_ = programs::exported_verdict(plan_, judged_, chosen_, fit_->seed);
+    verdict_.answered_share = programs::guard_of_seed(fits_, chosen_, fit_->seed).answered_share();
+    model_ = std::make_shared<pinnquad::BlockModel>("trained", block_bytes());
+  }
+
+  std::shared_ptr<pinnquad::BlockModel> model() const { return model_; }
+  const programs::ModelKind& kind() const { return plan_.kinds[chosen_]; }
+  std::uint64_t seed() const { return fit_->seed; }
+  const pinnquad::Verdict& verdict() const { return verdict_; }
+
+  /// Figures of each kind on the rows held out, as `models` of report.json has them.
+  nlohmann::json figures() const {
+    nlohmann::json all = nlohmann::json::object();
+    for (const JudgedKind& of : judged_.kinds) {
+      nlohmann::json& figures = all[of.kind.key] = {{"title", of.kind.title}, {"applicable", of.applicable()}};
+      if (!of.applicable()) {
+        figures["not_applicable_because"] = of.not_applicable;
+        continue;
+      }
+      for (const programs::ErrorFigure& figure : programs::error_figures) {
+        figures[figure.name] = programs::described(programs::over_seeds(of, figure));
+      }
+      for (const programs::ModelFigure& figure : programs::model_figures) {
+        for (std::size_t axis = 0; figure.has_axes && axis < programs::axis_names.size(); ++axis) {
+          figures[figure.name][programs::axis_names[axis]] =
+              programs::described(programs::over_seeds(of, figure, axis));
+        }
+      }
+    }
+    return all;
+  }
+
+  /// model.hpp, model.block and, where there are limits, trust.hpp. Throws std::invalid_argument for a model that is
+  /// worse than the mean of the commands, unless `allow_poor`.
+  pinnquad::Exported save(const std::string& folder, const std::string& name, bool allow_poor) const {
+    if (!pinnquad::is_identifier(name)) {
+      throw std::invalid_argument("name " + pinnquad::printable(name) +
+                                  ": a C++ identifier was expected, no keyword and no name that C++ reserves");
+    }
+    if (verdict_.worse_than_mean() && !allow_poor) {
+      throw std::invalid_argument(std::string(kind().title) +
+                                  " is worse than the mean of the commands on the rows held out: allow_poor=True "
+                                  "exports it, marked");
+    }
+    std::filesystem::create_directories(folder);
+    const pinnquad::Exported::Files files{folder + "/model.hpp", folder + "/model.block",
+                                          fit_->model->has_trust() ? folder + "/trust.hpp" : ""};
+    const programs::Fold& fold = plan_.folds.front();
+    const pinnquad::Provenance from = programs::provenance_of(
+        *fit_->model,
+        programs::provenance_of(fold, dataset_.flights, dataset_.lag_removed_s, kind(), plan_.settings, fit_->seed,
+                                plan_.epochs, verdict_),
+        judged().bias_time_constants_s, true);
+    return fit_->model->export_to(files, name, fold.split, from);
+  }
+
+ private:
+  const JudgedKind& judged() const { return judged_.kinds[chosen_]; }
+
+  std::vector<unsigned char> block_bytes() const {
+    const pinnquad::BlockModel& block = *fit_->model->block();
+    return {block.data(), block.data() + block.size()};
+  }
+
+  bool is_imported() const { return !dataset_.mapping.empty(); }
+
+  programs::FitPlan plan_of(const TrainChoices& choices) {
+    programs::TrainOptions options;  // what the checks of the command ask
+    for (const pinnquad::Flight& flight : dataset_.flights.flights()) options.flights.push_back(flight.name);
+    if (!is_imported()) {
+      pinnquad::RowSet all;
+      for (const pinnquad::Flight& flight : dataset_.flights.flights()) all.add(flight, {0, flight.size()});
+      if (all.size() < programs::fewest_flight_rows) {
+        throw std::invalid_argument("expected " + std::to_string(programs::fewest_flight_rows) +
+                                    " rows or more to train on, found " + std::to_string(all.size()));
+      }
+      dataset_.sample_period_s = pinnquad::sample_period_s(all);
+      programs::remove_latency(dataset_, airframe_.value, choices.lag_s);
+    }
+    std::vector<programs::ModelKind> kinds = {programs::linearized_kind()};
+    const auto is_loss = [](const std::string& key, const auto& names) {
+      return std::find(names.begin(), names.end(), key) != names.end();
+    };
+    for (const std::string& loss : choices.losses) {
+      if (!is_loss(loss, programs::loss_names)) refuse_name("loss", loss, programs::loss_names);
+    }
+    for (const programs::ModelKind& of : recipe_.kinds) {
+      if (is_loss(of.key, choices.losses) || !is_loss(of.key, programs::loss_names)) kinds.push_back(of);
+    }
+    std::vector<programs::Fold> folds;
+    if (choices.hold_out.empty()) {
+      folds.push_back(programs::fold_in_order(dataset_.flights));
+    } else {
+      folds = programs::folds_of(dataset_.flights, {choices.hold_out, {}});
+    }
+    programs::require_sound(options, dataset_, folds);
+    bool known_by_name = false;
+    programs::with_airframe(airframe_.name, [&](auto tag) {
+      using Vehicle = typename decltype(tag)::type;
+      known_by_name = same_numbers(pinnquad::airframe_value<Vehicle, double>(), airframe_.value);
+    });
+    constexpr double filter_s = 0.05;  // rows of logs have derivatives that an import's filter made
+    const pinnquad::PastRows past{
+        pinnquad::flown_motion_age_s + (is_imported() ? filter_s : 0),
+        pinnquad::least_bias_time_constant_s(std::max(airframe_.value.rotor_time_constant_s, dataset_.lag_removed_s))};
+    return {airframe_,
+            choices.recipe,
+            std::move(kinds),
+            std::move(folds),
+            dataset_.absent,
+            dataset_.sample_period_s,
+            choices.seed,
+            choices.seeds,
+            choices.epochs > 0 || is_imported() ? choices.epochs : programs::recipe_epochs,
+            choices.threads > 0 ? choices.threads : std::max(1u, std::thread::hardware_concurrency()),
+            {known_by_name, choices.altitude, choices.pinned_slopes, is_imported()},
+            past,
+            false};
+  }
+
+  static bool same_numbers(pinnquad::Airframe<double> a, pinnquad::Airframe<double> b) {
+    std::vector<double> numbers;
+    each_number(a, [&](auto& number) { numbers.push_back(static_cast<double>(number)); });
+    std::size_t next = 0;
+    bool same = true;
+    each_number(b, [&](auto& number) { same &= pinnquad::detail::equal(numbers[next++], static_cast<double>(number)); });
+    return same;
+  }
+
+  ImportedDataset dataset_;  ///< its rows are what plan and fits look at: a Training never moves
+  NamedAirframe airframe_;
+  programs::Recipe recipe_;
+  programs::FitPlan plan_;
+  programs::Fits fits_;
+  programs::JudgedKinds judged_;
+  std::size_t chosen_ = 0;
+  const programs::FinishedFit* fit_ = nullptr;
+  pinnquad::Verdict verdict_;
+  std::shared_ptr<pinnquad::BlockModel> model_;
+};
+
+std::unique_ptr<Training> train(const py::object& flights, const py::object& airframe, const TrainChoices& choices) {
+  ImportedDataset dataset;
+  if (py::isinstance<ImportedDataset>(flights)) {
+    dataset = flights.cast<const ImportedDataset&>();
+  } else {
+    dataset.flights = *dataset_of(flights);
+  }
+  std::unique_ptr<Training> training;
+  const NamedAirframe chosen = airframe_of(airframe);
+  run_interruptible([&] { training = std::make_unique<Training>(std::move(dataset), chosen, choices); });
+  return training;
+}
+
+}  // namespace
+
+void bind_training(py::module_& module) {
+  py::class_<Training>(module, "Training", "Models that were fitted and judged, and the one that is exported.")
+      .def_property_readonly("model", &Training::model, "The exported kind's best fit.")
+      .def_property_readonly("kind", [](const Training& self) { return self.kind().key; }, "Its key: 'structured' ...")
+      .def_property_readonly("seed", &Training::seed, "Its seed.")
+      .def_property_readonly("r2", [](const Training& self) { return self.verdict().test_r_squared; },
+                             "Coefficient of determination of the commands on the rows held out.")
+      .def_property_readonly("linear_regression_r2",
+                             [](const Training& self) { return self.verdict().linear_regression_r_squared; },
+                             "The same of linear regression on the paper's features.")
+      .def_property_readonly("figures", [](const Training& self) { return to_python(self.figures()); },
+                             "Of every kind, as `models` of report.json (docs/guide.md).")
+      .def(
+          "save",
+          [](const Training& self, const std::filesystem::path& folder, const std::string& name, bool allow_poor) {
+            const pinnquad::Exported written = self.save(folder.string(), name, allow_poor);
+            std::vector<std::string> files = {folder / "model.hpp", folder / "model.block"};
+            if (std::filesystem::exists(folder / "trust.hpp")) files.push_back(folder / "trust.hpp");
+            return files;
+          },
+          py::arg("folder"), py::arg("name") = "TrainedQuadModel", py::kw_only(), py::arg("allow_poor") = false,
+          "Writes model.hpp (struct `name`), model.block and, where there are limits, trust.hpp: all or none.\n"
+          "The paths. ValueError for a model that is worse than the mean of the commands.")
+      .def("__repr__", [](const Training& self) {
+        char text[128];
+        std::snprintf(text, sizeof text, "<pinnquad.Training: %s of seed %llu, R^2 %.4f>", self.kind().key,
+                      static_cast<unsigned long long>(self.seed()), self.verdict().test_r_squared);
+        return std::string(text);
+      });
+  module.def(
+      "train",
+      [](const py::object& flights, const py::object& airframe, const std::string& recipe,
+         const std::vector<std::string>& losses, int seeds, int epochs, std::uint64_t seed,
+         const std::vector<std::string>& hold_out, const std::optional<bool>& altitude, const std::string& slopes,
+         const std::optional<double>& lag_s, unsigned threads) {
+        if (slopes != "learned" && slopes != "pinned") {
+          refuse_name("slopes", slopes, std::array<const char*, 2>{"learned", "pinned"});
+        }
+        if (seeds < 1 || seeds > static_cast<int>(pinnquad::most_pairs)) {
+          throw py::value_error("seeds must be 1 to " + std::to_string(pinnquad::most_pairs));
+        }
+        if (epochs < 0 || epochs > 100000) throw py::value_error("epochs must be 0 (what suits) to 100000");
+        if (threads > 1024) throw py::value_error("threads must be 0 (all cores) to 1024");
+        if (lag_s) checked("lag_s", std::abs(*lag_s), 0);
+        return train(flights, airframe,
+                     {recipe, losses, hold_out, seeds, epochs, seed, altitude, slopes == "pinned", lag_s, threads});
+      },
+      py::arg("flights"), py::arg("airframe") = pinnquad::PaperQuadrotor::name, py::kw_only(),
+      py::arg("recipe") = "structured",
+      py::arg("losses") = std::vector<std::string>{programs::loss_names[0], programs::loss_names[1]},
+      py::arg("seeds") = 5, py::arg("epochs") = 0, py::arg("seed") = 1,
+      py::arg("hold_out") = std::vector<std::string>{}, py::arg("altitude") = py::none(), py::arg("slopes") = "learned",
+      py::arg("lag_s") = py::none(), py::arg("threads") = 0,
+      "As `pinnquad train --flight`, on flights in memory, and with its bytes.\n\n"
+      "flights    a Dataset, a Flight or a list of them; one: its last fifth is held out, of three or more the last\n"
+      "airframe   what flew: an Airframe, a name, or a TOML file\n"
+      "recipe     'structured' (its model is proven), 'paper', 'best', 'small'\n"
+      "losses     of the recipe's networks; [] with 'structured' trains its model alone\n"
+      "seeds, epochs, seed, threads   fits per kind; 0 epochs: what suits; the first seed; 0: all cores\n"
+      "hold_out   names of flights or trajectories that judge, in place of the last\n"
+      "altitude   is the structured model shown it? None: where the validation rows gain by it\n"
+      "slopes     'learned', or 'pinned' to the airframe's in hover\n"
+      "lag_s      from command to motion, s, to be removed; None: estimated\n\n"
+      "Other threads run meanwhile; Ctrl-C ends it, and nothing is kept.");
+}
+
+}  // namespace python
