@@ -23,7 +23,8 @@ class CMakeBuild(build_ext):
     def build_extension(self, ext):
         for program, package in (("cmake", "cmake"), ("ninja", "ninja-build"), ("c++", "g++")):
             if not shutil.which(program):
-                raise SystemExit(f"pinnquad: {program} is needed. On Debian or Ubuntu, as root: apt-get install {package}")
+                raise SystemExit(
+                    f"pinnquad: {program} is needed. On Debian or Ubuntu, as root: apt-get install {package}")
         build = Path(self.build_temp).resolve()
         parts = {"TESTS": "OFF", "EXAMPLES": "OFF", "TOOLS": "OFF", "BENCH": "OFF", "LOGS": "ON", "PYTHON": "ON",
                  "AT_ONCE": "ON"}
@@ -39,4 +40,5 @@ class CMakeBuild(build_ext):
 
 
 (ROOT / "build").mkdir(exist_ok=True)
-setup(version=version(), options={"egg_info": {"egg_base": "build"}}, ext_modules=[Extension("pinnquad._core", [])], cmdclass={"build_ext": CMakeBuild})
+setup(version=version(), options={"egg_info": {"egg_base": "build"}}, cmdclass={"build_ext": CMakeBuild},
+      ext_modules=[Extension("pinnquad._core", [])])

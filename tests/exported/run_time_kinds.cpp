@@ -4,6 +4,7 @@
 // compiled model.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -13,6 +14,7 @@
 #include "models/v4/own_racer.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/exported/model_view.hpp"
+#include "pinnquad/exported/run_time_batch.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
 #include "support/block_bytes.hpp"
 #include "support/drawn_model.hpp"
@@ -82,12 +84,36 @@ int same_commands(const Model& model, const RunTimeModel<typename Model::Scalar>
   return same;
 }
 
+/// Rows of a whole batch, of a part of one and of none: each to the bit what it is alone.
+template <class Model>
+void rows_are_the_same(const Model& model, const RunTimeModel<typename Model::Scalar>& run_time) {
+  using Scalar = typename Model::Scalar;
+  constexpr std::size_t most = 2 * std::size_t(run_time_lanes) + 5;
+  std::vector<Scalar> work(run_time.workspace()), batch_work(batch_workspace(run_time)), x;
+  std::mt19937_64 engine(12);
+  for (std::size_t row = 0; row < most; ++row) {
+    const auto motion = drawn_features(model, engine);
+    x.insert(x.end(), motion.begin(), motion.end());
+  }
+  for (const std::size_t rows : {std::size_t(0), std::size_t(1), std::size_t(run_time_lanes), most}) {
+    std::vector<Scalar> u(4 * most, Scalar(7));
+    commands_of_rows(run_time, x.data(), rows, u.data(), batch_work.data());
+    for (std::size_t row = 0; row < most; ++row) {
+      Commands<Scalar> alone{Scalar(7), Scalar(7), Scalar(7), Scalar(7)}, of_batch{};
+      std::copy_n(u.data() + 4 * row, 4, of_batch.begin());
+      if (row < rows) run_time.commands(x.data() + row * (x.size() / most), alone.data(), work.data());
+      CHECK(same_bits(alone, of_batch));
+    }
+  }
+}
+
 template <class Model>
 void commands_are_the_same(const Model& model) {
   const BlockBytes block(drawn_block(model));
   const auto run_time = opened<typename Model::Scalar>(block);
   std::vector<typename Model::Scalar> work(run_time->workspace());
   CHECK(run_time->golden_difference(work.data()) <= 0);
+  rows_are_the_same(model, *run_time);
   CHECK(same_commands(model, *run_time, [&](const auto& x) { return model.predict(x); }) == inputs_per_kind);
   if constexpr (!std::is_same_v<typename Model::Vehicle, GivenAirframe>) {
     ModelView<Model> view;

@@ -36,16 +36,16 @@ static void add_responses(const BlockModel& model, Findings& findings) {
   const auto along = [&](const std::optional<Direction>& direction) {
     if (!direction) return std::optional<Response>();
     return model.with([&](const auto& own) {
-      return std::optional(response_along(*direction, own.network(), own.parameters(),
-                                                    own.scales().input_deviation, own.scales().output_deviation));
+      return std::optional(response_along(*direction, own.network(), own.parameters(), own.scales().input_deviation,
+                                          own.scales().output_deviation));
     });
   };
   findings.thrust = along(more_thrust(findings.names));
   const RunTimeWindow& window = model.features().window();
   if (has_base(model) || window.taps < 2) return;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    findings.with_rates[axis] = along(held_with_rates(
-        findings.names, axis, {window.period_s, window.earliest_s}, model.envelope_lower(), model.envelope_upper()));
+    findings.with_rates[axis] = along(held_with_rates(findings.names, axis, {window.period_s, window.earliest_s},
+                                                      model.envelope_lower(), model.envelope_upper()));
   }
 }
 

@@ -21,21 +21,21 @@ namespace programs {
 /// All that is known of a model in the end.
 struct Findings {
   std::optional<pinnquad::ProvenSigns> proof;
-  std::optional<pinnquad::Certificate> certificate;    ///< of a structure
-  std::optional<Response> thrust;  ///< of the structure, to more thrust at all instants
+  std::optional<pinnquad::Certificate> certificate;  ///< of a structure
+  std::optional<Response> thrust;                    ///< of the structure, to more thrust at all instants
   /// Of a window, to an acceleration that is held with the body rates that it makes; where it can be worked out.
   std::array<std::optional<Response>, 3> with_rates;
-  Search search;                ///< where nothing is proven
-  std::vector<AskedMore> ways;  ///< of the search
-  std::vector<std::string> names;         ///< of the features
-  std::size_t taps = 1;                   ///< with an angular acceleration
+  Search search;                   ///< where nothing is proven
+  std::vector<AskedMore> ways;     ///< of the search
+  std::vector<std::string> names;  ///< of the features
+  std::size_t taps = 1;            ///< with an angular acceleration
 
   bool proven() const { return proof.has_value(); }
   bool by_path_bound() const { return proof && proof->by == pinnquad::SignProof::path_bound; }
 };
 
-/// Searches for `seconds` of the processor where nothing is proven. Throws InputError for a model that is asked no angular
-/// acceleration.
+/// Searches for `seconds` of the processor where nothing is proven. Throws InputError for a model that is asked no
+/// angular acceleration.
 Findings findings_of(const pinnquad::BlockModel& model, double seconds, std::uint64_t seed);
 
 /// The proof's argument.

@@ -117,7 +117,8 @@ void bind_airframes(py::module_& module) {
   number(airframe, "mass_kg", &Values::mass_kg, "Mass, kg.");
   airframe
       .def_property(
-          "inertia_kg_m2", [](py::object self) { return edited(self.cast<NamedAirframe&>().value.inertia_kg_m2, self); },
+          "inertia_kg_m2",
+          [](py::object self) { return edited(self.cast<NamedAirframe&>().value.inertia_kg_m2, self); },
           [](NamedAirframe& self, const Triple& values) { self.value.inertia_kg_m2 = values; },
           "Jx, Jy, Jz, kg m^2, FRD; to be edited in place too.")
       .def_property(

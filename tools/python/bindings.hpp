@@ -28,6 +28,7 @@ using pinnquad::logs::NamedAirframe;
 using Triple = std::array<double, 3>;
 
 void bind_errors(py::module_& module);
+void bind_status(py::module_& module);
 void bind_airframes(py::module_& module);
 void bind_flights(py::module_& module);
 void bind_simulators(py::module_& module);

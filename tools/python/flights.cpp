@@ -43,8 +43,7 @@ py::array array_of_quantity(const py::object& self, const Quantity& quantity) {
   const auto& flight = self.cast<const Flight&>();
   const auto rows = static_cast<py::ssize_t>(flight.size());
   const auto size = static_cast<py::ssize_t>(sizeof(double));
-  const double* numbers =
-      flight.empty() ? nullptr : reinterpret_cast<const double*>(&flight.front()) + quantity.first;
+  const double* numbers = flight.empty() ? nullptr : reinterpret_cast<const double*>(&flight.front()) + quantity.first;
   if (quantity.count == 1) return view_of(numbers, {rows}, {row_bytes}, self);
   return view_of(numbers, {rows, quantity.count}, {row_bytes, size}, self);
 }
@@ -59,7 +58,8 @@ py::array column_of(const py::object& self, const std::string& name) {
   }
   const auto& flight = self.cast<const Flight&>();
   for (std::size_t i = 0; i < pinnquad::sample_value_count; ++i) {
-    if (name == pinnquad::sample_field_names[i]) return array_of_quantity(self, {"", static_cast<py::ssize_t>(i), 1, ""});
+    if (name == pinnquad::sample_field_names[i])
+      return array_of_quantity(self, {"", static_cast<py::ssize_t>(i), 1, ""});
   }
   if (const pinnquad::ExtraColumn* column = flight.column(name)) {
     return view_of(column->values.data(), {static_cast<py::ssize_t>(flight.size())},
@@ -74,8 +74,8 @@ py::array column_of(const py::object& self, const std::string& name) {
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Columns = std::vector<std::tuple<std::string, std::string, std::vector<double>>>;
 
-std::shared_ptr<Flight> made(const Numbers& rows, const std::string& name, const std::string& trajectory,
-                             double weight, const Columns& columns) {
+std::shared_ptr<Flight> made(const Numbers& rows, const std::string& name, const std::string& trajectory, double weight,
+                             const Columns& columns) {
   if (rows.ndim() != 2 || static_cast<std::size_t>(rows.shape(1)) != pinnquad::sample_value_count) {
     throw py::value_error("rows must be an array of 21 columns, those of column_names");
   }
@@ -135,7 +135,8 @@ py::object flight_at(const py::object& self, py::ssize_t index) {
   const Dataset& flights = self.cast<const ImportedDataset&>().flights;
   const auto count = static_cast<py::ssize_t>(flights.size());
   if (index < 0) index += count;
-  if (index < 0 || index >= count) throw py::index_error("flight " + std::to_string(index) + " of " + std::to_string(count));
+  if (index < 0 || index >= count)
+    throw py::index_error("flight " + std::to_string(index) + " of " + std::to_string(count));
   auto shared = self.cast<std::shared_ptr<ImportedDataset>>();
   const Flight& flight = flights[static_cast<std::size_t>(index)];
   return py::cast(std::shared_ptr<Flight>(shared, const_cast<Flight*>(&flight)));
@@ -220,8 +221,7 @@ void bind_flights(py::module_& module) {
   flight.attr("column_names") = names;
   for (const Quantity& quantity : quantities) {
     flight.def_property_readonly(
-        quantity.name, [&quantity](const py::object& self) { return array_of_quantity(self, quantity); },
-        quantity.doc);
+        quantity.name, [&quantity](const py::object& self) { return array_of_quantity(self, quantity); }, quantity.doc);
   }
 
   py::class_<ImportedDataset, std::shared_ptr<ImportedDataset>>(module, "Dataset",

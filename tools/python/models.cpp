@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Models of blocks: loaded, asked one motion or many, judged, certified.
-#include <cstring>
+#include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "model/evaluation.hpp"
 #include "model/findings.hpp"
+#include "pinnquad/exported/run_time_batch.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "python/interruptible.hpp"
 #include "python/json.hpp"
@@ -31,14 +34,12 @@ struct GivenFeatures {
     }
     is_double = py::isinstance<py::array_t<double>>(array);
     if (!is_double && !py::isinstance<py::array_t<float>>(array)) {
-      throw py::type_error("predict: expected float32 or float64, found " +
-                           py::str(array.dtype()).cast<std::string>());
+      throw py::type_error("predict: expected float32 or float64, found " + py::str(array.dtype()).cast<std::string>());
     }
     const py::ssize_t dimensions = array.ndim();
     if (dimensions < 1 || dimensions > 2 || array.shape(dimensions - 1) != features) {
       throw py::value_error("predict: expected shape (" + std::to_string(features) + ",) or (rows, " +
-                            std::to_string(features) + "), found " +
-                            py::str(array.attr("shape")).cast<std::string>());
+                            std::to_string(features) + "), found " + py::str(array.attr("shape")).cast<std::string>());
     }
     if ((array.flags() & py::array::c_style) == 0) {
       throw py::value_error("predict: expected a C-contiguous array; numpy.ascontiguousarray() makes one");
@@ -61,35 +62,35 @@ std::size_t first_not_finite(const Number* numbers, std::size_t count) {
   return count;
 }
 
+/// As the guard that flies says (TrainingGuard).
+template <class Model, class Scalar>
+Status guarded(const Model& model, const Scalar* x, const Scalar* u) {
+  const auto size = static_cast<std::size_t>(model.features().size());
+  if (first_not_finite(x, size) < size) return Status::not_finite;
+  if (!model.inside_envelope(x)) return Status::outside_envelope;
+  return first_not_finite(u, rotor_count) < rotor_count ? Status::output_not_finite : Status::ok;
+}
+
 /// Answers to rows in the model's own scalar. `statuses`: null where none are asked for, then every row is answered.
 template <class Number, class Model, class Scalar>
 void answer(const Model& model, const Number* x, std::size_t rows, Scalar* u, std::uint8_t* statuses,
             SignalWatch& watch) {
+  constexpr std::size_t at_once = 256;
   const auto size = static_cast<std::size_t>(model.features().size());
-  std::vector<Scalar> own(size), work(model.workspace());
-  constexpr std::size_t rows_per_look = 256;
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t i = 0; i < size; ++i) own[i] = static_cast<Scalar>(x[row * size + i]);
-    Status status = Status::ok;
-    if (statuses != nullptr) {
-      if (first_not_finite(own.data(), size) < size) {
-        status = Status::not_finite;
-      } else if (!model.inside_envelope(own.data())) {
-        status = Status::outside_envelope;
-      }
-      statuses[row] = static_cast<std::uint8_t>(status);
+  std::vector<Scalar> own(at_once * size), work(batch_workspace(model));
+  for (std::size_t first = 0; first < rows; first += at_once) {
+    const std::size_t count = std::min(at_once, rows - first);
+    const Number* const given = x + first * size;
+    for (std::size_t i = 0; i < count * size; ++i) own[i] = static_cast<Scalar>(given[i]);
+    Scalar* const commands = u + first * rotor_count;
+    commands_of_rows(model, own.data(), count, commands, work.data());
+    for (std::size_t row = 0; statuses != nullptr && row < count; ++row) {
+      Scalar* const of_row = commands + row * rotor_count;
+      const Status status = guarded(model, own.data() + row * size, of_row);
+      statuses[first + row] = static_cast<std::uint8_t>(status);
+      if (status != Status::ok) std::fill_n(of_row, rotor_count, std::numeric_limits<Scalar>::quiet_NaN());
     }
-    Scalar* const commands = u + row * rotor_count;
-    if (status == Status::ok) {
-      model.commands(own.data(), commands, work.data());
-      if (statuses != nullptr && first_not_finite(commands, rotor_count) < rotor_count) {
-        statuses[row] = static_cast<std::uint8_t>(status = Status::output_not_finite);
-      }
-    }
-    if (status != Status::ok) {
-      for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = std::numeric_limits<Scalar>::quiet_NaN();
-    }
-    if (row % rows_per_look == rows_per_look - 1) watch.look();
+    watch.look();
   }
 }
 
@@ -122,7 +123,8 @@ py::object predict(const BlockModel& model, const py::object& features, bool gua
                       : answer(own, static_cast<const float*>(x), given.rows, u, said, watch);
     }
     if (!guarded) return std::move(commands);
-    return py::make_tuple(commands, one ? py::object(statuses[py::int_(0)]) : py::object(statuses));
+    return py::make_tuple(commands,
+                          one ? py::module_::import("pinnquad").attr("Status")(said[0]) : py::object(statuses));
   });
 }
 
@@ -188,47 +190,58 @@ void bind_models(py::module_& module) {
           "of_bytes",
           [](const py::bytes& bytes) { return std::make_shared<BlockModel>("bytes", static_cast<std::string>(bytes)); },
           py::arg("bytes"), "Of a block in memory.")
-      .def("predict", [](const BlockModel& self, const py::object& x) { return predict(self, x, false); },
-           py::arg("features"),
-           "Commands, 0 to 1, of features in physical units: (features,) gives (4,), (rows, features) gives (rows, 4).\n"
-           "float32 or float64, C-contiguous; answers are of the block's own scalar. A number that is not finite is a\n"
-           "ValueError with its row. The envelope is not looked at: predict_guarded() does.")
-      .def("predict_guarded", [](const BlockModel& self, const py::object& x) { return predict(self, x, true); },
-           py::arg("features"),
-           "(commands, statuses) under the guard that flies: rows that it refuses are NaN, with their Status (not_finite,\n"
-           "outside_envelope, output_not_finite) in place of ok.")
+      .def(
+          "predict", [](const BlockModel& self, const py::object& x) { return predict(self, x, false); },
+          py::arg("features"),
+          "Commands, 0 to 1, of features in physical units: (features,) gives (4,), (rows, features) gives (rows, 4).\n"
+          "float32 or float64, C-contiguous; answers are of the block's own scalar. A number that is not finite is a\n"
+          "ValueError with its row. The envelope is not looked at: predict_guarded() does.")
+      .def(
+          "predict_guarded", [](const BlockModel& self, const py::object& x) { return predict(self, x, true); },
+          py::arg("features"),
+          "(commands, statuses) under the guard that flies: rows that it refuses are NaN, with their Status "
+          "(not_finite,\n"
+          "outside_envelope, output_not_finite) in place of ok.")
       .def("features", &features_of, py::arg("flights"),
            "Its features of each row of a Flight or a Dataset, rows x features; NaN where a window has no rows.")
       .def_property_readonly("feature_names", &BlockModel::feature_names)
       .def_property_readonly("name", &BlockModel::name)
-      .def_property_readonly("airframe", [](const BlockModel& self) {
-        return NamedAirframe{self.airframe_name(), self.airframe()};
-      })
-      .def_property_readonly("envelope", [](const BlockModel& self) {
-        return py::make_tuple(py::array(py::cast(self.envelope_lower())), py::array(py::cast(self.envelope_upper())));
-      }, "The guard's (lower, upper) of each feature.")
-      .def("save", &save, py::arg("path"), "Writes the block, whole or not at all. Training.save() writes the header too.")
-      .def("to_bytes", [](const BlockModel& self) {
-        return py::bytes(reinterpret_cast<const char*>(self.data()), self.size());
-      }, "The block.")
-      .def("__repr__", [](const BlockModel& self) {
-        return "<pinnquad.Model " + self.path() + ": " + self.answer() + ", " +
-               std::to_string(self.features().size()) + " features, for " + self.airframe_name() + ">";
-      })
-      .def(py::pickle(
+      .def_property_readonly("airframe",
+                             [](const BlockModel& self) {
+                               return NamedAirframe{self.airframe_name(), self.airframe()};
+                             })
+      .def_property_readonly(
+          "envelope",
           [](const BlockModel& self) {
-            return py::bytes(reinterpret_cast<const char*>(self.data()), self.size());
+            return py::make_tuple(py::array(py::cast(self.envelope_lower())),
+                                  py::array(py::cast(self.envelope_upper())));
           },
+          "The guard's (lower, upper) of each feature.")
+      .def("save", &save, py::arg("path"),
+           "Writes the block, whole or not at all. Training.save() writes the header too.")
+      .def(
+          "to_bytes",
+          [](const BlockModel& self) { return py::bytes(reinterpret_cast<const char*>(self.data()), self.size()); },
+          "The block.")
+      .def("__repr__",
+           [](const BlockModel& self) {
+             return "<pinnquad.Model " + self.path() + ": " + self.answer() + ", " +
+                    std::to_string(self.features().size()) + " features, for " + self.airframe_name() + ">";
+           })
+      .def(py::pickle(
+          [](const BlockModel& self) { return py::bytes(reinterpret_cast<const char*>(self.data()), self.size()); },
           [](const py::bytes& bytes) {
             return std::make_shared<BlockModel>("a pickled block", static_cast<std::string>(bytes));
           }));
-  module.def("evaluate", &evaluate, py::arg("model"), py::arg("flights"), py::arg("rows") = "all",
-             "Judges a model on a Flight or a Dataset: the dict that `pinnquad evaluate --json` prints. rows 'test': those\n"
-             "that train() holds out of these flights.");
-  module.def("certify", &certify, py::arg("model"), py::arg("seconds") = 5.0, py::arg("seed") = 1,
-             "What is proven of the signs of a model's slopes, or two motions that refute it: the dict that\n"
-             "`pinnquad certify --json` prints; 'verdict' is 'proven', 'counterexample' or 'neither'. `seconds` of the\n"
-             "processor are spent on the search where nothing is proven.");
+  module.def(
+      "evaluate", &evaluate, py::arg("model"), py::arg("flights"), py::arg("rows") = "all",
+      "Judges a model on a Flight or a Dataset: the dict that `pinnquad evaluate --json` prints. rows 'test': those\n"
+      "that train() holds out of these flights.");
+  module.def(
+      "certify", &certify, py::arg("model"), py::arg("seconds") = 5.0, py::arg("seed") = 1,
+      "What is proven of the signs of a model's slopes, or two motions that refute it: the dict that\n"
+      "`pinnquad certify --json` prints; 'verdict' is 'proven', 'counterexample' or 'neither'. `seconds` of the\n"
+      "processor are spent on the search where nothing is proven.");
 }
 
 }  // namespace python

@@ -2,6 +2,7 @@
 // The module pinnquad._core: its parts, and how errors of the library become Python's.
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <stdexcept>
 
 #include "pinnquad/io/file_error.hpp"
@@ -67,8 +68,20 @@ void bind_errors(py::module_& module) {
       PyErr_SetString(error, refused.what());
     } catch (const pinnquad::OutputError& refused) {
       PyErr_SetString(PyExc_OSError, refused.what());
+    } catch (const std::filesystem::filesystem_error& refused) {
+      PyErr_SetString(PyExc_OSError, refused.what());
     }
   });
+}
+
+void bind_status(py::module_& module) {
+  py::list values;
+  for (int i = 0; i < pinnquad::status_count; ++i) {
+    values.append(py::make_tuple(to_string(static_cast<pinnquad::Status>(i)), i));
+  }
+  const py::object made = py::module_::import("enum").attr("IntEnum")("Status", values, py::arg("module") = "pinnquad");
+  made.attr("__doc__") = "The outcome of a call of the library, vehicle by vehicle or row by row.";
+  module.attr("Status") = made;
 }
 
 }  // namespace python
@@ -76,6 +89,7 @@ void bind_errors(py::module_& module) {
 PYBIND11_MODULE(_core, module) {
   module.attr("__version__") = PINNQUAD_VERSION;
   python::bind_errors(module);
+  python::bind_status(module);
   python::bind_airframes(module);
   python::bind_flights(module);
   python::bind_simulators(module);

@@ -64,12 +64,12 @@ ChosenPilot pilot_of(const Choices& choices, const SwitchedQuadrotor& vehicle) {
   return with_quadrotor(vehicle, [&](const auto& quadrotor) -> ChosenPilot {
     const double ground_z_m = quadrotor.site().ground_z_m;
     if (choices.pilot == "random") {
-      return {RandomPilot<Engine>(Engine(choices.seed), pilot_style(quadrotor, start, choices.max_speed_m_s),
-                                  ground_z_m)};
+      return {
+          RandomPilot<Engine>(Engine(choices.seed), pilot_style(quadrotor, start, choices.max_speed_m_s), ground_z_m)};
     }
     if (choices.pilot == "near_ground") {
-      return {NearGroundPilot<Engine>(Engine(choices.seed),
-                                      near_ground_style(quadrotor, start, choices.max_speed_m_s), ground_z_m)};
+      return {NearGroundPilot<Engine>(Engine(choices.seed), near_ground_style(quadrotor, start, choices.max_speed_m_s),
+                                      ground_z_m)};
     }
     refuse_name("pilot", choices.pilot, pilots);
   });
@@ -312,7 +312,8 @@ void take(py::handle effects, const char* name, Value& value) {
 
 Effects effects_of(py::handle given) {
   if (!py::isinstance(given, py::module_::import("pinnquad.effects").attr("Effects"))) {
-    throw py::type_error("effects must be pinnquad.Effects, found " + py::repr(py::type::of(given)).cast<std::string>());
+    throw py::type_error("effects must be pinnquad.Effects, found " +
+                         py::repr(py::type::of(given)).cast<std::string>());
   }
   Effects e;
   take(given, "wind_m_s", e.wind_m_s);
@@ -412,8 +413,10 @@ void bind_simulators(py::module_& module) {
       .def_property_readonly("rows", &PythonSimulator::rows, "Rows recorded, those taken left out.")
       .def_property_readonly(
           "state", &PythonSimulator::state,
-          "The true state now, a dict: time_s, position_m and velocity_m_s (NED), attitude (w, x, y, z: body to world),\n"
-          "euler_rad (roll, pitch, yaw), body_rates_rad_s, altitude_m above ground, commands (last told to the motors,\n"
+          "The true state now, a dict: time_s, position_m and velocity_m_s (NED), attitude (w, x, y, z: body to "
+          "world),\n"
+          "euler_rad (roll, pitch, yaw), body_rates_rad_s, altitude_m above ground, commands (last told to the "
+          "motors,\n"
           "not clipped), rotor_commands (behind the rotors' lag), rotor_thrust_N (along body -z), aerodynamic_force_N\n"
           "(body), wind_m_s (NED), air_density_kg_m3, thrust_scale (of a sagging battery).")
       .def("hover_commands", &PythonSimulator::hover_commands,
@@ -423,8 +426,7 @@ void bind_simulators(py::module_& module) {
       .def(
           "copy", [](const PythonSimulator& self) { return new PythonSimulator(self); },
           "A simulator that flies on from here like this one, and apart from it.")
-      .def(
-          "__copy__", [](const PythonSimulator& self) { return new PythonSimulator(self); })
+      .def("__copy__", [](const PythonSimulator& self) { return new PythonSimulator(self); })
       .def("__deepcopy__", [](const PythonSimulator& self, const py::dict&) { return new PythonSimulator(self); })
       .def(py::pickle([](const PythonSimulator& self) { return self.journal(); },
                       [](const py::tuple& state) { return PythonSimulator::of_journal(state); }))

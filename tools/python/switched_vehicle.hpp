@@ -133,16 +133,15 @@ class SwitchedQuadrotor {
   using Plain = pinnquad::SwitchableQuadrotor<pinnquad::StandardAtmosphere, pinnquad::ConstantWind,
                                               pinnquad::PeriodicWind, pinnquad::QuadraticDrag>;
   /// In the order of the contract: the air first, then forces; the payload last, as it scales those before it.
-  using Full = QuadrotorWith<
-      SwitchedAir<pinnquad::StandardAtmosphere>, pinnquad::ConstantWind, pinnquad::PeriodicWind,
-      SwitchedAir<pinnquad::DrydenTurbulence<>>, SwitchedAir<pinnquad::BatterySag>,
-      SwitchedForce<pinnquad::QuadraticDrag>, SwitchedForce<pinnquad::LinearDamping>,
-      SwitchedRotorForce<pinnquad::RotorDrag>, SwitchedRotorForce<pinnquad::Inflow>,
-      SwitchedRotorForce<pinnquad::BladeFlapping>, SwitchedRotorForce<pinnquad::Wake>,
-      SwitchedRotorForce<pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>>,
-      SwitchedLift<pinnquad::CheesemanBennettGroundEffect>, SwitchedLift<pinnquad::ConyersGroundEffect>,
-      SwitchedRotorForce<pinnquad::RotorFault>, SwitchedForce<pinnquad::GroundContact>,
-      SwitchedRotorForce<pinnquad::Payload>>;
+  using Full = QuadrotorWith<SwitchedAir<pinnquad::StandardAtmosphere>, pinnquad::ConstantWind, pinnquad::PeriodicWind,
+                             SwitchedAir<pinnquad::DrydenTurbulence<>>, SwitchedAir<pinnquad::BatterySag>,
+                             SwitchedForce<pinnquad::QuadraticDrag>, SwitchedForce<pinnquad::LinearDamping>,
+                             SwitchedRotorForce<pinnquad::RotorDrag>, SwitchedRotorForce<pinnquad::Inflow>,
+                             SwitchedRotorForce<pinnquad::BladeFlapping>, SwitchedRotorForce<pinnquad::Wake>,
+                             SwitchedRotorForce<pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>>,
+                             SwitchedLift<pinnquad::CheesemanBennettGroundEffect>,
+                             SwitchedLift<pinnquad::ConyersGroundEffect>, SwitchedRotorForce<pinnquad::RotorFault>,
+                             SwitchedForce<pinnquad::GroundContact>, SwitchedRotorForce<pinnquad::Payload>>;
   using Chosen = std::variant<Plain, Full>;
 
   static bool is_plain(const Effects& e) {

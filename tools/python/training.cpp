@@ -52,8 +52,8 @@ class Training {
     while (chosen_ < plan_.kinds.size() && key != plan_.kinds[chosen_].key) ++chosen_;
     if (chosen_ == plan_.kinds.size() || !judged().applicable()) {
       throw std::invalid_argument("no model to export: " + (chosen_ == plan_.kinds.size()
-                                                               ? std::string("the recipe trains none")
-                                                               : judged().not_applicable));
+                                                                ? std::string("the recipe trains none")
+                                                                : judged().not_applicable));
     }
     fit_ = programs::best_fit(fits_.finished, chosen_, kind().takes_validation(plan_.settings));
     if (fit_ == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
@@ -105,11 +105,11 @@ class Training {
     const pinnquad::Exported::Files files{folder + "/model.hpp", folder + "/model.block",
                                           fit_->model->has_trust() ? folder + "/trust.hpp" : ""};
     const programs::Fold& fold = plan_.folds.front();
-    const pinnquad::Provenance from = programs::provenance_of(
-        *fit_->model,
-        programs::provenance_of(fold, dataset_.flights, dataset_.lag_removed_s, kind(), plan_.settings, fit_->seed,
-                                plan_.epochs, verdict_),
-        judged().bias_time_constants_s, true);
+    const pinnquad::Provenance from =
+        programs::provenance_of(*fit_->model,
+                                programs::provenance_of(fold, dataset_.flights, dataset_.lag_removed_s, kind(),
+                                                        plan_.settings, fit_->seed, plan_.epochs, verdict_),
+                                judged().bias_time_constants_s, true);
     return fit_->model->export_to(files, name, fold.split, from);
   }
 
@@ -182,7 +182,8 @@ class Training {
     each_number(a, [&](auto& number) { numbers.push_back(static_cast<double>(number)); });
     std::size_t next = 0;
     bool same = true;
-    each_number(b, [&](auto& number) { same &= pinnquad::detail::equal(numbers[next++], static_cast<double>(number)); });
+    each_number(b,
+                [&](auto& number) { same &= pinnquad::detail::equal(numbers[next++], static_cast<double>(number)); });
     return same;
   }
 
@@ -216,15 +217,18 @@ std::unique_ptr<Training> train(const py::object& flights, const py::object& air
 void bind_training(py::module_& module) {
   py::class_<Training>(module, "Training", "Models that were fitted and judged, and the one that is exported.")
       .def_property_readonly("model", &Training::model, "The exported kind's best fit.")
-      .def_property_readonly("kind", [](const Training& self) { return self.kind().key; }, "Its key: 'structured' ...")
+      .def_property_readonly(
+          "kind", [](const Training& self) { return self.kind().key; }, "Its key: 'structured' ...")
       .def_property_readonly("seed", &Training::seed, "Its seed.")
-      .def_property_readonly("r2", [](const Training& self) { return self.verdict().test_r_squared; },
-                             "Coefficient of determination of the commands on the rows held out.")
-      .def_property_readonly("linear_regression_r2",
-                             [](const Training& self) { return self.verdict().linear_regression_r_squared; },
-                             "The same of linear regression on the paper's features.")
-      .def_property_readonly("figures", [](const Training& self) { return to_python(self.figures()); },
-                             "Of every kind, as `models` of report.json (docs/guide.md).")
+      .def_property_readonly(
+          "r2", [](const Training& self) { return self.verdict().test_r_squared; },
+          "Coefficient of determination of the commands on the rows held out.")
+      .def_property_readonly(
+          "linear_regression_r2", [](const Training& self) { return self.verdict().linear_regression_r_squared; },
+          "The same of linear regression on the paper's features.")
+      .def_property_readonly(
+          "figures", [](const Training& self) { return to_python(self.figures()); },
+          "Of every kind, as `models` of report.json (docs/guide.md).")
       .def(
           "save",
           [](const Training& self, const std::filesystem::path& folder, const std::string& name, bool allow_poor) {

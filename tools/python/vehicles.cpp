@@ -161,25 +161,20 @@ class Vehicles {
 }  // namespace
 
 void bind_vehicles(py::module_& module) {
-  py::enum_<Status> status(module, "Status", "The outcome of a call of the library, vehicle by vehicle or row by row.",
-                           py::arithmetic());
-  for (int i = 0; i < status_count; ++i) status.value(to_string(static_cast<Status>(i)), static_cast<Status>(i));
-
   py::class_<Vehicles> vehicles(module, "Vehicles",
                                 "Many vehicles of one airframe under the same effects, stepped by one call. Their "
                                 "arrays are the library's memory: to write to them places the vehicles.");
   vehicles
-      .def(py::init([](std::size_t count, const py::object& airframe, const py::object& effects,
-                       double physics_step_s) {
-             constexpr std::size_t most = 10'000'000;
-             if (count < 1 || count > most) throw py::value_error("count must be 1 to " + std::to_string(most));
-             const py::object chosen =
-                 effects.is_none() ? py::module_::import("pinnquad.effects").attr("Effects")() : effects;
-             return new Vehicles(count, airframe_of(airframe), chosen, physics_step_s);
-           }),
-           py::arg("count"), py::arg("airframe") = PaperQuadrotor::name, py::kw_only(),
-           py::arg("effects") = py::none(), py::arg("physics_step_s") = FlightPlan{}.physics_step_s,
-           "They begin in hover at (0, 0, -35) m, NED.")
+      .def(
+          py::init([](std::size_t count, const py::object& airframe, const py::object& effects, double physics_step_s) {
+            constexpr std::size_t most = 10'000'000;
+            if (count < 1 || count > most) throw py::value_error("count must be 1 to " + std::to_string(most));
+            const py::object chosen =
+                effects.is_none() ? py::module_::import("pinnquad.effects").attr("Effects")() : effects;
+            return new Vehicles(count, airframe_of(airframe), chosen, physics_step_s);
+          }),
+          py::arg("count"), py::arg("airframe") = PaperQuadrotor::name, py::kw_only(), py::arg("effects") = py::none(),
+          py::arg("physics_step_s") = FlightPlan{}.physics_step_s, "They begin in hover at (0, 0, -35) m, NED.")
       .def("reset", &Vehicles::reset, py::arg("which") = py::none(),
            py::arg("position_m") = triple(FlightPlan{}.start_m),
            "Level, at rest, rotors in hover at a place, NED, m: all, or those where `which` (truth values) says so.")
@@ -187,11 +182,12 @@ void bind_vehicles(py::module_& module) {
            "Holds the commands (vehicles x 4, float64, C-contiguous) for so long, in RK4 steps of physics_step_s. A\n"
            "Status per vehicle: one that is not ok leaves its vehicle before the step that was refused. The ground\n"
            "stops nobody: see Effects.ground_contact. Other threads run meanwhile.")
-      .def("hover_commands",
-           [](const Vehicles& self, const Triple& place_m) {
-             return array_of(self.hover_commands(checked("position_m", place_m)));
-           },
-           py::arg("position_m") = triple(FlightPlan{}.start_m), "The four commands of a hover at a place, NED, m.")
+      .def(
+          "hover_commands",
+          [](const Vehicles& self, const Triple& place_m) {
+            return array_of(self.hover_commands(checked("position_m", place_m)));
+          },
+          py::arg("position_m") = triple(FlightPlan{}.start_m), "The four commands of a hover at a place, NED, m.")
       .def_property_readonly("airframe", &Vehicles::airframe, py::return_value_policy::copy, "A copy of it.")
       .def_property_readonly("effects", &Vehicles::effects)
       .def("__len__", &Vehicles::size)

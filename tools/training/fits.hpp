@@ -37,7 +37,7 @@ struct FitPlan {
   int epochs = 0;
   unsigned threads = 1;
   FitSettings settings{};
-  pinnquad::PastRows past{};  ///< how a bias is made of rows
+  pinnquad::PastRows past{};   ///< how a bias is made of rows
   bool shows_progress = true;  ///< on stderr
 
   FitTask task(const Fold& fold, std::uint64_t seed) const {

@@ -420,11 +420,11 @@ class Training {
 
   void write(const Exported& made, const programs::ModelKind& kind, const Verdict& verdict) {
     const std::optional<SignedSums<double>>& bias = judged_.kinds[*chosen_].bias_time_constants_s;
-    const Provenance from = programs::provenance_of(
-        *made.model,
-        programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind, plan_.settings, made.seed,
-                                plan_.epochs, verdict),
-        bias, vehicle_.is_known());
+    const Provenance from =
+        programs::provenance_of(*made.model,
+                                programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
+                                                        plan_.settings, made.seed, plan_.epochs, verdict),
+                                bias, vehicle_.is_known());
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
     const pinnquad::Exported written = made.model->export_to({header, block, made.model->has_trust() ? trust : ""},

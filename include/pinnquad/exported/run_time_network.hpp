@@ -14,6 +14,7 @@
 
 #include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/nn/activations.hpp"
+#include "pinnquad/nn/kernel/lane_row.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
 
 namespace pinnquad {
@@ -63,13 +64,17 @@ template <class Number>
 struct RunTimeActivation {
   std::string_view description;
   Number (*activate)(Number) noexcept;
+  void (*activate_all)(Number*, std::size_t) noexcept;
   Number (*slope)(Number) noexcept;  ///< by its input
   bool slopes_from_0_to_1;
 };
 template <class Spec, class Number>
 constexpr RunTimeActivation<Number> run_time_activation() noexcept {
   using Layer = typename Spec::template Bind<Number, 1>;
-  return {Spec::description, [](Number v) noexcept { return Number(Layer::activate(v)); },
+  const auto all = [](Number* values, std::size_t count) noexcept {
+    for (std::size_t i = 0; i < count; ++i) values[i] = Number(Layer::activate(values[i]));
+  };
+  return {Spec::description, [](Number v) noexcept { return Number(Layer::activate(v)); }, all,
           [](Number v) noexcept { return Number(slope_at<Layer>(slopes_from_input<Layer> ? v : Layer::activate(v))); },
           pinnquad::slopes_from_0_to_1<Layer>};
 }
@@ -124,6 +129,12 @@ class DescriptionReader {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
+/// The numbers of an entry of RunTimeNetwork::forward().
+enum class RunTimeEntry {
+  value_and_derivatives,  ///< a value, and its derivatives by whatever the caller moves
+  lanes                   ///< a value each of so many motions
+};
+
 /// A predictor, or the sum of a few, added from left to right.
 class RunTimeNetwork {
  public:
@@ -167,13 +178,13 @@ class RunTimeNetwork {
   /// y = predictor(x), both standardised; Number is that of the parameters for the bits of the compiled predictor.
   /// Exact derivatives go with the values. At the kink of a ReLU it is the derivative from below, 0, as in
   /// nn/jacobian.hpp; of an output on its bound 0.
-  template <class Number, int Count, class Scalar>
+  template <class Number, int Count, RunTimeEntry Kind = RunTimeEntry::value_and_derivatives, class Scalar>
   void forward(const Scalar* parameters, const Values<Number, Count>* x, Values<Number, Count>* y,
                Values<Number, Count>* work) const noexcept {
     const std::size_t third = workspace() / 3;
     Values<Number, Count>* more = work + 2 * third;
     for (int i = 0; i < part_count_; ++i) {
-      run<Number, Count>(parts_[i], parameters, x, i == 0 ? y : more, work, work + third);
+      run<Number, Count, Kind>(parts_[i], parameters, x, i == 0 ? y : more, work, work + third);
       parameters += parts_[i].parameter_count;
       for (int k = 0; i > 0 && k < outputs(); ++k) {
         for (int c = 0; c < Count; ++c) y[k][std::size_t(c)] += more[k][std::size_t(c)];
@@ -273,10 +284,10 @@ class RunTimeNetwork {
     return parameter_count_ <= most_parameters;
   }
 
-  template <class Number, int Count, class Scalar>
+  template <class Number, int Count, RunTimeEntry Kind, class Scalar>
   static void run(const RunTimePart& part, const Scalar* own, const Values<Number, Count>* x, Values<Number, Count>* y,
                   Values<Number, Count>* work, Values<Number, Count>* spare) noexcept {
-    if (part.axis_aligned) return run_axis_aligned<Number, Count>(part, own, x, y);
+    if (part.axis_aligned) return run_axis_aligned<Number, Count, Kind>(part, own, x, y);
     const Scalar* const bounds = own;
     if (part.bounded) own += 2 * part.outputs;
     int width = 0;
@@ -286,14 +297,14 @@ class RunTimeNetwork {
     for (int i = 0; i < part.layer_count; ++i) {
       const RunTimeLayer& layer = part.layers[i];
       if (layer.outputs == 0) {
-        activate<Number, Count>(detail::run_time_activations<Number>[layer.activation], work, width);
+        activate<Number, Count, Kind>(detail::run_time_activations<Number>[layer.activation], work, width);
         continue;
       }
       const Scalar* const biases = own + width * layer.outputs;
       for (int row = 0; row < layer.outputs; ++row) {
         Values<Number, Count> sum{};
-        if (layer.has_bias) sum[0] = static_cast<Number>(biases[row]);
-        for (int column = 0; column < width; ++column) add_product(own[row * width + column], work[column], sum);
+        if (layer.has_bias) begin<Kind>(static_cast<Number>(biases[row]), sum);
+        add_row<Kind>(own + row * width, width, work, sum);
         spare[row] = sum;
       }
       own = biases + (layer.has_bias ? layer.outputs : 0);
@@ -303,18 +314,18 @@ class RunTimeNetwork {
       spare = before;
     }
     for (int k = 0; k < part.outputs; ++k) y[k] = work[k];
-    if (part.bounded) clip<Number, Count>(bounds, part.outputs, y);
+    if (part.bounded) clip<Number, Count, Kind>(bounds, part.outputs, y);
   }
 
   /// As AxisAligned::forward(): the intercept, the other features, then each axis' own of every tap.
-  template <class Number, int Count, class Scalar>
+  template <class Number, int Count, RunTimeEntry Kind, class Scalar>
   static void run_axis_aligned(const RunTimePart& part, const Scalar* slopes, const Values<Number, Count>* x,
                                Values<Number, Count>* y) noexcept {
     const int others = part.shown();
     const Scalar* const weights = slopes + 3 * part.three_count;
     for (int row = 0; row < 4; ++row) {
       Values<Number, Count> sum{};
-      sum[0] = static_cast<Number>(weights[4 * others + row]);
+      begin<Kind>(static_cast<Number>(weights[4 * others + row]), sum);
       int other = 0;
       for (int feature = 0; feature < part.inputs; ++feature) {
         if (!part.in_three(feature)) add_product(weights[row * others + other++], x[feature], sum);
@@ -326,32 +337,54 @@ class RunTimeNetwork {
     }
   }
 
+  /// A sum with its bias alone, no derivatives.
+  template <RunTimeEntry Kind, class Number, std::size_t Count>
+  static void begin(Number bias, std::array<Number, Count>& sum) noexcept {
+    constexpr std::size_t values = Kind == RunTimeEntry::lanes ? Count : 1;
+    for (std::size_t c = 0; c < values; ++c) sum[c] = bias;
+  }
+
+  template <RunTimeEntry Kind, class Scalar, class Number, std::size_t Count>
+  static void add_row(const Scalar* row, int width, const std::array<Number, Count>* x,
+                      std::array<Number, Count>& sum) noexcept {
+    if constexpr (Kind == RunTimeEntry::lanes) {
+      detail::add_lane_row(row, width, x, sum);
+    } else {
+      for (int column = 0; column < width; ++column) add_product(row[column], x[column], sum);
+    }
+  }
+
   template <class Scalar, class Number, std::size_t Count>
   static void add_product(Scalar weight, const std::array<Number, Count>& x, std::array<Number, Count>& sum) noexcept {
     for (std::size_t c = 0; c < Count; ++c) sum[c] = multiply_add(static_cast<Number>(weight), x[c], sum[c]);
   }
 
-  template <class Number, int Count>
+  template <class Number, int Count, RunTimeEntry Kind>
   static void activate(const detail::RunTimeActivation<Number>& activation, Values<Number, Count>* values,
                        int width) noexcept {
     for (int i = 0; i < width; ++i) {
       Values<Number, Count>& entry = values[i];
-      if constexpr (Count > 1) {
-        const Number slope = activation.slope(entry[0]);
+      if constexpr (Kind == RunTimeEntry::lanes) {
+        activation.activate_all(entry.data(), Count);
+      } else {
+        const Number slope = Count > 1 ? activation.slope(entry[0]) : Number(1);
         for (std::size_t c = 1; c < std::size_t(Count); ++c) entry[c] *= slope;
+        entry[0] = activation.activate(entry[0]);
       }
-      entry[0] = activation.activate(entry[0]);
     }
   }
 
-  template <class Number, int Count, class Scalar>
+  template <class Number, int Count, RunTimeEntry Kind, class Scalar>
   static void clip(const Scalar* bounds, int outputs, Values<Number, Count>* y) noexcept {
     for (int k = 0; k < outputs; ++k) {
       const Number least = static_cast<Number>(bounds[k]), most = static_cast<Number>(bounds[outputs + k]);
-      const Number value = y[k][0];
-      if (value > least && value < most) continue;
-      y[k] = {};
-      y[k][0] = value < least ? least : (value > most ? most : value);
+      constexpr std::size_t values = Kind == RunTimeEntry::lanes ? std::size_t(Count) : 1;
+      for (std::size_t c = 0; c < values; ++c) {
+        const Number value = y[k][c];
+        if (value > least && value < most) continue;
+        if (Kind == RunTimeEntry::value_and_derivatives) y[k] = {};
+        y[k][c] = value < least ? least : (value > most ? most : value);
+      }
     }
   }
 

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""Models of blocks: one motion and many, the guard, figures and proofs as the program says them, hostile arrays."""
+import json
+import pickle
+import threading
+
+import numpy as np
+import pytest
+from conftest import MODELS
+
+import pinnquad
+from pinnquad import Model, Status
+
+
+def inside(model, rows, seed=1):
+    """Motions in the model's envelope."""
+    lower, upper = model.envelope
+    return np.random.default_rng(seed).uniform(lower, upper, (rows, len(lower)))
+
+
+def test_one_and_many_are_the_same_bits(structured, network):
+    for model in (structured, network):
+        x = inside(model, 700)
+        many = model.predict(x)
+        assert many.shape == (700, 4) and many.dtype == np.float32
+        np.testing.assert_array_equal(many, [model.predict(row) for row in x])
+        np.testing.assert_array_equal(many, model.predict(x.astype(np.float32)))
+        np.testing.assert_array_equal(many[:3], model.predict(x[:3].tolist()))
+        assert model.predict(x[:0]).shape == (0, 4)
+
+
+def test_an_affine_model_is_worked_out_by_hand(structured):
+    """du/dx is the same everywhere: the model of examples/models has no network."""
+    x = inside(structured, 2)
+    step = x[1] - x[0]
+    u = structured.predict(np.stack([x[0], x[0] + 0.25 * step, x[0] + step])).astype(float)
+    np.testing.assert_allclose(u[1] - u[0], 0.25 * (u[2] - u[0]), atol=1e-5)
+
+
+def test_features_of_a_flight_give_its_commands(structured, flight):
+    x = structured.features(flight)
+    assert x.shape == (len(flight), len(structured.feature_names))
+    np.testing.assert_allclose(x[:, structured.feature_names.index("wdot_y")],
+                               flight.angular_acceleration_rad_s2[:, 1], rtol=1e-6)
+    assert np.abs(structured.predict(x) - flight.commands).mean() < 0.02
+
+
+def test_the_guard(structured):
+    x = inside(structured, 5)
+    x[1, 3] = np.nan
+    x[2, 0] = np.inf
+    x[3] = structured.envelope[1] + 1e3
+    commands, statuses = structured.predict_guarded(x)
+    assert [Status(s) for s in statuses] == [Status.ok, Status.not_finite, Status.not_finite, Status.outside_envelope,
+                                             Status.ok]
+    np.testing.assert_array_equal(np.isnan(commands).any(axis=1), statuses != 0)
+    np.testing.assert_array_equal(commands[[0, 4]], structured.predict(x[[0, 4]]))
+    one, status = structured.predict_guarded(x[1])
+    assert status == Status.not_finite and np.isnan(one).all()
+
+
+@pytest.mark.parametrize("wrong, error, words", [
+    (lambda x: x[:, :-1], ValueError, r"expected shape \(19,\) or \(rows, 19\), found \(8, 18\)"),
+    (lambda x: x[None], ValueError, "expected shape"), (lambda x: x[0, 0], ValueError, "expected shape"),
+    (lambda x: x[::2], ValueError, "C-contiguous"), (lambda x: np.asfortranarray(x), ValueError, "C-contiguous"),
+    (lambda x: x.astype(int), TypeError, "expected float32 or float64, found int64"),
+    (lambda x: x.astype(np.float16), TypeError, "found float16"), (lambda x: x + 0j, TypeError, "found complex128"),
+    (lambda x: x.astype(object), TypeError, "found object"), (lambda x: x.astype(">f8"), TypeError, "found >f8"),
+    (lambda x: "motion", TypeError, "expected float32 or float64"), (lambda x: None, TypeError, "float"),
+    (lambda x: [[1.0], [1.0, 2.0]], (TypeError, ValueError), "expected"),
+    (lambda x: np.where(np.arange(19) == 4, np.nan, x), ValueError, "row 0, feature 4: expected a finite number"),
+    (lambda x: np.zeros((3, 19), [("a", "f8")]), TypeError, "expected float")])
+def test_arrays_that_are_no_motions(structured, wrong, error, words):
+    x = inside(structured, 8)
+    for ask in (structured.predict, structured.predict_guarded):
+        if "finite" in words and ask == structured.predict_guarded:
+            continue
+        with pytest.raises(error, match=words) as caught:
+            ask(wrong(x))
+        assert "\n" not in str(caught.value)
+
+
+def test_pickles_and_files(structured, tmp_path):
+    x = inside(structured, 10)
+    structured.save(tmp_path / "a.block")
+    assert (tmp_path / "a.block").read_bytes() == (MODELS / "structured_quadrotor.block").read_bytes()
+    for again in (Model.load(tmp_path / "a.block"), pickle.loads(pickle.dumps(structured)),
+                  Model.of_bytes(structured.to_bytes())):
+        np.testing.assert_array_equal(again.predict(x), structured.predict(x))
+    assert structured.airframe == pinnquad.Airframe("paper_quadrotor")
+
+
+def test_blocks_that_are_none(structured, tmp_path):
+    whole = structured.to_bytes()
+    random = np.random.default_rng(3)
+    for broken in [b"", b"x", whole[:100], whole[:-1], whole + b"", bytes(len(whole))] + [
+            whole[:at] + bytes([whole[at] ^ 0x55]) + whole[at + 1:] for at in random.integers(0, len(whole), 200)]:
+        if broken == whole:
+            continue
+        with pytest.raises(pinnquad.Error, match="expected .*, found") as caught:
+            Model.of_bytes(broken)
+        assert "\n" not in str(caught.value)
+    with pytest.raises(pinnquad.Error, match="nothing.block"):
+        Model.load(tmp_path / "nothing.block")
+    for wrong in (None, 3, "text"):
+        with pytest.raises((TypeError, pinnquad.Error)):
+            Model.of_bytes(wrong)
+    with pytest.raises(TypeError):
+        Model()
+
+
+def test_evaluate_says_what_the_program_says(program, structured, flight, tmp_path):
+    flight.save(tmp_path / "flight.csv")
+    for rows in ("all", "test"):
+        said = json.loads(program("evaluate", MODELS / "structured_quadrotor.block", "--flight",
+                                  tmp_path / "flight.csv", "--rows", rows, "--json"))
+        ours = pinnquad.evaluate(structured, flight, rows)
+        for name in ("r2", "mean_absolute_error", "wrong_derivative_share", "rows", "rows_outside_envelope"):
+            assert ours[name] == said[name], name
+        assert ours.keys() == said.keys()
+
+
+def test_certify(program, structured, network):
+    proven = pinnquad.certify(structured)
+    said = json.loads(program("certify", MODELS / "structured_quadrotor.block", "--json"))
+    assert {**proven, "model": ""} == {**said, "model": ""}
+    assert proven["verdict"] == "proven" and min(proven["slope"].values()) > 0
+    refuted = pinnquad.certify(network, seconds=20)
+    assert refuted["verdict"] == "counterexample"
+    found = refuted["counterexample"]
+    assert found["signed_sum_after_step"] < found["signed_sum"]
+    x = np.array([found["features"][name] for name in network.feature_names])
+    more = x.copy()
+    more[[network.feature_names.index(name) for name in found["moved"]]] += found["step"]
+    signs = {"roll": [-1, 1, 1, -1], "pitch": [1, -1, 1, -1], "yaw": [1, 1, -1, -1]}[found["axis"]]
+    before, after = network.predict(np.stack([x, more])).astype(float) @ signs
+    assert before - after == pytest.approx(found["signed_sum"] - found["signed_sum_after_step"], abs=1e-5)
+
+
+def test_questions_that_make_no_sense(structured, flight):
+    with pytest.raises(ValueError, match="no rows named 'some'; known: all, test"):
+        pinnquad.evaluate(structured, flight, "some")
+    with pytest.raises(ValueError, match="seconds"):
+        pinnquad.certify(structured, seconds=float("nan"))
+    with pytest.raises(TypeError):
+        pinnquad.evaluate(flight, structured)
+
+
+def test_many_threads_ask_one_model(network):
+    x = inside(network, 20000)
+    answers = [None] * 4
+
+    def ask(i):
+        answers[i] = network.predict(x)
+
+    threads = [threading.Thread(target=ask, args=(i,)) for i in range(4)]
+    [thread.start() for thread in threads]
+    [thread.join() for thread in threads]
+    for answer in answers[1:]:
+        np.testing.assert_array_equal(answer, answers[0])

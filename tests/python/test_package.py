@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""What editors and help() show: stubs that name everything, docstrings with units."""
+import ast
+import inspect
+from pathlib import Path
+
+import pytest
+
+import pinnquad
+from pinnquad import _core
+
+PACKAGE = Path(pinnquad.__file__).parent
+
+
+def stubbed():
+    """Names of the stub, and of each of its classes."""
+    names = {}
+    for node in ast.parse((PACKAGE / "_core.pyi").read_text()).body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            members = getattr(node, "body", []) if isinstance(node, ast.ClassDef) else []
+            names[node.name] = {m.name if isinstance(m, ast.FunctionDef) else
+                                (m.target if isinstance(m, ast.AnnAssign) else m.targets[0]).id
+                                for m in members if isinstance(m, (ast.FunctionDef, ast.AnnAssign, ast.Assign))}
+        elif isinstance(node, ast.AnnAssign):
+            names[node.target.id] = set()
+    return names
+
+
+def public(thing):
+    return {name for name in vars(thing) if not name.startswith("_")}
+
+
+def test_the_stub_names_everything():
+    assert (PACKAGE / "py.typed").exists()
+    names = stubbed()
+    assert public(_core) <= set(names)
+    for name, members in names.items():
+        thing = getattr(_core, name)
+        if not inspect.isclass(thing) or name in ("Error", "FlightEnded"):
+            continue
+        ours = public(thing) - {"name", "value"} if name in ("Spin", "Status") else public(thing)
+        assert ours == {member for member in members if not member.startswith("_")}, name
+
+
+@pytest.mark.parametrize("name", pinnquad.__all__)
+def test_everything_is_documented(name):
+    thing = getattr(pinnquad, name)
+    if name == "ground_effects":
+        return
+    assert len(thing.__doc__) > 20
+    for member in public(thing) if inspect.isclass(thing) else ():
+        value = inspect.getattr_static(thing, member)
+        if callable(getattr(thing, member)) or isinstance(value, property):
+            of = value if isinstance(value, property) else getattr(thing, member)
+            documented = of.__doc__ or getattr(getattr(of, "fget", None), "__doc__", None)
+            assert documented or member in ("name", "effects", "feature_names"), f"{name}.{member}"
+
+
+def test_signatures_have_units():
+    assert "NED" in pinnquad.__doc__
+    for word in ("kg", "rev/s", "m/s"):
+        assert word in " ".join(vars(pinnquad.Airframe)[name].__doc__ or "" for name in public(pinnquad.Airframe))

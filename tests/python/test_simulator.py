@@ -1,0 +1,417 @@
+# SPDX-License-Identifier: MIT
+"""The simulator: names, units, effects in flight, the same bits as the program, errors, threads, pickles."""
+import _thread
+import copy
+import pickle
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import pinnquad
+from pinnquad import Effects, FlightEnded, Simulator
+
+GROUND_Z_M = 0.877
+RADIUS_M = 0.1143
+WEIGHT_N = 1.5 * 9.80665
+SHAPES = {"time_s": (), "linear_acceleration_m_s2": (3,), "angular_acceleration_rad_s2": (3,), "velocity_m_s": (3,),
+          "body_rates_rad_s": (3,), "euler_rad": (3,), "altitude_m": (), "commands": (4,)}
+
+
+def at_height(height_m):
+    return (0.0, 0.0, GROUND_Z_M - height_m)
+
+
+def down_velocity(rows):
+    """World z of the body-frame velocity: the third row of R = Rz Ry Rx."""
+    roll, pitch = rows.euler_rad[:, 0], rows.euler_rad[:, 1]
+    v = rows.velocity_m_s
+    return -np.sin(pitch) * v[:, 0] + np.cos(pitch) * (np.sin(roll) * v[:, 1] + np.cos(roll) * v[:, 2])
+
+
+# names
+
+
+def test_every_airframe_flies():
+    assert "paper_quadrotor" in pinnquad.airframe_names()
+    for name in pinnquad.airframe_names():
+        Simulator(name).fly(0.1)
+
+
+def test_unknown_names_are_answered_with_the_known_ones():
+    with pytest.raises(ValueError, match="no airframe named 'kite'; known: .*paper_quadrotor"):
+        Simulator("kite")
+    with pytest.raises(ValueError, match="no ground effect named 'magic'; known: none, cheeseman_bennett, conyers"):
+        Simulator(effects=Effects(ground_effect="magic"))
+    simulator = Simulator(effects=Effects(ground_effect="conyers"))
+    with pytest.raises(ValueError, match="no ground effect named 'magic'"):
+        simulator.set_effects(Effects(ground_effect="magic"))
+    assert simulator.effects.ground_effect == "conyers"
+    with pytest.raises(ValueError, match="no pilot named 'icarus'; known: random, near_ground, hover"):
+        Simulator(pilot="icarus")
+    with pytest.raises(ValueError, match="no flight named 'd9'; known: d1, d2"):
+        pinnquad.fly("d9")
+
+
+# the recording
+
+
+def test_shapes():
+    simulator = Simulator(seed=2)
+    assert simulator.rows == 0 and len(simulator.recording()) == 0
+    assert simulator.recording().commands.shape == (0, 4)
+    simulator.fly(3.0)
+    rows = simulator.recording()
+    assert len(rows) == 60
+    for name, shape in SHAPES.items():
+        assert rows[name].shape == (60,) + shape and rows[name].dtype == np.float64
+        assert np.isfinite(rows[name]).all()
+
+
+def test_a_recording_is_of_its_own():
+    simulator = Simulator(seed=2)
+    simulator.fly(1.0)
+    first = simulator.recording()
+    kept = first.rows.copy()
+    simulator.fly(50.0)
+    del simulator
+    np.testing.assert_array_equal(first.rows, kept)
+
+
+def test_units_and_frames():
+    simulator = Simulator(seed=1)
+    simulator.fly(60.0)
+    rows = simulator.recording()
+    np.testing.assert_allclose(rows.time_s, 0.05 * np.arange(1, 1201), rtol=1e-12)
+    climb = np.diff(rows.altitude_m) / 0.05
+    down = down_velocity(rows)
+    assert np.abs(climb + (down[1:] + down[:-1]) / 2).max() < 0.03  # m/s; jerk h^2 / 12, h = 0.05 s
+    assert ((rows.commands >= 0) & (rows.commands <= 1)).all()
+    signed = rows.commands @ [-1, 1, 1, -1]  # Eq. (2), roll
+    assert np.corrcoef(signed, rows.angular_acceleration_rad_s2[:, 0])[0, 1] > 0.95
+    assert np.linalg.norm(rows.velocity_m_s, axis=1).max() < 8.5
+
+
+def test_taken():
+    simulator = Simulator()
+    simulator.fly(1.0)
+    assert len(simulator.take_recording()) == 20 and simulator.rows == 0
+    simulator.fly(1.0)
+    assert simulator.recording().time_s[0] == 1.05
+
+
+def test_noise_is_of_the_recording_only():
+    exact, noisy = Simulator(seed=4), Simulator(seed=4, gyro_noise_rad_s=0.05, command_jitter_s=0.01)
+    for simulator in (exact, noisy):
+        simulator.fly(60.0)
+    np.testing.assert_array_equal(exact.state["position_m"], noisy.state["position_m"])
+    a, b = exact.recording(), noisy.recording()
+    np.testing.assert_array_equal(a.altitude_m, b.altitude_m)
+    assert (b.body_rates_rad_s - a.body_rates_rad_s).std() == pytest.approx(0.05, abs=0.005)
+
+
+# the state
+
+
+def test_hover():
+    simulator = Simulator(pilot="hover")
+    simulator.fly(1.0)
+    state = simulator.state
+    assert state["time_s"] == 1.0 == simulator.time_s
+    np.testing.assert_allclose(state["position_m"], (0, 0, -35), atol=1e-6)
+    np.testing.assert_allclose(state["velocity_m_s"], 0, atol=1e-6)
+    np.testing.assert_allclose(state["attitude"], (1, 0, 0, 0), atol=1e-9)
+    assert state["altitude_m"] == pytest.approx(35.877, abs=1e-6)
+    assert state["rotor_thrust_N"] == pytest.approx(WEIGHT_N, abs=1e-4)
+    np.testing.assert_allclose(state["commands"], simulator.hover_commands(), rtol=1e-6)
+    np.testing.assert_allclose(state["rotor_commands"], state["commands"], rtol=1e-6)
+
+
+def test_wind():
+    effects = Effects(wind_m_s=(2.5, 0, 0), gust_m_s=(2.5, 0, 0), gust_period_s=10.0)  # D3
+    simulator = Simulator(pilot="hover", effects=effects)
+    simulator.fly(2.5)
+    np.testing.assert_allclose(simulator.state["wind_m_s"], (5, 0, 0), atol=1e-9)
+    drag_N = 5.38309e-3 * 1.21 * 5.0**2  # k rho v^2
+    assert simulator.state["aerodynamic_force_N"][0] == pytest.approx(drag_N, abs=0.01)
+    assert simulator.state["position_m"][0] > 0.01  # blown north
+    simulator.fly(5.0)
+    np.testing.assert_allclose(simulator.state["wind_m_s"], (0, 0, 0), atol=1e-9)
+
+
+def test_step():
+    simulator = Simulator(pilot="hover")
+    hover = simulator.hover_commands()
+    simulator.step(hover + [-0.01, 0.01, 0.01, -0.01], 0.05)
+    assert simulator.state["body_rates_rad_s"][0] > 0.1  # rolls right
+    assert abs(simulator.state["body_rates_rad_s"][1]) < 1e-9
+    np.testing.assert_array_equal(simulator.recording().commands[-1], hover + [-0.01, 0.01, 0.01, -0.01])
+    simulator.step([0.5, 0.5, 0.5, 0.5])  # one tick
+    assert simulator.time_s == pytest.approx(0.052)
+
+
+@pytest.mark.parametrize("copied", [lambda s: s.copy(), copy.deepcopy, lambda s: pickle.loads(pickle.dumps(s))])
+def test_a_copy_flies_on_alone_and_alike(copied):
+    simulator = Simulator(seed=9, gyro_noise_rad_s=0.01)
+    simulator.fly(2.0)
+    simulator.step(simulator.hover_commands(), 0.1)
+    simulator.set_effects(Effects(wake=True))
+    simulator.take_recording()
+    simulator.fly(1.0)
+    other = copied(simulator)
+    other.fly(2.0)
+    assert simulator.time_s == 3.1
+    simulator.fly(2.0)
+    np.testing.assert_array_equal(simulator.recording().rows, other.recording().rows)
+    np.testing.assert_array_equal(simulator.state["position_m"], other.state["position_m"])
+    assert other.effects == Effects(wake=True)
+
+
+def test_repr():
+    simulator = Simulator(seed=9)
+    simulator.fly(1.0)
+    assert "paper_quadrotor, seed 9: 1.000 s, 20 rows" in repr(simulator)
+
+
+# effects
+
+
+def test_hover_near_the_ground_needs_less_by_the_ratio():
+    height_m = 0.3
+    simulator = Simulator(pilot="hover", start_m=at_height(height_m))
+    none = simulator.hover_commands()
+    ratio = 1.0 / (1.0 - (RADIUS_M / (4.0 * height_m)) ** 2)
+    for model in ("cheeseman_bennett", "rotors"):
+        simulator.set_effects(Effects(ground_effect=model))
+        np.testing.assert_allclose(none / simulator.hover_commands(), ratio, rtol=5e-6)
+    assert ratio > 1.009
+
+
+def test_conyers_at_known_points():
+    # Z/R: ratio, calculated from the published coefficients for L = 690 mm, R = 114.3 mm
+    for x, ratio in ((0.5, 1.1404), (1.49, 0.9922), (3.56, 1.0542)):
+        simulator = Simulator(pilot="hover", start_m=at_height(x * RADIUS_M))
+        none = simulator.hover_commands()
+        simulator.set_effects(Effects(ground_effect="conyers"))
+        np.testing.assert_allclose(none / simulator.hover_commands(), ratio, atol=1e-4)
+
+
+def test_switched_in_flight():
+    height_m = 3.56 * RADIUS_M
+    simulator = Simulator(pilot="hover", start_m=at_height(height_m))
+    simulator.fly(2.0)
+    simulator.set_effects(simulator.effects.but(ground_effect="conyers"))
+    assert simulator.time_s == 2.0
+    simulator.fly(2.0)
+    rows = simulator.recording()
+    before, after = rows.commands[39].mean(), rows.commands[79].mean()
+    assert before / after == pytest.approx(1.0542, abs=2e-4)
+    assert simulator.state["rotor_thrust_N"] * 1.0542 == pytest.approx(WEIGHT_N, abs=0.003)
+    assert rows.altitude_m[-1] == pytest.approx(height_m, abs=0.01)
+
+
+def test_the_present_effects_set_again_change_nothing():
+    flights = []
+    for again in (True, False):
+        simulator = Simulator(seed=3, effects=Effects(ground_effect="conyers"), start_m=at_height(0.3))
+        simulator.fly(2.0)
+        if again:
+            simulator.set_effects(Effects())
+            simulator.set_effects(Effects(ground_effect="conyers"))
+        simulator.fly(2.0)
+        flights.append(simulator.recording().commands)
+    np.testing.assert_array_equal(*flights)
+
+
+def test_an_effect_that_acts_nowhere_changes_nothing():
+    """The vehicle with all effects is the plain one where none of them acts."""
+    flights = []
+    for effects in (Effects(), Effects(payload_kg=0.1, payload_from_s=1e6), Effects(fault_share=0.5, fault_from_s=1e6)):
+        simulator = Simulator(seed=3, effects=effects)
+        simulator.fly(10.0)
+        flights.append(simulator.recording().commands)
+    np.testing.assert_allclose(flights[1], flights[0], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(flights[2], flights[0], rtol=0, atol=1e-6)
+
+
+def test_each_effect_does_what_it_says():
+    still = Simulator(pilot="hover")
+    hover = still.hover_commands()[0]
+    by = lambda **changes: Simulator(pilot="hover", effects=Effects(**changes))
+    assert by(payload_kg=0.15).hover_commands()[0] == pytest.approx(1.1 * hover, rel=1e-9)  # 10 % of 1.5 kg
+    weak = by(fault_rotor=2, fault_share=0.8).hover_commands()
+    np.testing.assert_allclose(weak * [1, 1, 0.8, 1], hover, rtol=1e-9)
+    sagging = by(battery_endurance_s=10.0)
+    sagging.fly(9.9)
+    assert sagging.state["thrust_scale"] == pytest.approx((1 - 0.99 / 6) ** 2, rel=1e-3)
+    assert by(standard_atmosphere=False).hover_commands()[0] < hover  # denser than at 157 m
+    assert by(wind_m_s=(8, 0, 0), inflow=True).hover_commands()[0] < 0.97 * hover  # translational lift
+    windy = by(wind_m_s=(5, 0, 0))
+    for change in ({"rotor_drag": True}, {"linear_drag_N_s_m": 0.5}):
+        more = by(wind_m_s=(5, 0, 0), **change)
+        assert more.state["aerodynamic_force_N"][0] > windy.state["aerodynamic_force_N"][0] + 0.1, change
+    assert by(wind_m_s=(5, 0, 0), drag=False).state["aerodynamic_force_N"][0] == 0
+    gusty = by(wind_m_s=(5, 0, 0), turbulence_m_s=5.0)
+    assert abs(gusty.state["wind_m_s"] - [5, 0, 0]).max() > 0.05
+    nose_up = by(wind_m_s=(-8, 0, 0), flapping=True).hover_commands() - by(wind_m_s=(-8, 0, 0)).hover_commands()
+    assert nose_up[1] > 0 > nose_up[0]  # the rear rotors hold against it
+    assert by(wind_m_s=(8, 0, 0), wake=True).hover_commands().mean() > by(wind_m_s=(8, 0, 0)).hover_commands().mean()
+
+
+def test_on_its_legs_it_lands():
+    simulator = Simulator(pilot="hover", start_m=at_height(0.4), effects=Effects(ground_contact=True))
+    simulator.step(0.8 * simulator.hover_commands(), 1.0)
+    simulator.step([0.0] * 4, 3.0)
+    assert simulator.flying
+    assert simulator.state["altitude_m"] == pytest.approx(0.178, abs=0.002)
+    assert np.abs(simulator.state["velocity_m_s"]).max() < 0.01
+
+
+# the same bits
+
+
+def test_same_seed_same_flight():
+    flights = []
+    for seed, portions in ((7, [10.0]), (7, [3.0, 0.5, 6.5]), (8, [10.0])):
+        simulator = Simulator(seed=seed)
+        for seconds in portions:
+            simulator.fly(seconds)
+        flights.append(simulator.recording().commands)
+    np.testing.assert_array_equal(flights[0], flights[1])
+    assert (flights[0] != flights[2]).any()
+
+
+@pytest.mark.parametrize("name", ["d1", "d2", "d3", "harder"])
+def test_the_file_of_the_program(program, tmp_path, name):
+    ours, theirs = tmp_path / "python.csv", tmp_path / "fly.csv"
+    program("fly", name, "--seed", 3, "--samples", 1000, "--out", theirs)
+    pinnquad.fly(name, seed=3, rows=1000).save(ours)
+    assert ours.read_bytes() == theirs.read_bytes()
+
+
+def test_the_file_of_the_program_with_another_airframe_and_noise(program, tmp_path):
+    ours, theirs = tmp_path / "python.csv", tmp_path / "fly.csv"
+    airframe = pinnquad.Airframe("racer_5_inch")
+    airframe.mass_kg *= 1.1
+    airframe.save(tmp_path / "heavy.toml")
+    program("fly", "d1", "--airframe", tmp_path / "heavy.toml", "--seed", 5, "--samples", 200, "--gyro-noise", 0.05,
+            "--latency", 20, "--out", theirs)
+    pinnquad.fly(airframe=airframe, seed=5, rows=200, gyro_noise_rad_s=0.05, command_latency_s=0.02).save(ours)
+    assert ours.read_bytes() == theirs.read_bytes()
+
+
+# errors
+
+NAN, INF = float("nan"), float("inf")
+
+
+@pytest.mark.parametrize("arguments", [
+    {"start_m": (0, 0, GROUND_Z_M)}, {"start_m": (NAN, 0, -3)}, {"max_speed_m_s": NAN}, {"gyro_noise_rad_s": -1.0},
+    {"command_latency_s": NAN}, {"derivative_interval_s": 0.0}])
+def test_arguments_that_make_no_sense(arguments):
+    with pytest.raises(ValueError, match=next(iter(arguments))):
+        Simulator(**arguments)
+
+
+@pytest.mark.parametrize("changes, error", [
+    ({"wind_m_s": (NAN, 0, 0)}, ValueError), ({"gust_m_s": (0, INF, 0)}, ValueError),
+    ({"gust_period_s": 0.0}, ValueError), ({"payload_kg": -1.0}, ValueError),
+    ({"battery_full_V": NAN}, ValueError), ({"wind_m_s": 3}, TypeError),
+    ({"drag": "yes"}, TypeError), ({"fault_rotor": -1}, TypeError), ({"turbulence_seed": 2**64}, TypeError),
+    ({"wind_m_s": (1, 2)}, TypeError)])
+def test_effects_that_make_no_sense(changes, error):
+    with pytest.raises(error, match=next(iter(changes))) as caught:
+        Simulator(effects=Effects(**changes))
+    assert "\n" not in str(caught.value)
+    with pytest.raises(TypeError, match="pinnquad.Effects"):
+        Simulator(effects=changes)
+
+
+def test_effects_that_this_airframe_cannot_have():
+    with pytest.raises(pinnquad.Error, match="out_of_range"):
+        Simulator(effects=Effects(fault_rotor=4, fault_share=0.5))
+    with pytest.raises(FlightEnded, match="no_solution"):
+        Simulator(effects=Effects(fault_share=0.0))
+
+
+def test_seconds_and_commands_that_make_no_sense():
+    with pytest.raises(TypeError):
+        Simulator(seed=-1)
+    simulator = Simulator()
+    for seconds in (-1.0, NAN, INF):
+        with pytest.raises(ValueError, match="seconds"):
+            simulator.fly(seconds)
+    for commands in ([0.5] * 3, [[0.5] * 4], [0.5, 0.5, NAN, 0.5]):
+        with pytest.raises(ValueError, match="commands must be four"):
+            simulator.step(commands, 1.0)
+    assert simulator.time_s == 0.0
+
+
+def test_a_flight_that_ended():
+    simulator = Simulator(pilot="hover")
+    with pytest.raises(FlightEnded, match=r"ended at 4\.\d+ s, north .*: it came down to the ground") as caught:
+        simulator.step([0, 0, 0, 0], 10.0)
+    error = caught.value
+    assert isinstance(error, pinnquad.Error)
+    assert error.time_s == simulator.time_s and error.altitude_m <= 0.0 and error.velocity_m_s[2] > 5.0
+    np.testing.assert_array_equal(error.position_m, simulator.state["position_m"])
+    assert error.reason == "it came down to the ground"
+    assert not simulator.flying and simulator.rows > 40
+    with pytest.raises(FlightEnded):
+        simulator.fly(1.0)
+
+
+def test_a_file_that_cannot_be_written():
+    with pytest.raises(OSError, match="/no/such/folder/flight.csv"):
+        pinnquad.fly(rows=20).save("/no/such/folder/flight.csv")
+
+
+# threads
+
+LONG_S = 30000.0  # some ten seconds of work: far more than the tests wait for
+
+
+@pytest.fixture
+def ctrl_c():
+    """A shell that started this in the background has switched Ctrl-C off."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield lambda after_s: threading.Timer(after_s, _thread.interrupt_main).start()
+    signal.signal(signal.SIGINT, before)
+
+
+def test_ctrl_c_stops_a_long_flight_which_can_go_on(ctrl_c):
+    simulator = Simulator(seed=1)
+    ctrl_c(0.3)  # needs the GIL: fly must have let go of it
+    with pytest.raises(KeyboardInterrupt):
+        simulator.fly(LONG_S)
+    stopped_s = simulator.time_s
+    assert 0.0 < stopped_s < LONG_S
+    simulator.fly(1.0)
+    assert simulator.time_s == pytest.approx(stopped_s + 1.0, abs=1e-6)
+
+
+def test_ctrl_c_stops_a_training(ctrl_c, flight):
+    ctrl_c(1.0)
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        pinnquad.train(flight, recipe="paper", seeds=50, epochs=3000)
+    assert time.monotonic() - start < 60
+    assert pinnquad.train(flight, losses=[], seeds=1, epochs=1).kind == "structured"  # the next one is not interrupted
+
+
+def test_a_simulator_in_flight_refuses_a_second_thread():
+    simulator = Simulator(seed=1)
+    thread = threading.Thread(target=simulator.fly, args=(1500.0,))
+    thread.start()
+    refused = 0
+    while thread.is_alive():
+        try:
+            simulator.state
+        except RuntimeError as error:
+            assert "another thread" in str(error)
+            refused += 1
+        time.sleep(0.001)
+    thread.join()
+    assert refused > 0 and simulator.time_s == 1500.0
