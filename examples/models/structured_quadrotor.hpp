@@ -2,7 +2,9 @@
 // SI units, rad. Commands in the order of the airframe's rotors.
 #pragma once
 
+#ifndef PINNQUAD_ONE_FILE
 #include "pinnquad/flight.hpp"
+#endif
 
 struct StructuredQuadModelAirframe {
   static constexpr const char* name = "paper_quadrotor";

@@ -8,7 +8,7 @@
 set -euo pipefail
 root=$1 prefix=$2 work=$3 eigen=$4
 rm -rf -- "$work"
-mkdir -p "$work/one" "$work/deb"
+mkdir -p "$work/header" "$work/deb"
 
 # answer <name> <flag>...
 answer() {
@@ -21,8 +21,8 @@ said() { # <way> <answer>
   echo "$1: $2"
 }
 
-"$root/tools/packaging/one_file.py" "$work/one/pinnquad_flight.hpp"
-said "one header" "$(answer one -include "$work/one/pinnquad_flight.hpp" "-I$models" "-I$eigen")"
+"$root/tools/packaging/one_file.py" "$work/header/pinnquad_flight.hpp"
+said "one header" "$(answer one -include "$work/header/pinnquad_flight.hpp" "-I$models" "-I$eigen")"
 
 for system in arduino conan esp_idf platformio vcpkg zephyr; do
   "$root/tools/packaging/stage" "$system" "$work/staged/$system"

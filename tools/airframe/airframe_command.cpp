@@ -87,7 +87,7 @@ int convert(const AirframeOptions& options) {
   const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
   AtomicFile file(options.out);
   if (as_struct) {
-    file.stream() << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n";
+    file.stream() << "#pragma once\n\n" << pinnquad::detail::flight_include << '\n';
     write_airframe(file.stream(), options.struct_name, airframe.name, airframe.value);
   } else {
     file.stream() << programs::airframe_toml(airframe);

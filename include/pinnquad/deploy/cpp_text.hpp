@@ -19,6 +19,9 @@ namespace pinnquad {
 
 namespace detail {
 
+/// The first include of a generated header; none behind pinnquad_flight.hpp (docs/packages.md).
+inline constexpr const char* flight_include = "#ifndef PINNQUAD_ONE_FILE\n#include \"pinnquad/flight.hpp\"\n#endif\n";
+
 /// Keywords and alternative tokens of C++ up to C++20, and what its headers and Eigen take at global scope: macros,
 /// namespaces, types of the C library that flight.hpp brings with it, and functions that a struct of that name would
 /// hide.

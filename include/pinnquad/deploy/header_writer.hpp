@@ -161,7 +161,7 @@ std::uint64_t write_struct(std::ostream& out, const WrittenModel<Scalar>& model)
       << ". Generated: export again rather than edit.\n"
       << "// SI units, rad. Commands in the order of the airframe's rotors.\n";
   write_opening_comment(out, model, model.airframe);
-  out << "#pragma once\n\n#include \"pinnquad/flight.hpp\"\n\n" << model.own_types;
+  out << "#pragma once\n\n" << flight_include << '\n' << model.own_types;
   std::string vehicle = model.vehicle_type;
   if (vehicle.empty()) {
     vehicle = model.name + "Airframe";
