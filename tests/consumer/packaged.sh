@@ -8,7 +8,7 @@
 set -euo pipefail
 root=$1 prefix=$2 work=$3 eigen=$4
 rm -rf -- "$work"
-mkdir -p "$work/header" "$work/deb"
+mkdir -p "$work/header" "$work/unpacked"
 
 # answer <name> <flag>...
 answer() {
@@ -48,8 +48,8 @@ if command -v dpkg-deb >/dev/null; then
   for part in TESTS EXAMPLES TOOLS LOGS BENCH; do off+=("-DPINNQUAD_BUILD_$part=OFF"); done
   cmake -S "$root" -B "$work/build" "${off[@]}" -DCMAKE_CXX_COMPILER="${CXX:-g++}" >/dev/null
   (cd "$work/build" && cpack >/dev/null)
-  dpkg-deb -x "$work"/build/pinnquad_*_all.deb "$work/deb"
-  said ".deb" "$(answer deb "-I$work/deb/usr/include" "-I$models" "-I$eigen")"
+  dpkg-deb -x "$work"/build/pinnquad_*_all.deb "$work/unpacked"
+  said ".deb" "$(answer deb "-I$work/unpacked/usr/include" "-I$models" "-I$eigen")"
 else
   echo ".deb: not run, dpkg-deb is not installed"
 fi
