@@ -402,6 +402,23 @@ TEST_CASE("a tick that is late by seconds counts as a tenth of one: thrust does 
   CHECK(take_off.lift() == doctest::Approx(0.1));
 }
 
+TEST_CASE("who flies level above its place, and is expected to fall, is borne by no ground while it is fast") {
+  const auto lift_after_a_second = [](float along_m_s) {
+    pinnquad::autopilot::detail::TakeOff take_off(1.0f);
+    pinnquad::autopilot::detail::VerticalMotion motion;
+    motion.asked_sink_m_s = 0.5f;
+    motion.expected_fall_m_s2 = 2;
+    motion.along_m_s = along_m_s;
+    for (std::uint64_t ms = 0; ms <= 1000; ms += 4) {
+      take_off.update(1'000'000 + 1000 * ms, {true, false}, motion);
+      CHECK((take_off.may_stand() || along_m_s > 1));
+    }
+    return take_off.lift();
+  };
+  CHECK(lift_after_a_second(0.3f) == doctest::Approx(0.5f).epsilon(0.02));
+  CHECK(lift_after_a_second(8) == 1);
+}
+
 TEST_CASE("the attitude of a flown window is the same, whichever of its two quaternions the estimator says") {
   const pinnquad::FlownMotionSettings<float> settings{100'000, 0.01f, 0};
   pinnquad::FlownMotion<float> one_sign(settings), both(settings);

@@ -274,7 +274,9 @@ class NeuralController {
   detail::VerticalMotion vertical_motion(Reaction reaction) const noexcept {
     constexpr float noise = 0.1f;
     detail::VerticalMotion motion;
-    motion.sink_m_s = local_.value().velocity_m_s[2];
+    const Vector3<float>& velocity = local_.value().velocity_m_s;
+    motion.sink_m_s = velocity[2];
+    motion.along_m_s = std::sqrt(velocity[0] * velocity[0] + velocity[1] * velocity[1]);
     motion.expected_fall_m_s2 = expected_m_s2_[2];
     if (reaction != Reaction::flies) return motion;
     const TrajectoryPoint<float>& wanted = set_point_.value();

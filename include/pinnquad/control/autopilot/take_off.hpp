@@ -13,14 +13,17 @@ struct VerticalMotion {
   bool asks_to_climb{false};
   float asked_sink_m_s{0};      ///< by the set point; positive down, as all here
   float sink_m_s{0};            ///< of the vehicle
+  float along_m_s{0};           ///< of the vehicle, along the ground
   float expected_fall_m_s2{0};  ///< that the last commands were to make
 };
 
 class TakeOff {
  public:
   /// Asked to sink by least_sink, expected to fall by least_fall and at rest for rests_us: the ground bears it. If it
-  /// sinks by falls_m_s while its thrust goes, nothing does.
-  static constexpr float least_sink_m_s = 0.3f, least_fall_m_s2 = 1.0f, rests_m_s = 0.25f, falls_m_s = 0.5f;
+  /// sinks by falls_m_s while its thrust goes, nothing does. Along the ground an estimate may wander by rests_along: a
+  /// vehicle that is faster flies.
+  static constexpr float least_sink_m_s = 0.3f, least_fall_m_s2 = 1.0f, rests_m_s = 0.25f, rests_along_m_s = 1.0f,
+                         falls_m_s = 0.5f;
   static constexpr std::uint64_t rests_us = 500'000;
 
   explicit TakeOff(float duration_s) noexcept : duration_s_(duration_s) {}
@@ -72,7 +75,8 @@ class TakeOff {
   void choose_phase(std::uint64_t now_us, const Situation& situation, const VerticalMotion& motion) noexcept {
     if (phase_ == Phase::air) {
       const bool rests = motion.asked_sink_m_s >= least_sink_m_s && motion.expected_fall_m_s2 >= least_fall_m_s2 &&
-                         motion.sink_m_s < rests_m_s && motion.sink_m_s > -rests_m_s;
+                         motion.sink_m_s < rests_m_s && motion.sink_m_s > -rests_m_s &&
+                         motion.along_m_s < rests_along_m_s;
       if (!rests) {
         rests_since_us_ = 0;
       } else if (rests_since_us_ == 0) {
