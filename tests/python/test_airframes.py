@@ -62,8 +62,9 @@ def test_more_mass_hovers_at_more():
 
 @pytest.mark.parametrize("edit", [
     lambda a: setattr(a, "mass_kg", 0), lambda a: setattr(a, "mass_kg", math.nan),
-    lambda a: setattr(a, "mass_kg", 50), lambda a: setattr(a, "inertia_kg_m2", (1, 1, 3)), lambda a: setattr(a, "propeller_diameter_m", -1),
-    lambda a: setattr(a.rotors[1], "axis", (0, 0, 0)), lambda a: [setattr(rotor, "spin", Spin.clockwise) for rotor in a.rotors]])
+    lambda a: setattr(a, "mass_kg", 50), lambda a: setattr(a, "inertia_kg_m2", (1, 1, 3)),
+    lambda a: setattr(a, "propeller_diameter_m", -1), lambda a: setattr(a.rotors[1], "axis", (0, 0, 0)),
+    lambda a: [setattr(rotor, "spin", Spin.clockwise) for rotor in a.rotors]])
 def test_what_cannot_fly_is_refused(edit):
     airframe = Airframe("paper_quadrotor")
     edit(airframe)
@@ -93,9 +94,16 @@ def test_files_that_are_none(tmp_path):
 
 def test_a_pickle_that_is_none():
     with pytest.raises(ValueError, match="60 numbers"):
-        Airframe.__new__(Airframe).__setstate__(("x", (1.0, 2.0)))
-    for wrong in ((), None, ("x",), (1, 2)):
-        with pytest.raises((TypeError, ValueError, RuntimeError, IndexError)):
-            Airframe.__new__(Airframe).__setstate__(wrong)
-    with pytest.raises(TypeError):
-        Airframe.__new__(Airframe).mass_kg
+        Airframe._of_state(("x", (1.0, 2.0)))
+    for kind in (Airframe, pinnquad.Flight, pinnquad.Simulator, pinnquad.Vehicles, pinnquad.Model):
+        for wrong in ((), None, ("x",), (1, 2), b"", [1] * 11, tuple(range(11))):
+            with pytest.raises((TypeError, ValueError, RuntimeError, IndexError, pinnquad.Error)):
+                kind._of_state(wrong)
+
+
+@pytest.mark.parametrize("kind", [Airframe, pinnquad.Rotor, pinnquad.Flight, pinnquad.Dataset, pinnquad.Simulator,
+                                  pinnquad.Vehicles, pinnquad.Model, pinnquad.Training])
+def test_nothing_exists_that_was_not_made(kind):
+    for made in (lambda: kind.__new__(kind), lambda: object.__new__(kind)):
+        with pytest.raises(TypeError):
+            made()

@@ -169,14 +169,15 @@ void bind_airframes(py::module_& module) {
              return py::isinstance<NamedAirframe>(other) &&
                     state_of(self).equal(state_of(other.cast<const NamedAirframe&>()));
            })
-      .def("__repr__",
-           [](const NamedAirframe& self) {
-             char numbers[96];
-             std::snprintf(numbers, sizeof numbers, ": %.4g kg, thrust-to-weight %.3f>", self.value.mass_kg,
-                           self.value.thrust_to_weight());
-             return "<pinnquad.Airframe " + pinnquad::printable(self.name) + numbers;
-           })
-      .def(py::pickle(&state_of, &of_state));
+      .def("__repr__", [](const NamedAirframe& self) {
+        char numbers[96];
+        std::snprintf(numbers, sizeof numbers, ": %.4g kg, thrust-to-weight %.3f>", self.value.mass_kg,
+                      self.value.thrust_to_weight());
+        return "<pinnquad.Airframe " + pinnquad::printable(self.name) + numbers;
+      });
+  pickled(
+      airframe, [](const py::object& self) { return state_of(self.cast<const NamedAirframe&>()); }, of_state);
+  refuse_new(rotor);
   module.def("airframe_names", &names, "Names of the airframes of the library.");
 }
 

@@ -65,6 +65,9 @@ std::shared_ptr<const pinnquad::Dataset> dataset_of(py::handle given);
 
 inline Triple triple(const pinnquad::Vector3<double>& v) { return {v[0], v[1], v[2]}; }
 
+/// Makes `Type.__new__(Type)` a TypeError; `Type(...)` is as before.
+void refuse_new(py::handle type);
+
 template <std::size_t Count>
 py::array_t<double> array_of(const std::array<double, Count>& numbers) {
   return py::array_t<double>(static_cast<py::ssize_t>(Count), numbers.data());  // a copy
@@ -74,9 +77,6 @@ inline py::array_t<double> array_of(const pinnquad::Vector3<double>& v) { return
 /// Numbers where they lie, for as long as `owner` lives; read-only.
 py::array view_of(const double* numbers, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
                   py::handle owner);
-inline py::bytes bytes_of(const std::vector<unsigned char>& bytes) {
-  return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-}
 
 /// Looks for Ctrl-C twenty times a second, from a thread that has let go of the GIL.
 class SignalWatch {
@@ -93,6 +93,19 @@ class SignalWatch {
   using Clock = std::chrono::steady_clock;
   Clock::time_point next_ = Clock::now() + std::chrono::milliseconds(50);
 };
+
+/// Pickles by a state and what makes an object of it. `__new__` alone is refused: pybind11 would read an object that
+/// nobody made.
+template <class Class, class StateOf, class OfState>
+void pickled(Class& bound, const StateOf& state_of, const OfState& of_state) {
+  const std::string name = py::str(bound.attr("__name__"));
+  bound.def_static("_of_state", of_state);
+  bound.def("__reduce__", [state_of, name](const py::object& self) {
+    return py::make_tuple(py::module_::import("pinnquad.pickles").attr("restored"),
+                          py::make_tuple(name, state_of(self)));
+  });
+  refuse_new(bound);
+}
 
 /// Marks an object as in use by a thread without the GIL; looked at and set only by who holds it.
 class Busy {

@@ -200,20 +200,19 @@ void bind_flights(py::module_& module) {
           },
           py::arg("path"), "Writes the CSV that `pinnquad fly` writes. OSError if that is not possible.")
       .def("__len__", &Flight::size)
-      .def("__repr__",
-           [](const Flight& self) {
-             return "<pinnquad.Flight " + pinnquad::printable(self.name) + ": " + std::to_string(self.size()) +
-                    " rows>";
-           })
-      .def(py::pickle(
-          [](const py::object& self) {
-            const auto& own = self.cast<const Flight&>();
-            return py::make_tuple(rows_of(self), own.name, own.trajectory, own.weight, columns_of(own));
-          },
-          [](const py::tuple& state) {
-            return made(state[0].cast<Numbers>(), state[1].cast<std::string>(), state[2].cast<std::string>(),
-                        state[3].cast<double>(), state[4].cast<Columns>());
-          }));
+      .def("__repr__", [](const Flight& self) {
+        return "<pinnquad.Flight " + pinnquad::printable(self.name) + ": " + std::to_string(self.size()) + " rows>";
+      });
+  pickled(
+      flight,
+      [](const py::object& self) {
+        const auto& own = self.cast<const Flight&>();
+        return py::make_tuple(rows_of(self), own.name, own.trajectory, own.weight, columns_of(own));
+      },
+      [](const py::tuple& state) {
+        return made(state[0].cast<Numbers>(), state[1].cast<std::string>(), state[2].cast<std::string>(),
+                    state[3].cast<double>(), state[4].cast<Columns>());
+      });
   py::tuple names(pinnquad::sample_value_count);
   for (std::size_t i = 0; i < pinnquad::sample_value_count; ++i) {
     names[i] = py::str(std::string(pinnquad::sample_field_names[i]));
@@ -224,12 +223,13 @@ void bind_flights(py::module_& module) {
         quantity.name, [&quantity](const py::object& self) { return array_of_quantity(self, quantity); }, quantity.doc);
   }
 
-  py::class_<ImportedDataset, std::shared_ptr<ImportedDataset>>(module, "Dataset",
-                                                                "Flights, each on a clock of its own.")
+  py::class_<ImportedDataset, std::shared_ptr<ImportedDataset>> dataset(module, "Dataset",
+                                                                        "Flights, each on a clock of its own.");
+  dataset
       .def(py::init([](const py::object& flights) {
-             auto dataset = std::make_shared<ImportedDataset>();
-             dataset->flights = *dataset_of(flights);
-             return dataset;
+             auto own = std::make_shared<ImportedDataset>();
+             own->flights = *dataset_of(flights);
+             return own;
            }),
            py::arg("flights"), "Of flights, which are copied.")
       .def_static("read", &read, py::arg("paths"), py::kw_only(), py::arg("mapping") = "", py::arg("airframe") = "",
@@ -255,6 +255,7 @@ void bind_flights(py::module_& module) {
         return "<pinnquad.Dataset: " + std::to_string(self.flights.size()) + " flights, " +
                std::to_string(self.flights.rows()) + " rows>";
       });
+  refuse_new(dataset);
 }
 
 }  // namespace python

@@ -75,15 +75,22 @@ Status guarded(const Model& model, const Scalar* x, const Scalar* u) {
 template <class Number, class Model, class Scalar>
 void answer(const Model& model, const Number* x, std::size_t rows, Scalar* u, std::uint8_t* statuses,
             SignalWatch& watch) {
-  constexpr std::size_t at_once = 256;
+  constexpr std::size_t most_at_once = 256, fewest_side_by_side = 4;
   const auto size = static_cast<std::size_t>(model.features().size());
-  std::vector<Scalar> own(at_once * size), work(batch_workspace(model));
+  const std::size_t at_once = std::min(most_at_once, rows);
+  std::vector<Scalar> own(at_once * size), work(std::max(batch_workspace(model), model.workspace()));
   for (std::size_t first = 0; first < rows; first += at_once) {
     const std::size_t count = std::min(at_once, rows - first);
     const Number* const given = x + first * size;
     for (std::size_t i = 0; i < count * size; ++i) own[i] = static_cast<Scalar>(given[i]);
     Scalar* const commands = u + first * rotor_count;
-    commands_of_rows(model, own.data(), count, commands, work.data());
+    if (count < fewest_side_by_side) {
+      for (std::size_t row = 0; row < count; ++row) {
+        model.commands(own.data() + row * size, commands + row * rotor_count, work.data());
+      }
+    } else {
+      commands_of_rows(model, own.data(), count, commands, work.data());
+    }
     for (std::size_t row = 0; statuses != nullptr && row < count; ++row) {
       Scalar* const of_row = commands + row * rotor_count;
       const Status status = guarded(model, own.data() + row * size, of_row);
@@ -174,6 +181,10 @@ py::object certify(const BlockModel& model, double seconds, std::uint64_t seed) 
   return to_python(report);
 }
 
+py::bytes bytes_of(const BlockModel& model) {
+  return py::bytes(reinterpret_cast<const char*>(model.data()), model.size());
+}
+
 void save(const BlockModel& model, const std::filesystem::path& path) {
   AtomicFile file(path.string());
   file.stream().write(reinterpret_cast<const char*>(model.data()), static_cast<std::streamsize>(model.size()));
@@ -183,9 +194,9 @@ void save(const BlockModel& model, const std::filesystem::path& path) {
 }  // namespace
 
 void bind_models(py::module_& module) {
-  py::class_<BlockModel, std::shared_ptr<BlockModel>>(
-      module, "Model", "A model of any network and features, as its block describes it. It never changes.")
-      .def_static("load", &load, py::arg("path"), "The block that `pinnquad train` writes (model.block).")
+  py::class_<BlockModel, std::shared_ptr<BlockModel>> model(
+      module, "Model", "A model of any network and features, as its block describes it. It never changes.");
+  model.def_static("load", &load, py::arg("path"), "The block that `pinnquad train` writes (model.block).")
       .def_static(
           "of_bytes",
           [](const py::bytes& bytes) { return std::make_shared<BlockModel>("bytes", static_cast<std::string>(bytes)); },
@@ -219,20 +230,16 @@ void bind_models(py::module_& module) {
           "The guard's (lower, upper) of each feature.")
       .def("save", &save, py::arg("path"),
            "Writes the block, whole or not at all. Training.save() writes the header too.")
-      .def(
-          "to_bytes",
-          [](const BlockModel& self) { return py::bytes(reinterpret_cast<const char*>(self.data()), self.size()); },
-          "The block.")
-      .def("__repr__",
-           [](const BlockModel& self) {
-             return "<pinnquad.Model " + self.path() + ": " + self.answer() + ", " +
-                    std::to_string(self.features().size()) + " features, for " + self.airframe_name() + ">";
-           })
-      .def(py::pickle(
-          [](const BlockModel& self) { return py::bytes(reinterpret_cast<const char*>(self.data()), self.size()); },
-          [](const py::bytes& bytes) {
-            return std::make_shared<BlockModel>("a pickled block", static_cast<std::string>(bytes));
-          }));
+      .def("to_bytes", &bytes_of, "The block.")
+      .def("__repr__", [](const BlockModel& self) {
+        return "<pinnquad.Model " + self.path() + ": " + self.answer() + ", " + std::to_string(self.features().size()) +
+               " features, for " + self.airframe_name() + ">";
+      });
+  pickled(
+      model, [](const py::object& self) { return bytes_of(self.cast<const BlockModel&>()); },
+      [](const py::bytes& bytes) {
+        return std::make_shared<BlockModel>("a pickled block", static_cast<std::string>(bytes));
+      });
   module.def(
       "evaluate", &evaluate, py::arg("model"), py::arg("flights"), py::arg("rows") = "all",
       "Judges a model on a Flight or a Dataset: the dict that `pinnquad evaluate --json` prints. rows 'test': those\n"

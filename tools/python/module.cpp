@@ -42,6 +42,16 @@ const Triple& checked(const char* name, const Triple& values) {
   return values;
 }
 
+void refuse_new(py::handle type) {
+  auto* const bound = reinterpret_cast<PyTypeObject*>(type.ptr());
+  const py::cpp_function refused([](const py::args&, const py::kwargs&) {
+    throw py::type_error("call the class: an object is not made by __new__ alone");
+  });
+  const auto method = py::reinterpret_steal<py::object>(PyStaticMethod_New(refused.ptr()));
+  PyDict_SetItemString(bound->tp_dict, "__new__", method.ptr());  // what a call of the class uses stays
+  PyType_Modified(bound);
+}
+
 py::array view_of(const double* numbers, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
                   py::handle owner) {
   py::array array(py::dtype::of<double>(), std::move(shape), std::move(strides), numbers, owner);

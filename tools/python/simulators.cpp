@@ -365,9 +365,11 @@ SwitchedQuadrotor vehicle_of(const NamedAirframe& airframe, const Effects& effec
 void bind_simulators(py::module_& module) {
   const RecorderErrors no_errors;
   const FlightPlan plan;
-  py::class_<PythonSimulator>(module, "Simulator",
-                              "A running simulation: vehicle, pilot, controller, recorder. World NED, body FRD, SI "
-                              "units. The same seed gives the same bits.")
+  py::class_<PythonSimulator> simulator(
+      module, "Simulator",
+      "A running simulation: vehicle, pilot, controller, recorder. World NED, body FRD, SI "
+      "units. The same seed gives the same bits.");
+  simulator
       .def(py::init([](const py::object& airframe, std::uint64_t seed, const py::object& effects,
                        const std::string& pilot, const Triple& start_m, double max_speed_m_s, double gyro_noise_rad_s,
                        double derivative_interval_s, double command_latency_s, double command_jitter_s) {
@@ -428,9 +430,10 @@ void bind_simulators(py::module_& module) {
           "A simulator that flies on from here like this one, and apart from it.")
       .def("__copy__", [](const PythonSimulator& self) { return new PythonSimulator(self); })
       .def("__deepcopy__", [](const PythonSimulator& self, const py::dict&) { return new PythonSimulator(self); })
-      .def(py::pickle([](const PythonSimulator& self) { return self.journal(); },
-                      [](const py::tuple& state) { return PythonSimulator::of_journal(state); }))
       .def("__repr__", &PythonSimulator::text);
+  pickled(
+      simulator, [](const py::object& self) { return self.cast<const PythonSimulator&>().journal(); },
+      [](const py::tuple& state) { return PythonSimulator::of_journal(state); });
   module.attr("ground_effects") = py::tuple(py::cast(ground_effects));
 }
 

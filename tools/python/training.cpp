@@ -215,8 +215,9 @@ std::unique_ptr<Training> train(const py::object& flights, const py::object& air
 }  // namespace
 
 void bind_training(py::module_& module) {
-  py::class_<Training>(module, "Training", "Models that were fitted and judged, and the one that is exported.")
-      .def_property_readonly("model", &Training::model, "The exported kind's best fit.")
+  py::class_<Training> training(module, "Training",
+                                "Models that were fitted and judged, and the one that is exported.");
+  training.def_property_readonly("model", &Training::model, "The exported kind's best fit.")
       .def_property_readonly(
           "kind", [](const Training& self) { return self.kind().key; }, "Its key: 'structured' ...")
       .def_property_readonly("seed", &Training::seed, "Its seed.")
@@ -246,6 +247,7 @@ void bind_training(py::module_& module) {
                       static_cast<unsigned long long>(self.seed()), self.verdict().test_r_squared);
         return std::string(text);
       });
+  refuse_new(training);
   module.def(
       "train",
       [](const py::object& flights, const py::object& airframe, const std::string& recipe,

@@ -191,13 +191,12 @@ void bind_vehicles(py::module_& module) {
       .def_property_readonly("airframe", &Vehicles::airframe, py::return_value_policy::copy, "A copy of it.")
       .def_property_readonly("effects", &Vehicles::effects)
       .def("__len__", &Vehicles::size)
-      .def("__repr__",
-           [](const Vehicles& self) {
-             return "<pinnquad.Vehicles: " + std::to_string(self.size()) + " of " + printable(self.airframe().name) +
-                    ">";
-           })
-      .def(py::pickle([](const py::object& self) { return self.cast<Vehicles&>().pickled(self); },
-                      [](const py::tuple& pickle) { return Vehicles::of_pickle(pickle); }));
+      .def("__repr__", [](const Vehicles& self) {
+        return "<pinnquad.Vehicles: " + std::to_string(self.size()) + " of " + printable(self.airframe().name) + ">";
+      });
+  pickled(
+      vehicles, [](const py::object& self) { return self.cast<Vehicles&>().pickled(self); },
+      [](const py::tuple& pickle) { return Vehicles::of_pickle(pickle); });
   for (const Part& part : parts) {
     vehicles.def_property_readonly(
         part.name, [&part](const py::object& self) { return self.cast<Vehicles&>().array_of_part(self, part); },
