@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+"""setuptools as pyproject.toml calls it, with the setup.py that stands beside this file."""
+from setuptools.build_meta import _BuildMetaBackend
+
+
+class _Backend(_BuildMetaBackend):
+    def run_setup(self, setup_script="tools/python/setup.py"):
+        return super().run_setup(setup_script)
+
+
+_backend = _Backend()
+get_requires_for_build_wheel = _backend.get_requires_for_build_wheel
+get_requires_for_build_sdist = _backend.get_requires_for_build_sdist
+prepare_metadata_for_build_wheel = _backend.prepare_metadata_for_build_wheel
+build_wheel = _backend.build_wheel
+build_sdist = _backend.build_sdist
