@@ -3,9 +3,13 @@
 // nothing explains. It compares the specific force flown with that of rotors and residual wrench.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
+#include "pinnquad/control/flown_motion.hpp"
+#include "pinnquad/control/tick_clock.hpp"
 #include "pinnquad/control/wrench_inverse.hpp"
+#include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/features/motion_parts.hpp"

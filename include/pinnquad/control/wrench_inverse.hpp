@@ -10,6 +10,9 @@
 
 #include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/control/rotor_follower.hpp"
+#include "pinnquad/control/tick_clock.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
+#include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace pinnquad {

@@ -9,7 +9,8 @@
 #include "pinnquad/control/wrench_inverse.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/inference/pipeline.hpp"
-#include "pinnquad/nn/jacobian.hpp"
+#include "pinnquad/nn/kernel/portable.hpp"
+#include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/outputs/wrench_outputs.hpp"
 
@@ -78,15 +79,19 @@ class WrenchNetwork {
   /// The force / mass, and how it changes with the air's velocity, both body; flat beyond the envelope.
   template <class Scalar>
   Vector3<Scalar> force_and_slope(const WrenchInputs<Scalar>& in, Matrix<Scalar, 3, 3>& by_velocity) const noexcept {
-    Number x[inputs], y[outputs], jacobian[outputs * inputs];
-    const unsigned moved = standardise(in, x);
-    JacobianPass<Network>::run(parameters_, static_cast<const Number*>(x), static_cast<Number*>(y),
-                               static_cast<Number*>(jacobian));
+    Number x[inputs];
+    const unsigned moved = standardise(in, static_cast<Number*>(x));
+    Carried values[2][Network::widest] = {};
+    for (int i = 0; i < inputs; ++i) {
+      values[0][i].of[0] = x[i];
+      if (i < 3) values[0][i].of[1 + i] = Number(1);
+    }
+    const Carried* const made = carry<0>(static_cast<Carried*>(values[0]), static_cast<Carried*>(values[1]));
     Vector3<Scalar> force;
     for (int i = 0; i < 3; ++i) {
-      force[i] = -restored<Scalar>(y, i);
+      force[i] = -Scalar(made[i].of[0] * scales_.output_deviation[i] + scales_.output_mean[i]);
       for (int k = 0; k < 3; ++k) {
-        const Number slope = -jacobian[i * inputs + k] * scales_.output_deviation[i] / scales_.input_deviation[k];
+        const Number slope = -made[i].of[1 + k] * scales_.output_deviation[i] / scales_.input_deviation[k];
         by_velocity(i, k) = (moved >> static_cast<unsigned>(k) & 1u) != 0 ? Scalar(0) : Scalar(slope);
       }
     }
@@ -94,6 +99,45 @@ class WrenchNetwork {
   }
 
  private:
+  /// A value, and its derivatives by three inputs: forward through the network they cost four passes of its sums and one
+  /// of its activations.
+  struct Carried {
+    Number of[4];
+  };
+  template <int Index>
+  const Carried* carry(Carried* from, Carried* to) const noexcept {
+    using Layer = typename Network::template Layer<Index>;
+    if constexpr (is_elementwise<Layer>) {
+      for (int i = 0; i < Layer::outputs; ++i) {
+        const Number value = from[i].of[0], made = Layer::activate(value);
+        const Number slope = detail::slope_at<Layer>(slopes_from_input<Layer> ? value : made);
+        to[i] = {{made, slope * from[i].of[1], slope * from[i].of[2], slope * from[i].of[3]}};
+      }
+    } else {
+      static_assert(detail::is_dense_with_bias<Layer>,
+                    "pinnquad: a wrench network has dense layers and activations alone");
+      const Number* const weights = parameters_ + Network::Sizes::offset(Index);
+      const Number* const biases = weights + Layer::inputs * Layer::outputs;
+      for (int row = 0; row < Layer::outputs; ++row) {
+        Number value = biases[row], by_x(0), by_y(0), by_z(0);  // apart, so that they stay in registers
+        for (int column = 0; column < Layer::inputs; ++column) {
+          const Number weight = weights[row * Layer::inputs + column];
+          const Carried& before = from[column];
+          value = multiply_add(weight, before.of[0], value);
+          by_x = multiply_add(weight, before.of[1], by_x);
+          by_y = multiply_add(weight, before.of[2], by_y);
+          by_z = multiply_add(weight, before.of[3], by_z);
+        }
+        to[row] = {{value, by_x, by_y, by_z}};
+      }
+    }
+    if constexpr (Index + 1 < Network::layer_count) {
+      return carry<Index + 1>(to, from);
+    } else {
+      return to;
+    }
+  }
+
   /// Bit i of the result: input i was moved.
   template <class Scalar>
   unsigned standardise(const WrenchInputs<Scalar>& in, Number* x) const noexcept {
