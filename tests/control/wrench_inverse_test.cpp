@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The inverse of a rigid body with a residual wrench, nominal or a network: it makes the motion that is asked for, leans
-// against what acts across the thrust, and knows how its network's force changes.
+// The inverse of a rigid body with a residual wrench, nominal or a network: it makes the motion that is asked for,
+// leans against what acts across the thrust, and knows how its network's force changes.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A residual wrench that is learnt: the rotors' state of rows, what a row has beyond the rigid body, and how much of the
-// simulator's own truth the network explains on a flight that it has not seen.
+// A residual wrench that is learnt: the rotors' state of rows, what a row has beyond the rigid body, and how much of
+// the simulator's own truth the network explains on a flight that it has not seen.
 #include <doctest/doctest.h>
 
 #include <cmath>

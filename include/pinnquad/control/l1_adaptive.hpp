@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// L1 adaptive control with the piecewise-constant law: Hovakimyan and Cao, L1 adaptive control theory (SIAM 2010), ch. 3;
-// on a quadrotor's velocity and body rates as in Wu, Cheng, Ackerman, Gahlawat, Lakshmanan, Zhao and Hovakimyan, L1
-// adaptive augmentation for geometric tracking control of quadrotors (ICRA 2022).
+// L1 adaptive control with the piecewise-constant law: Hovakimyan and Cao, L1 adaptive control theory (SIAM 2010),
+// ch. 3; on a quadrotor's velocity and body rates as in Wu, Cheng, Ackerman, Gahlawat, Lakshmanan, Zhao and Hovakimyan,
+// L1 adaptive augmentation for geometric tracking control of quadrotors (ICRA 2022).
 #pragma once
 
 #include <array>

@@ -86,7 +86,7 @@ class TrackingController {
   Status feed_forward_status() const noexcept { return feed_forward_status_; }
 
  private:
-  /// What the policy knows of across the thrust is taken from the acceleration asked for; how it changes along the
+  /// The acceleration across the thrust that the policy knows of is taken from the one asked for; its change along the
   /// trajectory, from jerk and snap: differences over 20 ms before and after, of the motion that the point says.
   void lean(const State<Scalar>& state, TrajectoryPoint<Scalar>& asked) const noexcept {
     if constexpr (knows_across<FeedForward, Scalar>) {

@@ -41,8 +41,8 @@ using WrenchFeatures = WithColumns<Joined<BodyVelocity, BodyRates>, RotorState1,
 using WrenchNet =
     Mlp<float, InputSize<WrenchFeatures::size>, Hidden<2, 32>, OutputSize<AccelerationOutputs::size>, Tanh>;
 
-/// A residual wrench (control/wrench_inverse.hpp) by a model's numbers, which must stay where they are. Inputs are moved
-/// into the envelope of the training rows.
+/// A residual wrench (control/wrench_inverse.hpp) by a model's numbers, which must stay where they are. Inputs are
+/// moved into the envelope of the training rows.
 template <class Network>
 class WrenchNetwork {
   using Number = typename Network::Scalar;
@@ -99,8 +99,8 @@ class WrenchNetwork {
   }
 
  private:
-  /// A value, and its derivatives by three inputs: forward through the network they cost four passes of its sums and one
-  /// of its activations.
+  /// A value, and its derivatives by three inputs: forward through the network they cost four passes of its sums and
+  /// one of its activations.
   struct Carried {
     Number of[4];
   };

@@ -27,7 +27,7 @@
 
 namespace pinnquad {
 
-/// How a residual wrench is trained.
+/// The training of a residual wrench.
 struct WrenchTraining {
   int epochs = 100;
   double learning_rate = 3e-3;
@@ -81,7 +81,7 @@ inline Flight with_rotor_states(const Flight& flight, const Airframe<double>& ai
   return result;
 }
 
-/// What a row's motion has beyond rotors and gravity: force / mass and angular acceleration, body.
+/// The part of a row's motion that is not of rotors and gravity: force / mass and angular acceleration, body.
 inline Accelerations<double> residual_wrench_of(const Sample& sample, const Commands<double>& rotors,
                                                 const Quadrotor<double, StandardAtmosphere>& vehicle) {
   const Airframe<double>& airframe = vehicle.airframe();
