@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the program says as JSON, as dicts and lists of Python; null is None.
+// JSON of the program as dicts and lists of Python; null is None.
 #pragma once
 
 #include <string>

@@ -124,8 +124,8 @@ inline pinnquad::Provenance provenance_of(const Fold& fold, const pinnquad::Data
   return from;
 }
 
-/// The same with what is known of the model itself. `biases`: time constants of its bias; `airframe_known`: the header's
-/// airframe is the vehicle's.
+/// The same with facts of the model itself. `biases`: time constants of its bias; `airframe_known`: the airframe of the
+/// header is the vehicle's.
 inline pinnquad::Provenance provenance_of(const TrainedNetwork& model, pinnquad::Provenance from,
                                           const std::optional<pinnquad::SignedSums<double>>& biases,
                                           bool airframe_known) {

@@ -24,7 +24,7 @@
 
 namespace pinnquad {
 
-/// What an identification smooths by, and takes as known.
+/// Smoothing of an identification, and numbers that it takes as known.
 struct IdentificationSettings {
   double window_s = 0.16;         ///< of the smoothing: motion up to some 6 Hz counts
   double thrust_curve = 0;        ///< of thrust_fraction()
