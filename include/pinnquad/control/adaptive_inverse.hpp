@@ -88,8 +88,8 @@ class AdaptiveInverse {
   }
 
   /// One tick, before the inverse is asked: the state, and the commands in force since the tick before, first for an
-  /// inverse that learns too. `known`: these drove the motors, in flight, off their ends. The bias learns where a motion
-  /// is complete and the inverse answers for it by itself; else it waits.
+  /// inverse that learns too. `known`: these drove the motors, in flight, off their ends. The bias learns where a
+  /// motion is complete and the inverse answers for it by itself; else it waits.
   void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
     const Scalar step_s = clock_.step_s(now_us);
     if constexpr (learns_in_flight<FeedForward, Scalar>) inverse_.learn(now_us, known, state, commands);
