@@ -24,6 +24,7 @@
 #include "pinnquad/evaluation/past_bias.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/evaluation/summary.hpp"
+#include "pinnquad/exported/run_time_batch.hpp"
 #include "pinnquad/flight.hpp"
 #include "pinnquad/inference/choose_prediction.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shared by the parts of the Python module: a part binds its types in a source of its own, in this order. A program's
+// Common to the parts of the Python module: a part binds its types in a source of its own, in this order. A program's
 // edge: names, arrays and None become types and values here, and only here.
 #pragma once
 

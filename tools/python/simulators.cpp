@@ -162,7 +162,7 @@ class PythonSimulator {
   }
   std::size_t rows() const { return idle().running_.recording().size(); }
 
-  /// For a pickle: the choices at the start, and what was done since. The same seed gives the same bits.
+  /// State of a pickle: the choices at the start, and what was done since. The same seed gives the same bits.
   py::tuple journal() const {
     const RecorderErrors& e = idle().choices_.errors;
     py::list done;
