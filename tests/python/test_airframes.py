@@ -107,3 +107,13 @@ def test_nothing_exists_that_was_not_made(kind):
     for made in (lambda: kind.__new__(kind), lambda: object.__new__(kind)):
         with pytest.raises(TypeError):
             made()
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_every_protocol_of_pickles(protocol):
+    flight = pinnquad.fly(rows=20)
+    for thing in (Airframe("px4_sih"), flight, pinnquad.Simulator(), pinnquad.Vehicles(2), pinnquad.Effects(wake=True)):
+        assert type(pickle.loads(pickle.dumps(thing, protocol))) is type(thing)
+    for thing in (pinnquad.Dataset(flight), Airframe("px4_sih").rotors[0]):
+        with pytest.raises(TypeError, match="not pickled"):
+            pickle.dumps(thing, protocol)

@@ -65,7 +65,8 @@ std::shared_ptr<const pinnquad::Dataset> dataset_of(py::handle given);
 
 inline Triple triple(const pinnquad::Vector3<double>& v) { return {v[0], v[1], v[2]}; }
 
-/// Makes `Type.__new__(Type)` a TypeError; `Type(...)` is as before.
+/// Makes `Type.__new__(Type)` a TypeError, and a pickle of a type that says no other: Python's own way to one would end
+/// the interpreter. `Type(...)` is as before.
 void refuse_new(py::handle type);
 
 template <std::size_t Count>

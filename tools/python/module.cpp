@@ -4,6 +4,7 @@
 #include <exception>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/version.hpp"
@@ -49,6 +50,11 @@ void refuse_new(py::handle type) {
   });
   const auto method = py::reinterpret_steal<py::object>(PyStaticMethod_New(refused.ptr()));
   PyDict_SetItemString(bound->tp_dict, "__new__", method.ptr());  // what a call of the class uses stays
+  if (PyDict_GetItemString(bound->tp_dict, "__reduce__") == nullptr) {
+    const std::string text = std::string(bound->tp_name) + " is not pickled";
+    const py::cpp_function unpickled([text](const py::args&) { throw py::type_error(text); }, py::is_method(type));
+    PyDict_SetItemString(bound->tp_dict, "__reduce__", unpickled.ptr());
+  }
   PyType_Modified(bound);
 }
 
