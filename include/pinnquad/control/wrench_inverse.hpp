@@ -28,6 +28,7 @@ struct WrenchInputs {
 /// The wrench of the effects of a vehicle, by hand and from tables, in calm air.
 template <class Vehicle>
 class NominalWrench;
+/// Of a quadrotor with its effects.
 template <class Scalar, class... Effects>
 class NominalWrench<Quadrotor<Scalar, Effects...>> {
  public:

@@ -21,14 +21,17 @@ struct RotorState1 {
   static constexpr const char* name = "rotor_1";
   static constexpr const char* unit = "1";
 };
+/// The same of another rotor.
 struct RotorState2 {
   static constexpr const char* name = "rotor_2";
   static constexpr const char* unit = "1";
 };
+/// The same of another rotor.
 struct RotorState3 {
   static constexpr const char* name = "rotor_3";
   static constexpr const char* unit = "1";
 };
+/// The same of another rotor.
 struct RotorState4 {
   static constexpr const char* name = "rotor_4";
   static constexpr const char* unit = "1";

@@ -118,6 +118,7 @@ void each_wrench_row(const RowSet& rows, const Airframe<double>& airframe, const
 struct WrenchJudgement {
   std::array<double, 6> r_squared{}, deviation{};
 };
+/// Of a model that was fitted, on rows that it has not seen.
 inline WrenchJudgement judge_wrench(const WrenchModel& model, const RowSet& rows) {
   const detail::Scales<float> scales{model.input.mean.data(),     model.input.standard_deviation.data(),
                                      model.output.mean.data(),    model.output.standard_deviation.data(),
