@@ -46,7 +46,7 @@ fi
 if command -v dpkg-deb >/dev/null; then
   off=()
   for part in TESTS EXAMPLES TOOLS LOGS BENCH; do off+=("-DPINNQUAD_BUILD_$part=OFF"); done
-  cmake -S "$root" -B "$work/build" "${off[@]}" -DCMAKE_CXX_COMPILER="${CXX:-g++}" >/dev/null
+  cmake -S "$root" -B "$work/build" -G Ninja "${off[@]}" -DCMAKE_CXX_COMPILER="${CXX:-g++}" >/dev/null
   (cd "$work/build" && cpack >/dev/null)
   dpkg-deb -x "$work"/build/pinnquad_*_all.deb "$work/unpacked"
   said ".deb" "$(answer deb "-I$work/unpacked/usr/include" "-I$models" "-I$eigen")"
