@@ -415,7 +415,7 @@ TEST_CASE("who flies level above its place, and is expected to fall, is borne by
     }
     return take_off.lift();
   };
-  CHECK(lift_after_a_second(0.3f) == doctest::Approx(0.5f).epsilon(0.02));
+  CHECK(static_cast<double>(lift_after_a_second(0.3f)) == doctest::Approx(0.5).epsilon(0.02));
   CHECK(lift_after_a_second(8) == 1);
 }
 
