@@ -64,14 +64,15 @@ double largest_difference(const BlockModel& model, const programs::ForeignNetwor
                           const programs::ForeignMeaning& meaning) {
   constexpr std::size_t motions = 1000;
   double largest = 0;
+  const programs::Source source(network, meaning);
   for (const programs::Numbers& x : programs::vectors_inside(meaning, motions, 2)) {
     programs::Numbers shown = x;
     if (!model.is_double()) {
       std::transform(x.begin(), x.end(), shown.begin(), [](double v) { return double(static_cast<float>(v)); });
     }
-    const Commands<double> own = model.commands(shown), source = programs::source_commands(network, meaning, shown);
+    const Commands<double> own = model.commands(shown), said = source.commands(shown);
     for (std::size_t i = 0; i < own.size(); ++i) {
-      const double difference = std::abs(own[i] - source[i]) / std::max(1.0, std::abs(source[i]));
+      const double difference = std::abs(own[i] - said[i]) / std::max(1.0, std::abs(said[i]));
       if (!(difference <= largest)) largest = difference;  // NaN stays
     }
   }
@@ -137,10 +138,7 @@ void write_model(const ConvertOptions& options, const programs::ForeignNetwork& 
 
 /// Of a network a model.
 void convert_network(const ConvertOptions& options) {
-  if (!is_identifier(options.name)) {
-    throw std::invalid_argument("--name " + options.name +
-                                ": a C++ identifier was expected, no keyword and no name that C++ reserves");
-  }
+  require_identifier("--name", options.name);
   if (options.features.empty()) {
     throw std::invalid_argument("--features is required: no file of weights says what its numbers mean");
   }

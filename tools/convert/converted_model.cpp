@@ -234,12 +234,13 @@ pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& net
   }
   model.output_mean.assign(network.outputs, Scalar(0));
   model.output_deviation.assign(network.outputs, Scalar(1));
+  const Source source(network, meaning);
   for (const Numbers& x : vectors_inside(meaning, 8, 1)) {
     auto& golden = model.golden_features.emplace_back();
     for (std::size_t i = 0; i < x.size(); ++i) {
       golden.push_back(std::clamp(static_cast<Scalar>(x[i]), model.envelope_lower[i], model.envelope_upper[i]));
     }
-    const Commands<double> u = source_commands(network, meaning, Numbers(golden.begin(), golden.end()));
+    const Commands<double> u = source.commands(Numbers(golden.begin(), golden.end()));
     auto& commands = model.golden_commands.emplace_back();
     for (std::size_t i = 0; i < u.size(); ++i) commands[i] = narrowed<Scalar>(u[i], network);
   }
@@ -276,33 +277,39 @@ template pinnquad::detail::WrittenModel<float> converted_model(const ForeignNetw
 template pinnquad::detail::WrittenModel<double> converted_model(const ForeignNetwork&, const ForeignMeaning&,
                                                                 const std::string&);
 
-Commands<double> source_commands(const ForeignNetwork& network, const ForeignMeaning& meaning,
-                                 const Numbers& features) {
-  const std::vector<std::size_t> of_file = feature_order(meaning, "").of_file;
+Source::Source(const ForeignNetwork& network, const ForeignMeaning& meaning)
+    : network_(network),
+      meaning_(meaning),
+      features_of_file_(feature_order(meaning, "").of_file),
+      outputs_of_file_(output_order(meaning)) {
+  schema_.find(meaning.schema);
+  schema_.prepare(meaning.airframe.value);
+}
+
+Commands<double> Source::commands(const Numbers& features) const {
   Numbers x(features.size());
   for (std::size_t own = 0; own < features.size(); ++own) {
-    const ForeignFeature& feature = meaning.features[of_file[own]];
-    x[of_file[own]] = (feature.unit_factor * features[own] - feature.mean) / feature.scale;
+    const std::size_t place = features_of_file_[own];
+    const ForeignFeature& feature = meaning_.features[place];
+    x[place] = (feature.unit_factor * features[own] - feature.mean) / feature.scale;
   }
-  const Numbers made = network.evaluate(x);
+  const Numbers made = network_.evaluate(x);
   Numbers outputs;
-  for (const std::size_t place : output_order(meaning)) {
-    outputs.push_back(made[place] * meaning.output_scale[place] + meaning.output_mean[place]);
+  for (const std::size_t place : outputs_of_file_) {
+    outputs.push_back(made[place] * meaning_.output_scale[place] + meaning_.output_mean[place]);
   }
-  RunTimeOutputs<double> schema;
-  schema.find(meaning.schema);
-  schema.prepare(meaning.airframe.value);
   Commands<double> u{};
-  schema.commands(features.data(), outputs.data(), u.data());
+  schema_.commands(features.data(), outputs.data(), u.data());
   return u;
 }
 
 std::vector<Numbers> vectors_inside(const ForeignMeaning& meaning, std::size_t count, std::uint64_t seed) {
   std::vector<Numbers> vectors;
   std::mt19937_64 engine(seed);
+  const std::vector<std::size_t> of_file = feature_order(meaning, "").of_file;
   for (std::size_t i = 0; i < count; ++i) {
     auto& x = vectors.emplace_back();
-    for (const std::size_t place : feature_order(meaning, "").of_file) {
+    for (const std::size_t place : of_file) {
       const ForeignFeature& feature = meaning.features[place];
       const double lower = feature.lower / feature.unit_factor, upper = feature.upper / feature.unit_factor;
       x.push_back(i == 0 ? (lower + upper) / 2 : uniform(engine, lower, upper));

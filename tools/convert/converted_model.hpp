@@ -2,11 +2,15 @@
 // A foreign network as a model of the library: what its header and block say.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "convert/features_file.hpp"
 #include "convert/foreign_network.hpp"
 #include "pinnquad/deploy/written_model.hpp"
+#include "pinnquad/exported/run_time_outputs.hpp"
 
 namespace programs {
 
@@ -20,9 +24,20 @@ template <class Scalar>
 pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& network, const ForeignMeaning& meaning,
                                                        const std::string& name);
 
-/// Answers of the source to features in the model's order and units: its commands, in double.
-pinnquad::Commands<double> source_commands(const ForeignNetwork& network, const ForeignMeaning& meaning,
-                                           const Numbers& features);
+/// The source, asked for features in the model's order and units: its commands, in double. Network and meaning must
+/// stay where they are.
+class Source {
+ public:
+  Source(const ForeignNetwork& network, const ForeignMeaning& meaning);
+
+  pinnquad::Commands<double> commands(const Numbers& features) const;
+
+ private:
+  const ForeignNetwork& network_;
+  const ForeignMeaning& meaning_;
+  std::vector<std::size_t> features_of_file_, outputs_of_file_;
+  pinnquad::RunTimeOutputs<double> schema_;
+};
 
 /// Feature vectors inside the envelope, in the model's order: the middle of it, then random ones.
 std::vector<Numbers> vectors_inside(const ForeignMeaning& meaning, std::size_t count, std::uint64_t seed);

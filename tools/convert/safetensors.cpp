@@ -286,16 +286,9 @@ class Sequential {
     if (inputs_ == 0) inputs_ = width_ = inputs;
     tensor_of(number, module, "weight", {outputs, width_});
     const Tensor* bias = tensor_of(number, module, "bias", {outputs});
-    ForeignDense dense{inputs, found->second->values, bias ? bias->values : Numbers(outputs, 0)};
+    const ForeignStep step = dense_step({inputs, found->second->values, bias ? bias->values : Numbers(outputs, 0)});
     width_ = outputs;
-    return {[dense](const Numbers& x) {
-              Numbers y = dense.bias;
-              for (std::size_t row = 0; row < y.size(); ++row) {
-                for (std::size_t k = 0; k < x.size(); ++k) y[row] += dense.weights[row * x.size() + k] * x[k];
-              }
-              return y;
-            },
-            dense_step(dense)};
+    return {[step](const Numbers& x) { return taken(step, x); }, step};
   }
 
   SourceModule batch_norm(int number, const Module& module) {

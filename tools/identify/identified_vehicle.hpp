@@ -77,10 +77,8 @@ inline IdentifiedVehicle identified_vehicle(const pinnquad::logs::ImportedDatase
                                             const pinnquad::Airframe<double>& like,
                                             const pinnquad::IdentificationSettings& settings) {
   const std::vector<pinnquad::Flight> flights = sound_flights(dataset);
-  pinnquad::RowSet rows;
-  for (const pinnquad::Flight& flight : flights) rows.add(flight, {0, flight.size()});
   IdentifiedVehicle vehicle;
-  vehicle.found = pinnquad::identify(rows, pinnquad::axis_signs(like), settings);
+  vehicle.found = pinnquad::identify(pinnquad::all_rows(flights), pinnquad::axis_signs(like), settings);
   vehicle.found.delay_s.value += dataset.lag_removed_s;
   vehicle.found.response_s.value += dataset.lag_removed_s;
   const bool backwards = vehicle.found.effectiveness_rad_s2[2].high() < 0;

@@ -77,9 +77,7 @@ inline void require_free_commands(const std::string& file, const pinnquad::Fligh
 inline std::vector<pinnquad::Flight> sound_flights(const pinnquad::logs::ImportedDataset& dataset) {
   constexpr double most_grounded = 0.5;
   std::vector<pinnquad::Flight> flights;
-  pinnquad::RowSet all;
-  for (const pinnquad::Flight& flight : dataset.flights.flights()) all.add(flight, {0, flight.size()});
-  const double period_s = pinnquad::sample_period_s(all);
+  const double period_s = pinnquad::sample_period_s(pinnquad::all_rows(dataset.flights.flights()));
   if (!(period_s > 0)) {
     detail::refuse_flight(dataset.sources.front(), "rows of one period in all flights", "several, or a single row");
   }

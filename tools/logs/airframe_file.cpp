@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "logs/airframe_doubts.hpp"
 #include "logs/airframe_names.hpp"
@@ -67,6 +68,15 @@ void require_buildable(TomlTable& table, const Airframe<double>& a) {
 }
 
 }  // namespace
+
+bool same_numbers(const Airframe<double>& a, const Airframe<double>& b) {
+  const auto numbers_of = [](const Airframe<double>& of) {
+    std::vector<double> numbers;
+    each_number(of, [&](auto number) { numbers.push_back(static_cast<double>(number)); });
+    return numbers;
+  };
+  return numbers_of(a) == numbers_of(b);
+}
 
 std::invalid_argument no_airframe(const std::string& name) {
   return std::invalid_argument("no airframe named '" + name + "'; known: " + airframe_names() +

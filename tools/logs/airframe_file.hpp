@@ -16,6 +16,9 @@ struct NamedAirframe {
   Airframe<double> value;
 };
 
+/// True where every number of two airframes is the same.
+bool same_numbers(const Airframe<double>& a, const Airframe<double>& b);
+
 /// True for the name of a file rather than that of an airframe.
 bool is_airframe_file(const std::string& name);
 

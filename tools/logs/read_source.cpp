@@ -165,9 +165,7 @@ ImportedDataset read_source(const std::vector<std::string>& paths, const LogSett
   ImportedDataset dataset;
   dataset.flights = read_flights(paths, minimum_flight_rows, shared_columns(paths), settings.on_progress);
   dataset.sources = paths;
-  RowSet all;
-  for (const Flight& flight : dataset.flights.flights()) all.add(flight, {0, flight.size()});
-  dataset.sample_period_s = sample_period_s(all);
+  dataset.sample_period_s = sample_period_s(all_rows(dataset.flights.flights()));
   return dataset;
 }
 

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
-#include <vector>
 
+#include "logs/airframe_file.hpp"
 #include "pinnquad/control/wrench_network.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 
@@ -34,12 +34,7 @@ inline void require_wrench(const pinnquad::BlockModel& block, const pinnquad::Ai
     throw pinnquad::InputError(block.path(), 0, 0, "a residual wrench, as train --recipe wrench writes it",
                                "a model of another kind: " + block.answer());
   }
-  const auto numbers_of = [](const pinnquad::Airframe<double>& of) {
-    std::vector<double> numbers;
-    pinnquad::each_number(of, [&](auto number) { numbers.push_back(static_cast<double>(number)); });
-    return numbers;
-  };
-  if (numbers_of(block.airframe()) != numbers_of(airframe)) {
+  if (!pinnquad::logs::same_numbers(block.airframe(), airframe)) {
     throw pinnquad::InputError(block.path(), 0, 0, "a residual wrench of the vehicle that flies, " + airframe_name,
                                "one of " + block.airframe_name());
   }

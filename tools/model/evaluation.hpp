@@ -60,9 +60,7 @@ inline pinnquad::RowSet rows_to_judge(const pinnquad::Dataset& dataset, const st
   if (which == "test") {
     return dataset.size() < 3 ? pinnquad::split_each_flight(dataset).test : pinnquad::split_by_flight(dataset).test;
   }
-  pinnquad::RowSet all;
-  for (const pinnquad::Flight& flight : dataset.flights()) all.add(flight, {0, flight.size()});
-  return all;
+  return pinnquad::all_rows(dataset.flights());
 }
 
 /// The answer of `evaluate --json`. `which`: of rows_to_judge().

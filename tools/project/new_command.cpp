@@ -154,10 +154,7 @@ Filling filling(const NewOptions& options) {
   }
   if (places.empty()) places = chosen_airframe(airframe.empty() ? PaperQuadrotor::name : airframe);
   if (!options.name.empty()) name = options.name;
-  if (!is_identifier(name)) {
-    throw std::invalid_argument("--name " + name +
-                                ": a C++ identifier was expected, no keyword and no name that C++ reserves");
-  }
+  require_identifier("--name", name);
   places.insert(places.end(), types.begin(), types.end());
   places.emplace_back("name", name);
   places.emplace_back("version", std::to_string(PINNQUAD_VERSION_MAJOR) + "." + std::to_string(PINNQUAD_VERSION_MINOR));

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -78,6 +79,29 @@ inline py::array_t<double> array_of(const pinnquad::Vector3<double>& v) { return
 /// Numbers where they lie, for as long as `owner` lives; read-only.
 py::array view_of(const double* numbers, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
                   py::handle owner);
+
+/// Numbers of a row by a name: where they stand in it, and how many they are.
+struct RowPart {
+  const char* name;
+  py::ssize_t first, count;
+  const char* doc;
+};
+/// They of `rows` rows that lie `row_bytes` apart, for as long as `owner` lives; `first_row` may be null without rows.
+template <class Number>
+py::array part_of_rows(Number* first_row, std::size_t rows, std::size_t row_bytes, const RowPart& part,
+                       const py::object& owner) {
+  std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(rows)}, strides = {static_cast<py::ssize_t>(row_bytes)};
+  if (part.count > 1) {
+    shape.push_back(part.count);
+    strides.push_back(static_cast<py::ssize_t>(sizeof(double)));
+  }
+  Number* const numbers = rows == 0 ? nullptr : first_row + part.first;
+  if constexpr (std::is_const_v<Number>) {
+    return view_of(numbers, shape, strides, owner);
+  } else {
+    return py::array(py::dtype::of<double>(), shape, strides, numbers, owner);
+  }
+}
 
 /// Looks for Ctrl-C twenty times a second, from a thread that has let go of the GIL.
 class SignalWatch {

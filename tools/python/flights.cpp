@@ -19,17 +19,11 @@ using pinnquad::Flight;
 using pinnquad::Sample;
 using pinnquad::logs::ImportedDataset;
 
-constexpr auto row_bytes = static_cast<py::ssize_t>(sizeof(Sample));
 static_assert(sizeof(Sample) == pinnquad::sample_value_count * sizeof(double),
               "pinnquad: a flight is shown to Python as rows of 21 numbers");
 
-/// A quantity of a Sample: where it stands among its numbers, and how many it has.
-struct Quantity {
-  const char* name;
-  py::ssize_t first, count;
-  const char* doc;
-};
-constexpr std::array<Quantity, 8> quantities = {
+/// Quantities of a Sample.
+constexpr std::array<RowPart, 8> quantities = {
     {{"time_s", 0, 1, "Time, s; it increases from row to row."},
      {"linear_acceleration_m_s2", 1, 3, "Derivative of the body-frame velocity, m/s^2, FRD: R^T a_world - omega x v."},
      {"angular_acceleration_rad_s2", 4, 3, "Derivative of the body rates, rad/s^2, FRD."},
@@ -39,13 +33,10 @@ constexpr std::array<Quantity, 8> quantities = {
      {"altitude_m", 16, 1, "Of the vehicle's centre above the ground below it, m."},
      {"commands", 17, 4, "Motor commands, 0 to 1: front right, rear left, front left, rear right."}}};
 
-py::array array_of_quantity(const py::object& self, const Quantity& quantity) {
+py::array array_of_quantity(const py::object& self, const RowPart& quantity) {
   const auto& flight = self.cast<const Flight&>();
-  const auto rows = static_cast<py::ssize_t>(flight.size());
-  const auto size = static_cast<py::ssize_t>(sizeof(double));
-  const double* numbers = flight.empty() ? nullptr : reinterpret_cast<const double*>(&flight.front()) + quantity.first;
-  if (quantity.count == 1) return view_of(numbers, {rows}, {row_bytes}, self);
-  return view_of(numbers, {rows, quantity.count}, {row_bytes, size}, self);
+  const double* const first = flight.empty() ? nullptr : reinterpret_cast<const double*>(&flight.front());
+  return part_of_rows(first, flight.size(), sizeof(Sample), quantity, self);
 }
 
 py::array rows_of(const py::object& self) {
@@ -53,7 +44,7 @@ py::array rows_of(const py::object& self) {
 }
 
 py::array column_of(const py::object& self, const std::string& name) {
-  for (const Quantity& quantity : quantities) {
+  for (const RowPart& quantity : quantities) {
     if (name == quantity.name) return array_of_quantity(self, quantity);
   }
   const auto& flight = self.cast<const Flight&>();
@@ -66,7 +57,7 @@ py::array column_of(const py::object& self, const std::string& name) {
                    {static_cast<py::ssize_t>(sizeof(double))}, self);
   }
   std::vector<std::string> known;
-  for (const Quantity& quantity : quantities) known.emplace_back(quantity.name);
+  for (const RowPart& quantity : quantities) known.emplace_back(quantity.name);
   for (const pinnquad::ExtraColumn& column : flight.columns()) known.push_back(column.name);
   refuse_name("column", name, known);
 }
@@ -218,7 +209,7 @@ void bind_flights(py::module_& module) {
     names[i] = py::str(std::string(pinnquad::sample_field_names[i]));
   }
   flight.attr("column_names") = names;
-  for (const Quantity& quantity : quantities) {
+  for (const RowPart& quantity : quantities) {
     flight.def_property_readonly(
         quantity.name, [&quantity](const py::object& self) { return array_of_quantity(self, quantity); }, quantity.doc);
   }

@@ -135,15 +135,9 @@ py::object predict(const BlockModel& model, const py::object& features, bool gua
   });
 }
 
-RowSet rows_of(const Dataset& dataset) {
-  RowSet rows;
-  for (const Flight& flight : dataset.flights()) rows.add(flight, {0, flight.size()});
-  return rows;
-}
-
 py::array_t<double> features_of(const BlockModel& model, const py::object& flights) {
   const std::shared_ptr<const Dataset> dataset = dataset_of(flights);
-  const RowSet rows = rows_of(*dataset);
+  const RowSet rows = all_rows(dataset->flights());
   const auto size = static_cast<std::size_t>(model.features().size());
   py::array_t<double> result({rows.size(), size});
   double* const x = result.mutable_data();

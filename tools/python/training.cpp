@@ -92,10 +92,7 @@ class Training {
   /// model.hpp, model.block and, where there are limits, trust.hpp. Throws std::invalid_argument for a model that is
   /// worse than the mean of the commands, unless `allow_poor`.
   pinnquad::Exported save(const std::string& folder, const std::string& name, bool allow_poor) const {
-    if (!pinnquad::is_identifier(name)) {
-      throw std::invalid_argument("name " + pinnquad::printable(name) +
-                                  ": a C++ identifier was expected, no keyword and no name that C++ reserves");
-    }
+    pinnquad::require_identifier("name", name);
     if (verdict_.worse_than_mean() && !allow_poor) {
       throw std::invalid_argument(std::string(kind().title) +
                                   " is worse than the mean of the commands on the rows held out: allow_poor=True "
@@ -127,8 +124,7 @@ class Training {
     programs::TrainOptions options;  // what the checks of the command ask
     for (const pinnquad::Flight& flight : dataset_.flights.flights()) options.flights.push_back(flight.name);
     if (!is_imported()) {
-      pinnquad::RowSet all;
-      for (const pinnquad::Flight& flight : dataset_.flights.flights()) all.add(flight, {0, flight.size()});
+      const pinnquad::RowSet all = pinnquad::all_rows(dataset_.flights.flights());
       if (all.size() < programs::fewest_flight_rows) {
         throw std::invalid_argument("expected " + std::to_string(programs::fewest_flight_rows) +
                                     " rows or more to train on, found " + std::to_string(all.size()));
@@ -156,12 +152,8 @@ class Training {
     bool known_by_name = false;
     programs::with_airframe(airframe_.name, [&](auto tag) {
       using Vehicle = typename decltype(tag)::type;
-      known_by_name = same_numbers(pinnquad::airframe_value<Vehicle, double>(), airframe_.value);
+      known_by_name = pinnquad::logs::same_numbers(pinnquad::airframe_value<Vehicle, double>(), airframe_.value);
     });
-    constexpr double filter_s = 0.05;  // rows of logs have derivatives that an import's filter made
-    const pinnquad::PastRows past{
-        pinnquad::flown_motion_age_s + (is_imported() ? filter_s : 0),
-        pinnquad::least_bias_time_constant_s(std::max(airframe_.value.rotor_time_constant_s, dataset_.lag_removed_s))};
     return {airframe_,
             choices.recipe,
             std::move(kinds),
@@ -173,18 +165,8 @@ class Training {
             choices.epochs > 0 || is_imported() ? choices.epochs : programs::recipe_epochs,
             choices.threads > 0 ? choices.threads : std::max(1u, std::thread::hardware_concurrency()),
             {known_by_name, choices.altitude, choices.pinned_slopes, is_imported()},
-            past,
+            programs::past_rows_of(dataset_, airframe_.value, is_imported()),
             false};
-  }
-
-  static bool same_numbers(pinnquad::Airframe<double> a, pinnquad::Airframe<double> b) {
-    std::vector<double> numbers;
-    each_number(a, [&](auto& number) { numbers.push_back(static_cast<double>(number)); });
-    std::size_t next = 0;
-    bool same = true;
-    each_number(b,
-                [&](auto& number) { same &= pinnquad::detail::equal(numbers[next++], static_cast<double>(number)); });
-    return same;
   }
 
   ImportedDataset dataset_;  ///< its rows are what plan and fits look at: a Training never moves

@@ -22,13 +22,8 @@ constexpr std::size_t state_numbers = 18;
 static_assert(sizeof(OneState) == state_numbers * sizeof(double),
               "pinnquad: vehicles are shown to Python as rows of 18 numbers");
 
-/// A part of a state: where it stands among its numbers, and how many it has.
-struct Part {
-  const char* name;
-  py::ssize_t first, count;
-  const char* doc;
-};
-constexpr std::array<Part, 7> parts = {
+/// Parts of a state.
+constexpr std::array<RowPart, 7> parts = {
     {{"state", 0, state_numbers, "All numbers, vehicles x 18: those below in this order. To be written to, too."},
      {"position_m", 0, 3, "NED, m; the ground is at z = 0.877 m."},
      {"velocity_m_s", 3, 3, "NED, m/s."},
@@ -50,12 +45,8 @@ class Vehicles {
 
   std::size_t size() const { return states_.size(); }
 
-  py::array array_of_part(const py::object& self, const Part& part) {
-    constexpr auto row = static_cast<py::ssize_t>(sizeof(OneState)), size = static_cast<py::ssize_t>(sizeof(double));
-    auto* numbers = reinterpret_cast<double*>(states_.data()) + part.first;
-    const auto count = static_cast<py::ssize_t>(states_.size());
-    if (part.count == 1) return py::array(py::dtype::of<double>(), {count}, {row}, numbers, self);
-    return py::array(py::dtype::of<double>(), {count, part.count}, {row, size}, numbers, self);
+  py::array array_of_part(const py::object& self, const RowPart& part) {
+    return part_of_rows(reinterpret_cast<double*>(states_.data()), states_.size(), sizeof(OneState), part, self);
   }
 
   Commands<double> hover_commands(const Triple& place_m) const {
@@ -197,7 +188,7 @@ void bind_vehicles(py::module_& module) {
   pickled(
       vehicles, [](const py::object& self) { return self.cast<Vehicles&>().pickled(self); },
       [](const py::tuple& pickle) { return Vehicles::of_pickle(pickle); });
-  for (const Part& part : parts) {
+  for (const RowPart& part : parts) {
     vehicles.def_property_readonly(
         part.name, [&part](const py::object& self) { return self.cast<Vehicles&>().array_of_part(self, part); },
         part.doc);

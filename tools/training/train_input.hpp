@@ -96,9 +96,7 @@ inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options,
     pinnquad::logs::ImportedDataset dataset;
     dataset.flights = pinnquad::logs::read_flights(options.flights, fewest_flight_rows, {}, on_progress);
     dataset.sources = options.flights;
-    pinnquad::RowSet all;
-    for (const pinnquad::Flight& flight : dataset.flights.flights()) all.add(flight, {0, flight.size()});
-    dataset.sample_period_s = pinnquad::sample_period_s(all);
+    dataset.sample_period_s = pinnquad::sample_period_s(pinnquad::all_rows(dataset.flights.flights()));
     remove_latency(dataset, airframe, options.lag_s);
     return dataset;
   }
@@ -109,6 +107,14 @@ inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options,
   settings.lag_s = options.lag_s;
   settings.on_progress = on_progress;
   return pinnquad::logs::read_dataset(options.logs, settings);
+}
+
+/// The rows that a row's bias may be of. Rows of logs have derivatives that an import's filter made, which look ahead.
+inline pinnquad::PastRows past_rows_of(const pinnquad::logs::ImportedDataset& dataset,
+                                       const pinnquad::Airframe<double>& airframe, bool of_logs) {
+  constexpr double filter_s = 0.05;
+  return {pinnquad::flown_motion_age_s + (of_logs ? filter_s : 0),
+          pinnquad::least_bias_time_constant_s(std::max(airframe.rotor_time_constant_s, dataset.lag_removed_s))};
 }
 
 /// The file of each flight: that which was given, or in the folder of the dataset.

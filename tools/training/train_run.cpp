@@ -102,7 +102,7 @@ class Training {
               options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()),
               {vehicle.given && !programs::is_airframe_file(options.airframe), options.altitude, options.pinned_slopes,
                options.flights.empty()},
-              past_of(options, dataset, vehicle.airframe.value)},
+              programs::past_rows_of(dataset, vehicle.airframe.value, options.flights.empty())},
         report_(options.out + "/report.json", plan_, dataset, facts_of_recipe()) {
     report_.vehicle(programs::vehicle_json(vehicle));
   }
@@ -131,14 +131,6 @@ class Training {
   }
 
  private:
-  /// Rows of logs have derivatives that an import's filter made, which look ahead.
-  static PastRows past_of(const TrainOptions& options, const pinnquad::logs::ImportedDataset& dataset,
-                          const Airframe<double>& airframe) {
-    constexpr double filter_s = 0.05;
-    return {flown_motion_age_s + (options.flights.empty() ? filter_s : 0),
-            least_bias_time_constant_s(std::max(airframe.rotor_time_constant_s, dataset.lag_removed_s))};
-  }
-
   nlohmann::json facts_of_recipe() const {
     if (!recipe_) return nlohmann::json::object();
     nlohmann::json facts = recipe_->settings;
@@ -628,10 +620,7 @@ class Training {
 }  // namespace
 
 int programs::train(const TrainOptions& options) {
-  if (!is_identifier(options.model_name)) {
-    throw std::invalid_argument("--name " + options.model_name +
-                                ": a C++ identifier was expected, no keyword and no name that C++ reserves");
-  }
+  require_identifier("--name", options.model_name);
   if (options.recipe == wrench_recipe) return train_wrench(options);
   const Selection selection = selection_of(options);
   if (!options.export_choice.empty()) require_known_export(options.export_choice, selection.kinds);

@@ -41,6 +41,23 @@ inline constexpr bool learns_in_flight = is_detected<detail::LearnCall, Policy, 
 template <class Policy, class Scalar>
 inline constexpr bool knows_across = is_detected<detail::AcrossCall, Policy, Scalar>;
 
+namespace detail {
+template <class Policy>
+using AcrossVaries = decltype(Policy::across_varies);
+template <class Policy, class Scalar>
+constexpr bool varying_across() noexcept {
+  if constexpr (is_detected<AcrossVaries, Policy>) {
+    return Policy::across_varies;
+  } else {
+    return knows_across<Policy, Scalar>;
+  }
+}
+}  // namespace detail
+
+/// True where it depends on the state: so unless the policy says `static constexpr bool across_varies = false`.
+template <class Policy, class Scalar>
+inline constexpr bool across_varies = detail::varying_across<Policy, Scalar>();
+
 /// The acceleration that the policy knows of; zero of one that knows of none.
 template <class Scalar, class Policy>
 Vector3<Scalar> across_of(const Policy& policy, const State<Scalar>& state) noexcept {
@@ -63,6 +80,9 @@ class AdaptiveInverse {
                 "(control/feed_forward.hpp)");
 
  public:
+  /// The bias is the same in every state.
+  static constexpr bool across_varies = pinnquad::across_varies<FeedForward, Scalar>;
+
   AdaptiveInverse(const FeedForward& inverse, const Airframe<Scalar>& airframe,
                   const BiasSettings<Scalar>& settings = {}, const Motion& motion = Motion{}) noexcept
       : inverse_(inverse), bias_(airframe, settings), motion_(motion) {}
@@ -138,6 +158,9 @@ class AdaptiveInverse {
 template <class Scalar, class First, class Second>
 class HandsOver {
  public:
+  static constexpr bool across_varies =
+      pinnquad::across_varies<First, Scalar> || pinnquad::across_varies<Second, Scalar>;
+
   HandsOver(const First& first, const Second& second, Scalar patience_s = Scalar(0.5)) noexcept
       : first_(first), second_(second), patience_s_(patience_s) {}
 

@@ -90,22 +90,24 @@ class TrackingController {
   /// trajectory, from jerk and snap: differences over 20 ms before and after, of the motion that the point says.
   void lean(const State<Scalar>& state, TrajectoryPoint<Scalar>& asked) const noexcept {
     if constexpr (knows_across<FeedForward, Scalar>) {
-      constexpr Scalar h = Scalar(0.02);
-      const Vector3<Scalar> across = across_of(feed_forward_, state);
       TrajectoryPoint<Scalar> leaning = asked;
-      leaning.acceleration_m_s2 -= across;
-      FlatMotion<Scalar> flat;
-      if (flat_motion(leaning, controller_.gravity_m_s2(), flat) == Status::ok) {
-        const Vector3<Scalar> before = across_at(state, leaning, flat, asked, -h);
-        const Vector3<Scalar> now = across_at(state, leaning, flat, asked, Scalar(0));
-        const Vector3<Scalar> after = across_at(state, leaning, flat, asked, h);
-        leaning.jerk_m_s3 -= (after - before) / (Scalar(2) * h);
-        leaning.snap_m_s4 -= (after - Scalar(2) * now + before) / (h * h);
-      }
+      leaning.acceleration_m_s2 -= across_of(feed_forward_, state);
+      if constexpr (across_varies<FeedForward, Scalar>) follow_across(state, asked, leaning);
       asked = leaning;
     } else {
       static_cast<void>(state), static_cast<void>(asked);
     }
+  }
+  void follow_across(const State<Scalar>& state, const TrajectoryPoint<Scalar>& asked,
+                     TrajectoryPoint<Scalar>& leaning) const noexcept {
+    constexpr Scalar h = Scalar(0.02);
+    FlatMotion<Scalar> flat;
+    if (flat_motion(leaning, controller_.gravity_m_s2(), flat) != Status::ok) return;
+    const Vector3<Scalar> before = across_at(state, leaning, flat, asked, -h);
+    const Vector3<Scalar> now = across_at(state, leaning, flat, asked, Scalar(0));
+    const Vector3<Scalar> after = across_at(state, leaning, flat, asked, h);
+    leaning.jerk_m_s3 -= (after - before) / (Scalar(2) * h);
+    leaning.snap_m_s4 -= (after - Scalar(2) * now + before) / (h * h);
   }
   /// Across the thrust, a time after the point, on the trajectory: velocity of the point, attitude and body rates of
   /// one that leans.

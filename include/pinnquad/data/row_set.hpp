@@ -65,6 +65,16 @@ class RowSet {
   std::vector<std::size_t> ends_;  ///< per piece: rows up to and including it
 };
 
+/// Every row of the flights of a container.
+template <class Flights>
+RowSet all_rows(const Flights& flights) {
+  RowSet rows;
+  for (const Flight& flight : flights) rows.add(flight, {0, flight.size()});
+  return rows;
+}
+template <class Flights>
+RowSet all_rows(const Flights&&) = delete;  // the flights would be gone
+
 /// Median time between a row and the next of the same piece, s. 0 where no piece has two rows, or where the medians of
 /// two pieces differ by more than a hundredth of the first: then there is no one period. To the nanosecond, as a block
 /// holds it: times are sums of steps.

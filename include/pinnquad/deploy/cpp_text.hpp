@@ -66,6 +66,12 @@ inline bool is_identifier(std::string_view name) {
   }
   return true;
 }
+/// Throws std::invalid_argument for a name that is none; `what` was given it.
+inline void require_identifier(const std::string& what, const std::string& name) {
+  if (is_identifier(name)) return;
+  throw std::invalid_argument(what + " " + printable(name) +
+                              ": a C++ identifier was expected, no keyword and no name that C++ reserves");
+}
 
 /// "pinnquad::Network<float, pinnquad::InputSize<16>, ...>" (core/type_text.hpp), lists closed as ">>".
 template <class T>

@@ -25,6 +25,13 @@ class _Hover:
         self.steps = np.zeros(count, int)
         self.random = np.random.default_rng()
 
+    def begin(self, which, seed):
+        """The first observations; a seed makes the draws of all that follow."""
+        if seed is not None:
+            self.random = np.random.default_rng(seed)
+        self.reset(which)
+        return self.observe()
+
     def reset(self, which):
         self.vehicles.reset(which, tuple(self.target_m))
         count = int(np.count_nonzero(which))
@@ -83,10 +90,7 @@ class HoverEnv(Env):
 
     def reset(self, *, seed=None, options=None):
         """The first observation and {}. A seed gives the same episodes."""
-        if seed is not None:
-            self._task.random = np.random.default_rng(seed)
-        self._task.reset(self._all)
-        return self._task.observe()[0], {}
+        return self._task.begin(self._all, seed)[0], {}
 
     def step(self, action):
         """observation, reward, terminated, truncated, {}."""
@@ -116,10 +120,7 @@ class VectorHoverEnv:
 
     def reset(self, *, seed=None, options=None):
         """The first observations, num_envs x 17, and {}."""
-        if seed is not None:
-            self._task.random = np.random.default_rng(seed)
-        self._task.reset(np.ones(self.num_envs, bool))
-        return self._task.observe(), {}
+        return self._task.begin(np.ones(self.num_envs, bool), seed), {}
 
     def step(self, actions):
         """observations, rewards, terminated, truncated, info: arrays of num_envs rows."""
