@@ -3,6 +3,10 @@
 // No heap, exceptions, RTTI, iostream, virtual calls, asserts or statics with run-time initialisation below this line.
 #pragma once
 
+#if __cplusplus < 201703L
+#error "pinnquad needs C++17: -std=c++17"
+#endif
+
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/battery_sag.hpp"
 #include "pinnquad/aero/drag.hpp"

@@ -2,6 +2,8 @@
 // Umbrella: everything, for programs on the ground.
 #pragma once
 
+#include "pinnquad/flight.hpp"  // first: it says which C++ is needed
+
 #include "pinnquad/control/autopilot/recorded_controller.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/data/csv.hpp"
@@ -25,7 +27,6 @@
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/exported/run_time_batch.hpp"
-#include "pinnquad/flight.hpp"
 #include "pinnquad/inference/choose_prediction.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/loss/loss.hpp"

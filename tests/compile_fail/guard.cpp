@@ -30,6 +30,8 @@
 // CASE FALLBACK_NEEDS_TIME: pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time
 // CASE GROUND_WITHOUT_HEIGHT: pinnquad: an effect of this vehicle depends on height, place or time, which these inputs don't say
 // CASE GUST_WITHOUT_TIME: pinnquad: an effect of this vehicle depends on place or time, which these inputs don't say
+// CASE COMMANDS_OF_THREE: deleted.*predict
+// CASE COMMANDS_IN_DOUBLE: deleted.*predict
 #include <limits>
 
 #include "../support/small_model.hpp"
@@ -176,7 +178,13 @@ int main() {
   const Policies guard(by_formula<Quadrotor<float>>());
 #endif
   const InverseDynamics<Described, Policies> inverse(guard);
+#if defined(COMMANDS_OF_THREE)
+  std::array<float, 3> commands{};
+#elif defined(COMMANDS_IN_DOUBLE)
+  Commands<double> commands{};
+#else
   Commands<float> commands{};
+#endif
   Status status = inverse.predict({}, commands);
 #if defined(FEATURES_ALONE)
   status = inverse.predict_features(test::SmallModel::golden_features[0].data(), commands);

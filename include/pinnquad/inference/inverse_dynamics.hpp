@@ -105,6 +105,9 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     detail::NoReport none;
     return guarded(inputs, commands, none);
   }
+  /// The commands are Commands<Scalar>: four of the model's own scalar.
+  template <class Other>
+  Status predict(const Inputs& inputs, Other& not_commands_of_this_scalar) const = delete;
   /// The same, and why.
   Status predict(const Inputs& inputs, Commands<Scalar>& commands, Report& report) const noexcept {
     report = {};
