@@ -22,7 +22,7 @@ bool trained_on(const std::string& path, const char* header) {
   const bool same = hash == Model::training_data_hash && rows == Model::training_rows;
   std::printf("%s: trained on %d rows of flight %016llx; the flight made today: %d rows of %016llx%s\n", header,
               Model::training_rows, static_cast<unsigned long long>(Model::training_data_hash), rows, hash,
-              same ? "" : ": stale, make it again (docs/guide.md, 'The models that are shipped')");
+              same ? "" : ": stale, make it again (docs/train.md, 'The models that are shipped')");
   return same;
 }
 

@@ -41,11 +41,11 @@ call() {
   [ "$code" -eq "$expected" ] || fail "exit code $code instead of $expected: $script $*"
 }
 
-echo kept >../repository/docs/guide.md
+echo kept >../repository/docs/start.md
 echo kept >docs.log
 call 0 scripts/bare_machine --dir docs # debootstrap fails: skipped
 grep -q 'SKIPPED.*debootstrap failed' ../said.txt || fail "it did not come to debootstrap"
-[ -s ../repository/docs/guide.md ] || fail "bare_machine --dir docs removed the repository's docs"
+[ -s ../repository/docs/start.md ] || fail "bare_machine --dir docs removed the repository's docs"
 [ ! -e docs ] || fail "bare_machine left its folder behind"
 [ "$(cat docs.log)" = kept ] || fail "bare_machine wrote over docs.log"
 mkdir mine
@@ -54,7 +54,7 @@ for taken in mine mine/ dangling ../repository/docs docs.log/x ''; do
   call 2 scripts/bare_machine --dir "$taken"
   [ "$(wc -l <../said.txt)" -eq 1 ] || fail "not one line"
 done
-[ -d mine ] && [ -L dangling ] && [ -s ../repository/docs/guide.md ] || fail "a folder that was there before is gone"
+[ -d mine ] && [ -L dangling ] && [ -s ../repository/docs/start.md ] || fail "a folder that was there before is gone"
 
 call 1 bench/run --out figures # cmake fails
 if [ ! -d figures ] || [ -e ../repository/figures ]; then fail "bench/run --out figures wrote elsewhere"; fi

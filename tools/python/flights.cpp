@@ -170,7 +170,7 @@ void bind_flights(py::module_& module) {
            "Of an array of N x 21 numbers in the order of column_names, SI units, and extra columns (name, unit, "
            "values).")
       .def_static("read", &read_flight, py::arg("path"),
-                  "A CSV file (docs/guide.md), with its extra columns. pinnquad.Error says file, line and column.")
+                  "A CSV file (docs/train.md), with its extra columns. pinnquad.Error says file, line and column.")
       .def_readonly("name", &Flight::name)
       .def_readonly("trajectory", &Flight::trajectory, "Flights of one trajectory are held out together.")
       .def_readonly("weight", &Flight::weight, "How often its rows are seen in training, relative to other flights.")

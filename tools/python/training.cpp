@@ -211,7 +211,7 @@ void bind_training(py::module_& module) {
           "The same of linear regression on the paper's features.")
       .def_property_readonly(
           "figures", [](const Training& self) { return to_python(self.figures()); },
-          "Of every kind, as `models` of report.json (docs/guide.md).")
+          "Of every kind, as `models` of report.json (docs/report.md).")
       .def(
           "save",
           [](const Training& self, const std::filesystem::path& folder, const std::string& name, bool allow_poor) {

@@ -148,7 +148,7 @@ inline void write_results(const std::string& path, const FitPlan& plan, const Ju
   file.commit();
 }
 
-/// Of report.json: raised where an entry changes its meaning or goes (docs/guide.md).
+/// Of report.json: raised where an entry changes its meaning or goes (docs/report.md).
 inline constexpr int report_format = 2;
 
 /// Builds report.json; a training that fails later leaves what was written last.

@@ -27,7 +27,7 @@ namespace pinnquad {
 inline constexpr std::size_t sample_value_count = 21;
 
 /// One row of a recorded flight: the motion at one instant and the commands that cause it.
-/// Frames: body is FRD, the world NED; attitude is Euler ZYX, body to world. docs/guide.md has the same as columns of a
+/// Frames: body is FRD, the world NED; attitude is Euler ZYX, body to world. docs/train.md has the same as columns of a
 /// CSV.
 struct Sample {
   using Values = std::array<double, sample_value_count>;  ///< its numbers in the order of `sample_field_names`

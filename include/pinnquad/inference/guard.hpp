@@ -65,7 +65,7 @@ struct ClipCommands {};
 /// Beside TrainingEnvelope, both answer a motion that is outside by its angular acceleration alone:
 ///   commands(w) = network(c) + fallback(w - c) - fallback(0),  c = w clamped to the envelope,  then ClipCommands
 /// There is no jump at the edge. A certified model beside an analytic inverse with rotors alike keeps its order across
-/// it: an axis' command sum does not fall where more is asked about the axis (docs/guide.md, which lists what does
+/// it: an axis' command sum does not fall where more is asked about the axis (docs/in_flight.md, which lists what does
 /// not). Contract: `Status operator()(const Inputs&, Commands<Scalar>&) const noexcept`, or with a `const
 /// PlaceAndTime<Real>&` in the middle, or both. It checks its inputs itself: it is asked with those that the guard
 /// refused. Its commands are taken if has_output(status). inference/analytic_inverse.hpp is one.

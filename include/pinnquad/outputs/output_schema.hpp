@@ -13,7 +13,7 @@
 // Short form for one output per rotor and one unit: `names`, `unit`, from_command(u, airframe), command(y, airframe),
 // command_slope(y, airframe), or these three with the rotor's index as last argument, for rotors that differ.
 // commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where one program links objects of several instruction sets,
-// and plain arrays then, no Eigen (docs/guide.md, Reproducibility).
+// and plain arrays then, no Eigen (docs/train.md, Reproducibility).
 #pragma once
 
 #include <array>
