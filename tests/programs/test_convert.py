@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 """convert: a network of safetensors or ONNX becomes a model that answers as its source does, and a model a network that
 answers as the model does. The source's answers are worked out here by loops in double, and by PyTorch where it is."""
+import csv
 import json
 import math
 import random
 import re
+import statistics
 import struct
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -194,18 +197,18 @@ def test_feature_sets(pinnquad, compiler):
                                     for n, lower, upper in features]
         assert worst(header, lambda row: network(standardised(row))) <= TOLERANCE
     assert features_type == ("pinnquad::WithColumns<pinnquad::Chosen<pinnquad::NamedFeaturesWithAltitude, 3, 4, 5, 9, "
-                             "18, 28>, ConvertedModelColumn1>")
+                             "18, 28>, TrainedQuadModelColumn1>")
     Path("main.cpp").write_text("""
 #include "model/model.hpp"
 #include <cmath>
 int main() {
-  const pinnquad::InverseDynamics<ConvertedModel> inverse;
+  const pinnquad::InverseDynamics<TrainedQuadModel> inverse;
   if (pinnquad::self_test(inverse) != pinnquad::Status::ok) return 1;
-  ConvertedModel::Inputs hover;
+  TrainedQuadModel::Inputs hover;
   pinnquad::Commands<float> u{};
   if (inverse.predict(hover, u) != pinnquad::Status::not_finite) return 2;
   hover.altitude_m = 1;
-  hover.column<ConvertedModelColumn1>() = 15;
+  hover.column<TrainedQuadModelColumn1>() = 15;
   if (inverse.predict(hover, u) != pinnquad::Status::ok) return 3;
   for (const float one : u) {
     if (!std::isfinite(one)) return 4;
@@ -679,6 +682,38 @@ def test_residual_back(pinnquad, made):
     onnx.checker.check_model(model, full_check=True)
     assert {"Gather", "Max", "Min"} <= {node.op_type for node in model.graph.node}
     answers_as(onnx, numpy, model, Header("trained/model.hpp"))
+
+
+@pytest.mark.parametrize("inputs, count", [("paper", 16), ("inverse", 19), ("physics", 21)])
+def test_features_to_begin_with(pinnquad, made, inputs, count):
+    """Of a flight: each feature's name, unit and range, which a network then has; what its comments say is of the rows."""
+    flight = made("fly d3 --seed 1 --samples 300 --out flight.csv") / "flight.csv"
+    pinnquad("convert", flight, "--inputs", inputs, "--out", "features.toml")
+    begun = tomllib.loads(Path("features.toml").read_text())
+    assert len(begun["feature"]) == count and begun["airframe"] == {"name": "paper_quadrotor"}
+    with open(flight) as file:
+        rows = list(csv.DictReader(file))
+    for feature in begun["feature"]:
+        if feature["name"] not in rows[0]:
+            continue  # worked out of several columns
+        values = [float(row[feature["name"]]) for row in rows]
+        reach = max(values) - min(values)
+        assert min(values) - reach < feature["lower"] < min(values) <= max(values) < feature["upper"] < max(values) + reach
+        said = re.search(rf'"{feature["name"]}".*# mean = (\S+), scale = (\S+)$', Path("features.toml").read_text(), re.M)
+        assert float(said[1]) == pytest.approx(statistics.fmean(values), rel=1e-4, abs=1e-6)
+        assert float(said[2]) == pytest.approx(statistics.pstdev(values), rel=1e-4)
+    safetensors("net.safetensors", Network(count, 8, "tanh", 4).tensors)
+    Path("features.toml").write_text('activations = "tanh"\n' + Path("features.toml").read_text())
+    pinnquad("convert net.safetensors --features features.toml --out my_model")
+
+
+def test_no_features_to_begin_with(pinnquad, made):
+    flight = made("fly d3 --seed 1 --samples 300 --out flight.csv") / "flight.csv"
+    pinnquad.refused("convert", flight, "--out", "features.txt", keyword=".toml was expected")
+    pinnquad.refused("convert", flight, "--out", "features.toml", "--inputs", "all", keyword="paper, physics or inverse")
+    Path("no_flight.csv").write_text("a,b\n1,2\n")
+    pinnquad.refused("convert no_flight.csv --out features.toml", at="no_flight.csv")
+    assert listing(".") == ["no_flight.csv"]
 
 
 # PyTorch

@@ -3,6 +3,7 @@
 // a model becomes a network of ONNX or safetensors.
 //   pinnquad convert net.onnx --features features.toml --out my_model
 //   pinnquad convert my_model/model.block --out net.onnx
+//   pinnquad convert flight.csv --out features.toml
 #include "convert/convert_command.hpp"
 
 #include <algorithm>
@@ -22,6 +23,7 @@
 #include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"
 #include "command_line/options.hpp"
+#include "convert/begun_features.hpp"
 #include "convert/converted_model.hpp"
 #include "convert/exported_network.hpp"
 #include "convert/features_file.hpp"
@@ -30,6 +32,7 @@
 #include "model/given_model.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/logs/read_dataset.hpp"
 
 namespace {
 
@@ -37,7 +40,7 @@ using namespace pinnquad;
 
 struct ConvertOptions {
   std::string source, features, out;
-  std::string name = "ConvertedModel";
+  std::string name = "TrainedQuadModel", inputs = "paper";
   bool in_double = false;
 };
 
@@ -174,12 +177,33 @@ void convert_model(const ConvertOptions& options) {
               bytes.size(), network.inputs);
 }
 
+/// Of flights a features file to begin with.
+void begin_features(const ConvertOptions& options) {
+  if (std::filesystem::path(options.out).extension() != ".toml") {
+    throw std::invalid_argument("--out " + options.out + ": of flights a name that ends in .toml was expected");
+  }
+  programs::FileRoles roles;
+  roles.reads("source", options.source);
+  roles.writes("--out", options.out);
+  const std::string text = programs::begun_features(logs::read_source({options.source}).flights, options.inputs);
+  AtomicFile file(options.out);
+  file.stream() << text;
+  file.commit();
+  std::printf(
+      "%s: look at ranges and units, add mean and scale where the network was standardised, name the airframe\n",
+      printable(options.out).c_str());
+}
+
 int convert(const ConvertOptions& options) {
   const std::string ending = std::filesystem::path(options.source).extension().string();
+  if (ending == ".csv" || std::filesystem::is_directory(options.source)) {
+    begin_features(options);
+    return 0;
+  }
   const bool is_model = ending == ".block" || ending == ".hpp";
   if (!is_model && ending != ".onnx" && ending != ".safetensors") {
     throw std::invalid_argument(options.source +
-                                ": a name that ends in .onnx, .safetensors, .block or .hpp was expected");
+                                ": a name that ends in .onnx, .safetensors, .block, .hpp or .csv was expected");
   }
   is_model ? convert_model(options) : convert_network(options);
   return 0;
@@ -191,18 +215,24 @@ programs::Command programs::convert_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "convert", "Makes a model of a network that was trained elsewhere, or a network for elsewhere of a model");
   const auto options = std::make_shared<ConvertOptions>();
-  add_path(*line, "source", options->source, "FILE", "a network (.onnx, .safetensors), or a model (.block, .hpp)")
+  add_path(*line, "source", options->source, "FILE",
+           "a network (.onnx, .safetensors), a model (.block, .hpp), or flights (.csv, a dataset)")
       ->required();
   add_path(*line, "--features", options->features, "FILE.toml",
            "of a network: what its numbers mean (docs/convert.md)");
   add_path(*line, "--out", options->out, "DIR|FILE",
            "of a network the folder for model.hpp and model.block; of a model the network to write (.onnx, "
-           ".safetensors)")
+           ".safetensors); of flights the features file")
       ->required();
   line->add_option("--name", options->name, "name of the exported struct")->type_name("NAME")->capture_default_str();
+  line->add_option("--inputs", options->inputs,
+                   "of flights: paper, physics or inverse, the features that the file begins with")
+      ->type_name("SET")
+      ->capture_default_str();
   line->add_flag("--double", options->in_double, "numbers of the model in double, not in float");
   line->footer(
       "Examples:\n"
+      "  pinnquad convert flight.csv --out features.toml   to begin with: ranges of the flights\n"
       "  pinnquad convert net.onnx --features features.toml --out my_model\n"
       "  pinnquad convert my_model/model.block --out net.onnx\n"
       "Exit codes: 0; 2 bad input or a file that can't be read or written; 130 interrupted.");
