@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: MIT
 #
 # pinnquad as one header, through pkg-config, and from its Debian package: the quickstart gives the same answer each time.
-#   packaged.sh ROOT PREFIX WORK EIGEN
+# The package of the program has the page to watch a flight, and finds it where it is unpacked.
+#   packaged.sh ROOT PREFIX WORK EIGEN PROGRAM
 # PREFIX: where it is installed. Environment: CXX. What Debian's dpkg-deb or pkg-config would say is left out where they are
-# not there.
+# not there, what the program would where it is not built.
 set -euo pipefail
-root=$1 prefix=$2 work=$3 eigen=$4
+root=$1 prefix=$2 work=$3 eigen=$4 program=$5
 rm -rf -- "$work"
 mkdir -p "$work/header" "$work/unpacked"
 
@@ -52,4 +53,28 @@ if command -v dpkg-deb >/dev/null; then
   said ".deb" "$(answer deb "-I$work/unpacked/usr/include" "-I$models" "-I$eigen")"
 else
   echo ".deb: not run, dpkg-deb is not installed"
+fi
+
+# A build tree where the program is built, and then its page: a stand-in that says so.
+if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null && [ -x "$program" ]; then
+  tree=$work/with_program
+  cmake -S "$root" -B "$tree" -G Ninja "${off[@]}" -DPINNQUAD_BUILD_TOOLS=ON -DCMAKE_CXX_COMPILER="${CXX:-g++}" >/dev/null
+  mkdir -p "$tree/bin" "$tree/share/pinnquad"
+  cp -- "$program" "$tree/bin/"
+  watch() { # <program>: flies with a page
+    rm -f -- "$work/flight.html"
+    "$1" fly --samples 20 --out "$work/flight.csv" --watch "$work/flight.html" 2>&1
+  }
+  if said=$(watch "$tree/bin/pinnquad"); then echo "flown with a page that is not built: $said"; exit 1; fi
+  [[ $said == *flight.html:*watch_bundle* ]] || { echo "without the page: expected a line about watch_bundle, found '$said'"; exit 1; }
+  echo '{"style":"", "body":"the stand-in", "script":""}' >"$tree/share/pinnquad/watch.json"
+  (cd "$tree" && cpack >/dev/null)
+  dpkg-deb -x "$tree"/pinnquad_*.deb "$work/installed"
+  mv -- "$work/installed" "$work/moved"
+  for here in "$tree" "$work/moved/usr"; do
+    said=$(watch "$here/bin/pinnquad") && grep -q "the stand-in" "$work/flight.html" || { echo "$here: no page: $said"; exit 1; }
+  done
+  echo "the page of the program: found in the build tree and in the unpacked package"
+else
+  echo "the page of the program: not run, dpkg-deb, dpkg-shlibdeps or the program is not there"
 fi

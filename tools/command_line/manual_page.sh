@@ -92,8 +92,10 @@ TEXT
 .TP
 .I share/pinnquad/watch.json
 beside the program's folder bin: the page that
-.B pinnquad fly \-\-replay
-fills.
+.B pinnquad fly \-\-watch
+and
+.B pinnquad train
+fill.
 TEXT
   fi
   cat <<TEXT

@@ -63,10 +63,8 @@ std::string digits(double value) {
 
 std::string WatchPage::built_bundle() {
   std::error_code ignored;
-  const std::filesystem::path built = PINNQUAD_WATCH_BUNDLE;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  const std::filesystem::path installed = program.parent_path().parent_path() / "share/pinnquad/watch.json";
-  return (available(built.string()) || !available(installed.string()) ? built : installed).string();
+  return (program.parent_path().parent_path() / "share/pinnquad/watch.json").string();
 }
 
 bool WatchPage::available(const std::string& bundle) {

@@ -23,7 +23,7 @@ namespace programs {
 /// flights up to 32 m/s), quaternion (16 bit, 0.003 deg), commands (16 bit). A screen needs no more.
 class WatchPage {
  public:
-  /// The bundle: where the build puts it, or beside the program where that was installed.
+  /// The bundle: share/pinnquad/watch.json beside the folder of the program, in a build tree and in an installed one.
   static std::string built_bundle();
   static bool available(const std::string& bundle = built_bundle());
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
-# Installs the locked packages beside the page and runs bundle.mjs. Run by the target watch_bundle with
-# NODE, NPM, SOURCE, PAGE and REQUIRED (ON or AUTO). What fails under AUTO is a notice, and there is no page.
+# Installs the locked packages into the folder PACKAGES and runs bundle.mjs. Run by the target watch_bundle with
+# NODE, NPM, SOURCE, PACKAGES, PAGE and REQUIRED (ON or AUTO). What fails under AUTO is a notice, and there is no page.
 get_filename_component(folder "${PAGE}" DIRECTORY)
 file(MAKE_DIRECTORY "${folder}")
 
@@ -16,13 +16,13 @@ endmacro()
 
 # npm only when the lock file has changed since it last succeeded
 file(SHA256 "${SOURCE}/package-lock.json" lock)
-set(stamp "${folder}/node_modules/.pinnquad-lock-${lock}")
+set(stamp "${PACKAGES}/node_modules/.pinnquad-lock-${lock}")
 if(NOT EXISTS "${stamp}")
-  file(COPY "${SOURCE}/package.json" "${SOURCE}/package-lock.json" DESTINATION "${folder}")
+  file(COPY "${SOURCE}/package.json" "${SOURCE}/package-lock.json" DESTINATION "${PACKAGES}")
   # --ignore-scripts: no package runs code of its own while it is installed
   execute_process(
     COMMAND "${NPM}" ci --ignore-scripts --no-audit --no-fund --no-update-notifier --loglevel=error --fetch-retries=1
-    WORKING_DIRECTORY "${folder}" RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output TIMEOUT 300)
+    WORKING_DIRECTORY "${PACKAGES}" RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output TIMEOUT 300)
   if(NOT code EQUAL 0)
     give_up("npm could not install the packages of the page to watch a flight" "${output}")
   endif()
@@ -30,7 +30,7 @@ if(NOT EXISTS "${stamp}")
 endif()
 
 execute_process(
-  COMMAND "${NODE}" "${SOURCE}/bundle.mjs" "${folder}" "${PAGE}"
+  COMMAND "${NODE}" "${SOURCE}/bundle.mjs" "${PACKAGES}" "${PAGE}"
   RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output TIMEOUT 120)
 if(NOT code EQUAL 0)
   give_up("the page to watch a flight could not be bundled" "${output}")
