@@ -136,13 +136,11 @@ block() {
   awk -v "document=$document" -v first=$(($1 + 1)) "${given[@]}" -f "$here/program.awk" "$parts/$1.code"
 }
 
-# compile <line> [<folder of stand-ins>]: alone, so that it needs no more than the includes that it shows, or that are
-# given; and run, with the folder's run.cpp.
+# compile <line>: alone, so that it needs no more than the includes that it shows, or that are given; and run.
 compile() {
   local program=$work/program_$1 what=(-o "$work/program_$1")
   block "$1" >"$program.cpp"
   grep -q '^int main(' "$program.cpp" || what=(-fsyntax-only)
-  [ $# -eq 1 ] || what+=(-I"$root/$2" "$root/$2/run.cpp")
   # inlined by force nothing runs faster at -O0, and takes up to twice the time to compile
   if ! "$cxx" -std=c++17 -O0 -DPINNQUAD_INLINE_AS_COMPILER_LIKES -Wall -Wextra -Werror -I"$root/include" -I"$root/examples" \
     -I"$root/examples/models" \
@@ -180,8 +178,6 @@ while IFS=$'\t' read -r line language action argument; do
       fault "$line" "differs from $argument:"
       cat "$work/difference"
     fi
-  elif [ "$action" = against ]; then
-    compile "$line" "$argument"
   elif [ "$action" = output ]; then
     if ! (cd "$tree" && bash -euo pipefail -c "$argument") >"$work/output" 2>"$work/$line.log" </dev/null; then
       fault "$line" "the command fails: $argument"

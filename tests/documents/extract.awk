@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 #
 # Takes a Markdown document apart, for check.sh. Writes into the folder `out`:
-#   blocks          one line per fenced block: line of the fence, language, run|skip|from|output|against, argument (tab-separated)
+#   blocks          one line per fenced block: line of the fence, language, run|skip|from|output, argument (tab-separated)
 #   <line>.code     the block; <line>.given what a hidden comment above it adds, its first line in <line>.given_line
 #   spans           inline code outside of blocks: line, text (tab-separated)
 # Hidden comments that stand right above a fence:
 #   <!-- not run: reason -->          skip
 #   <!-- from: examples/a.cpp -->     the block is that file without the comment at its head
-#   <!-- run against: folder -->      compiled with that folder of stand-ins, run with its run.cpp
 #   <!-- output of: command -->       every line that the command writes stands in the block
 #   <!-- given: text -->              what must stand around it; may have many lines. Code is put where it has the line
 #                                     "...", else after it
@@ -26,7 +25,7 @@ function end_of_directives(line) {
 function forget() { action = "run"; argument = ""; given = ""; given_line = 0; pending = 0 }
 
 function directive(line, text,   key) {
-  if (match(text, /^(not run|from|output of|run against|given):/) == 0) return
+  if (match(text, /^(not run|from|output of|given):/) == 0) return
   key = substr(text, 1, RLENGTH - 1)
   text = substr(text, RLENGTH + 1)
   sub(/^[ \t]+/, "", text)
@@ -38,7 +37,7 @@ function directive(line, text,   key) {
     given = text
     return
   }
-  action = key == "from" ? "from" : key == "output of" ? "output" : key == "run against" ? "against" : "skip"
+  action = key == "from" ? "from" : key == "output of" ? "output" : "skip"
   argument = text
 }
 

@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: MIT
+// See declarations.hpp.
+#include "declarations.hpp"
