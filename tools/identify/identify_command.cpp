@@ -4,7 +4,6 @@
 //   pinnquad identify --log flight.ulg --mapping px4 --mass 1.2 --out vehicle.toml
 #include "identify/identify_command.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -15,13 +14,10 @@
 #include <nlohmann/json.hpp>
 
 #include "airframe/choice.hpp"
-#include "airframe/toml_writer.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/progress_line.hpp"
-#include "identify/identified_numbers.hpp"
-#include "identify/identified_vehicle.hpp"
-#include "logs/vehicle_check.hpp"
+#include "identify/told_vehicle.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
 
@@ -37,20 +33,6 @@ struct IdentifyOptions {
   bool fit_curve = false;
   bool json = false;
 };
-
-/// The vehicle as far as it is said: the airframe that was given, or that of the mapping.
-programs::NamedAirframe like_of(const IdentifyOptions& options, const logs::ImportedDataset& dataset) {
-  programs::NamedAirframe like =
-      options.airframe.empty() ? programs::airframe_of(dataset) : programs::chosen_airframe(options.airframe);
-  if (options.mass_kg) like.value.mass_kg = *options.mass_kg;
-  if (options.arm_m) {
-    for (pinnquad::RotorMount<double>& rotor : like.value.rotors) {
-      rotor.x_m = std::copysign(*options.arm_m, rotor.x_m);
-      rotor.y_m = std::copysign(*options.arm_m, rotor.y_m);
-    }
-  }
-  return like;
-}
 
 logs::ImportedDataset read(const IdentifyOptions& options) {
   programs::JobLine progress;
@@ -73,44 +55,41 @@ logs::ImportedDataset read(const IdentifyOptions& options) {
   return logs::read_source(options.flights, settings);
 }
 
-pinnquad::IdentificationSettings settings_of(const IdentifyOptions& options, const pinnquad::Airframe<double>& like) {
-  pinnquad::IdentificationSettings settings;
-  settings.thrust_curve = like.rotors[0].thrust_curve;
-  settings.fit_thrust_curve = options.fit_curve;
-  if (options.curve) settings.thrust_curve = *options.curve;
-  return settings;
+programs::SaidOfVehicle said_by(const IdentifyOptions& options) {
+  programs::SaidOfVehicle said{{}, options.mass_kg, options.arm_m, options.curve, options.fit_curve, "--mass", "--arm"};
+  if (!options.airframe.empty()) said.airframe = programs::chosen_airframe(options.airframe);
+  return said;
 }
 
-void print_json(const pinnquad::Identification& found, const std::vector<programs::IdentifiedNumber>& numbers,
-                const std::vector<std::string>& assumed, const logs::ImportedDataset& dataset, const std::string& out) {
+void print_json(const programs::ToldVehicle& vehicle, const logs::ImportedDataset& dataset, const std::string& out) {
   const nlohmann::json all = {{"format", 1},
-                              {"duration_s", found.duration_s},
-                              {"blocks", found.blocks},
+                              {"duration_s", vehicle.found.duration_s},
+                              {"blocks", vehicle.found.blocks},
                               {"flights", dataset.flights.size()},
                               {"lag_removed_s", dataset.lag_removed_s},
-                              {"numbers", programs::numbers_json(numbers)},
-                              {"assumed", assumed},
+                              {"numbers", programs::numbers_json(vehicle.numbers)},
+                              {"assumed", vehicle.assumed},
                               {"warnings", dataset.warnings},
                               {"airframe", out.empty() ? nlohmann::json() : nlohmann::json(out)}};
   std::printf("%s\n", all.dump(2).c_str());
 }
 
-void print_table(const pinnquad::Identification& found, const std::vector<programs::IdentifiedNumber>& numbers,
-                 const std::vector<std::string>& assumed, const logs::ImportedDataset& dataset) {
+void print_table(const programs::ToldVehicle& vehicle, const logs::ImportedDataset& dataset) {
   for (const std::string& warning : dataset.warnings) std::printf("warning: %s\n", warning.c_str());
-  std::printf("%zu flights, %.1f s of them, in %zu blocks\n", dataset.flights.size(), found.duration_s, found.blocks);
+  std::printf("%zu flights, %.1f s of them, in %zu blocks\n", dataset.flights.size(), vehicle.found.duration_s,
+              vehicle.found.blocks);
   std::printf("%-38s %10s  %-22s %-8s %s\n", "number", "value", "95 % interval", "unit", "excitation");
-  for (const programs::IdentifiedNumber& number : numbers) {
+  for (const programs::IdentifiedNumber& number : vehicle.numbers) {
     std::printf("%-38s %10.4g  %-22s %-8s %s\n", number.words.c_str(), number.estimate.value,
                 programs::interval_text(number.estimate).c_str(), number.unit.c_str(),
                 programs::excitation_words(number));
   }
-  for (const programs::IdentifiedNumber& number : numbers) {
+  for (const programs::IdentifiedNumber& number : vehicle.numbers) {
     if (programs::is_told(number)) continue;
     std::printf("not told: %s (%s); fly: %s\n", number.words.c_str(), number.moved.c_str(), number.flight.c_str());
   }
   std::printf("ratios alone are of the flights; not of them:\n");
-  for (const std::string& one : assumed) std::printf("  %s\n", one.c_str());
+  for (const std::string& one : vehicle.assumed) std::printf("  %s\n", one.c_str());
 }
 
 int run(const IdentifyOptions& options) {
@@ -124,37 +103,20 @@ int run(const IdentifyOptions& options) {
     throw std::invalid_argument("--out " + options.out + ": a name that ends in .toml was expected");
   }
   logs::ImportedDataset dataset = read(options);
-  const programs::NamedAirframe like = like_of(options, dataset);
-  const programs::IdentifiedVehicle vehicle =
-      programs::identified_vehicle(dataset, like.value, settings_of(options, like.value));
-  if (options.logs.empty()) logs::check_vehicle(dataset, like.value, false);
-  logs::require_one_vehicle(dataset);
-  const pinnquad::Identification& found = vehicle.found;
-  const std::vector<programs::IdentifiedNumber> numbers = programs::identified_numbers(found);
+  const programs::ToldVehicle vehicle = programs::told_vehicle(dataset, said_by(options), !options.logs.empty());
   if (!vehicle.airframe) {
-    std::string why = dataset.sources.front() + ": " + vehicle.why_not;
-    for (const std::string& warning : dataset.warnings) {
-      if (warning.find(": columns u1 to u4: ") != std::string::npos) why += "; " + warning;
-    }
-    programs::complain("identify", why);
+    programs::complain("identify", vehicle.why_not);
     return programs::exit_failed;
   }
-  const std::vector<std::string> assumed =
-      programs::assumptions(like, *vehicle.airframe, options.mass_kg ? "--mass" : "", options.arm_m ? "--arm" : "");
   if (!options.out.empty()) {
     pinnquad::AtomicFile file(options.out);
-    for (const std::string& one : assumed) file.stream() << "# not of the flights: " << one << "\n";
-    for (const programs::IdentifiedNumber& number : numbers) {
-      file.stream() << "# " << number.words << " " << pinnquad::number_text(number.estimate.value) << " " << number.unit
-                    << ", 95 % " << programs::interval_text(number.estimate) << "\n";
-    }
-    file.stream() << programs::airframe_toml({options.name, vehicle.airframe->value});
+    file.stream() << programs::vehicle_toml(vehicle, options.name);
     file.commit();
   }
   if (options.json) {
-    print_json(found, numbers, assumed, dataset, options.out);
+    print_json(vehicle, dataset, options.out);
   } else {
-    print_table(found, numbers, assumed, dataset);
+    print_table(vehicle, dataset);
     if (!options.out.empty()) std::printf("wrote %s\n", options.out.c_str());
   }
   return 0;

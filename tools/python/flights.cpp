@@ -108,13 +108,15 @@ std::shared_ptr<Flight> read_flight(const std::filesystem::path& path) {
 }
 
 std::shared_ptr<ImportedDataset> read(const std::vector<std::filesystem::path>& paths, const std::string& mapping,
-                                      const std::string& airframe, const std::optional<double>& lag_s) {
+                                      const std::string& airframe, const std::optional<double>& lag_s,
+                                      bool keep_saturated) {
   std::vector<std::string> texts;
   for (const std::filesystem::path& path : paths) texts.push_back(path.string());
   pinnquad::logs::LogSettings settings;
   settings.mapping = mapping;
   settings.airframe = airframe;
   settings.lag_s = lag_s;
+  settings.keep_saturated = keep_saturated;
   SignalWatch watch;
   settings.on_progress = [&watch](const std::string&, double) { watch.look(); };
   const py::gil_scoped_release without_gil;
@@ -223,10 +225,13 @@ void bind_flights(py::module_& module) {
              return own;
            }),
            py::arg("flights"), "Of flights, which are copied.")
-      .def_static("read", &read, py::arg("paths"), py::kw_only(), py::arg("mapping") = "", py::arg("airframe") = "",
-                  py::arg("lag_s") = py::none(),
-                  "Flights as CSV, a dataset that `pinnquad import` wrote, or logs (ULog, CSV, Crazyflie), whose "
-                  "columns get their meaning from a mapping:\na name (px4, betaflight, crazyflie ...) or a TOML file.")
+      .def_static(
+          "read", &read, py::arg("paths"), py::kw_only(), py::arg("mapping") = "", py::arg("airframe") = "",
+          py::arg("lag_s") = py::none(), py::arg("keep_saturated") = false,
+          "Flights as CSV, a dataset that `pinnquad import` wrote, or logs (ULog, CSV, Crazyflie), whose "
+          "columns get their meaning from a mapping:\na name (px4, betaflight, crazyflie ...) or a TOML file. Of logs: "
+          "`lag_s`, from command to motion, is removed (None: estimated),\nand rows with a command at its limit "
+          "are left out unless `keep_saturated`.")
       .def(
           "save",
           [](const ImportedDataset& self, const std::filesystem::path& path) {

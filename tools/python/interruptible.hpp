@@ -17,7 +17,7 @@ namespace python {
 /// KeyboardInterrupt when `work` is back. One at a time: RuntimeError where another thread's is at work.
 inline void run_interruptible(const std::function<void()>& work) {
   static bool busy = false;
-  if (busy) throw std::runtime_error("another thread trains or certifies: one at a time");
+  if (busy) throw std::runtime_error("another thread trains, identifies or certifies: one at a time");
   const Busy mine(busy);
   std::exception_ptr failure;
   std::atomic<bool> done{false};

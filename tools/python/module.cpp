@@ -112,4 +112,5 @@ PYBIND11_MODULE(_core, module) {
   python::bind_vehicles(module);
   python::bind_models(module);
   python::bind_training(module);
+  python::bind_identification(module);
 }

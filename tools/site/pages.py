@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Pages of the site before and after mkdocs. Called by scripts/heavy/site.
 
-    pages.py point_inside PAGES   links to files and folders that are no pages become code font
+    pages.py point_inside PAGES   links to files and folders that are no pages become code font; notebooks are pages
     pages.py check HTML           each link of the site that stays in it leads to a page, and to a place of it
 
 Exit code: 0; 1 with page: message for each fault.
@@ -24,6 +24,8 @@ def point_inside(pages):
             place = target.split("#")[0]
             if "://" in target or not place or (folder / place).is_file():
                 return match[0]
+            if place.endswith(".ipynb") and (folder / place).with_suffix(".md").is_file():
+                return f"[{text}]({place[:-6]}.md)"
             path = (folder / place).resolve().relative_to(pages.resolve())
             if (pages / path / "README.md").is_file():
                 return f"[{text}]({place.rstrip('/')}/README.md)"

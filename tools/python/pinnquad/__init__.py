@@ -3,12 +3,12 @@
 
 Rotors: front right, rear left, front left, rear right; a command is 0 to 1. docs/python.md shows the whole way.
 """
-from ._core import (Airframe, Dataset, Error, Flight, FlightEnded, Model, Rotor, Simulator, Spin, Status, Training,
-                    Vehicles, __version__, airframe_names, certify, evaluate, ground_effects, train)
+from ._core import (Airframe, Dataset, Error, Flight, FlightEnded, Identification, Model, Rotor, Simulator, Spin, Status,
+                    Training, Vehicles, __version__, airframe_names, certify, evaluate, ground_effects, identify, train)
 from .effects import Effects
 from .environment import HoverEnv, VectorHoverEnv
 from .flights import fly
 
-__all__ = ["Airframe", "Dataset", "Effects", "Error", "Flight", "FlightEnded", "HoverEnv", "Model", "Rotor",
-           "Simulator", "Spin", "Status", "Training", "VectorHoverEnv", "Vehicles", "airframe_names", "certify",
-           "evaluate", "fly", "ground_effects", "train"]
+__all__ = ["Airframe", "Dataset", "Effects", "Error", "Flight", "FlightEnded", "HoverEnv", "Identification", "Model",
+           "Rotor", "Simulator", "Spin", "Status", "Training", "VectorHoverEnv", "Vehicles", "airframe_names", "certify",
+           "evaluate", "fly", "ground_effects", "identify", "train"]

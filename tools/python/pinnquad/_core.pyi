@@ -2,7 +2,7 @@
 """Types of the compiled module. Units stand in the names; World NED, body FRD."""
 import enum
 import os
-from typing import Any, Iterator, Sequence, Union
+from typing import Any, Iterator, Literal, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -143,7 +143,12 @@ class Dataset:
     def __init__(self, flights: Flights) -> None: ...
     @staticmethod
     def read(
-        paths: Sequence[Path], *, mapping: str = "", airframe: str = "", lag_s: float | None = None
+        paths: Sequence[Path],
+        *,
+        mapping: str = "",
+        airframe: str = "",
+        lag_s: float | None = None,
+        keep_saturated: bool = False,
     ) -> Dataset: ...
     def save(self, path: Path) -> None: ...
     @property
@@ -279,5 +284,28 @@ def train(
     lag_s: float | None = None,
     threads: int = 0,
 ) -> Training: ...
+
+class Identification:
+    @property
+    def numbers(self) -> dict[str, dict[str, Any]]: ...
+    @property
+    def airframe(self) -> Airframe: ...
+    @property
+    def assumed(self) -> list[str]: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def duration_s(self) -> float: ...
+    def save(self, path: Path) -> None: ...
+
+def identify(
+    flights: Flights,
+    airframe: AirframeLike | None = None,
+    *,
+    mass_kg: float | None = None,
+    arm_m: float | None = None,
+    thrust_curve: float | Literal["fit"] | None = None,
+    name: str = "identified",
+) -> Identification: ...
 def evaluate(model: Model, flights: Flights, rows: str = "all") -> dict[str, Any]: ...
 def certify(model: Model, seconds: float = 5.0, seed: int = 1) -> dict[str, Any]: ...
