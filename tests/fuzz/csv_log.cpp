@@ -2,10 +2,6 @@
 // libFuzzer target over the reader of logs that are CSV tables: whatever the bytes, there is a topic whose columns are
 // as long as its clock, or one line that says what is wrong; what was read, written down and read again is the same.
 // Build and run: scripts/heavy/fuzz.
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -13,6 +9,7 @@
 #include <vector>
 
 #include "fuzz/fuzzing.hpp"
+#include "fuzz/memory_file.hpp"
 #include "logs/csv_log.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/file_error.hpp"
@@ -21,28 +18,9 @@ namespace {
 
 using pinnquad::logs::LogTopic;
 using pinnquad_test::expect;
+using pinnquad_test::MemoryFile;
 
 pinnquad_test::Tally tally;
-
-/// A file that never touches a disk.
-class MemoryFile {
- public:
-  explicit MemoryFile(const std::string& content) : file_(memfd_create("log", 0)) {
-    expect(file_ >= 0, "memory for a file");
-    for (std::size_t done = 0; done < content.size();) {
-      const ssize_t count = write(file_, content.data() + done, content.size() - done);
-      expect(count > 0, "memory for a file");
-      done += static_cast<std::size_t>(count);
-    }
-  }
-  ~MemoryFile() { close(file_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
-
- private:
-  int file_;
-};
 
 bool same(double a, double b) { return (std::isnan(a) && std::isnan(b)) || std::memcmp(&a, &b, sizeof a) == 0; }
 
@@ -107,9 +85,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(topic);
     ++tally.count[topic.size() > 0 ? "ok" : "no row"];
   } catch (const pinnquad::InputError& error) {
-    const std::string what = error.what();
-    expect(std::all_of(what.begin(), what.end(), [](char c) { return static_cast<unsigned char>(c) >= ' '; }),
-           "a refusal is one line");
+    pinnquad_test::expect_one_line(error.what());
     ++tally.count["refused"];
   }
   return 0;

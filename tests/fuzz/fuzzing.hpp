@@ -2,6 +2,7 @@
 // Common to all fuzzers: a rule whose breach stops it, and how often its inputs were accepted.
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -14,6 +15,12 @@ inline void expect(bool holds, const char* rule) {
   if (holds) return;
   std::fprintf(stderr, "broken: %s\n", rule);
   std::abort();
+}
+
+/// A refusal or a warning is one line that a terminal can show.
+inline void expect_one_line(const std::string& what) {
+  expect(std::all_of(what.begin(), what.end(), [](char c) { return static_cast<unsigned char>(c) >= ' '; }),
+         "what is told is one line");
 }
 
 /// How often the inputs came to what, told at the end: a fuzzer whose inputs are all refused tests little.

@@ -2,7 +2,6 @@
 // libFuzzer target over mappings of flight logs: whatever the bytes, there is a mapping or one line that says what is
 // wrong; and what a mapping makes of a small table and of a log of topics are rows of finite numbers, or one line.
 // Build and run: scripts/heavy/fuzz.
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -75,10 +74,6 @@ void use(const pinnquad::logs::Mapping& mapping) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto one_line = [](const std::string& what) {
-    expect(std::all_of(what.begin(), what.end(), [](char c) { return static_cast<unsigned char>(c) >= ' '; }),
-           "a refusal is one line");
-  };
   try {
     const pinnquad::logs::Mapping mapping =
         pinnquad::logs::parse_mapping(std::string(reinterpret_cast<const char*>(data), size), "mapping.toml");
@@ -86,7 +81,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     use(mapping);
     ++tally.count["used"];
   } catch (const pinnquad::InputError& error) {
-    one_line(error.what());
+    pinnquad_test::expect_one_line(error.what());
     ++tally.count["refused"];
   }
   return 0;

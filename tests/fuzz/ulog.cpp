@@ -22,10 +22,6 @@ using pinnquad_test::expect;
 
 pinnquad_test::Tally tally;
 
-bool one_line(const std::string& text) {
-  return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= ' '; });
-}
-
 void check(const FlightLog& log, std::size_t size) {
   for (const LogTopic& topic : log.topics) {
     const std::size_t rows = topic.size();
@@ -37,7 +33,7 @@ void check(const FlightLog& log, std::size_t size) {
     for (const auto& text : topic.texts) expect(text.values.size() == rows, "texts are as long as the clock");
     expect(topic.column("timestamp") != nullptr, "a topic has its clock");
   }
-  for (const std::string& warning : log.warnings) expect(one_line(warning), "a warning is one line");
+  for (const std::string& warning : log.warnings) pinnquad_test::expect_one_line(warning);
   expect(log.warnings.size() <= 22, "warnings are few");
 }
 
@@ -117,7 +113,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!log.topics.empty()) check_selection(log, bytes);
     ++tally.count[log.topics.empty() ? "no row" : log.warnings.empty() ? "ok" : "with a warning"];
   } catch (const pinnquad::InputError& error) {
-    expect(one_line(error.what()), "a refusal is one line");
+    pinnquad_test::expect_one_line(error.what());
     ++tally.count["refused"];
   }
   return 0;
