@@ -72,7 +72,7 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null && [ -
   dpkg-deb -x "$tree"/pinnquad_*.deb "$work/installed"
   mv -- "$work/installed" "$work/moved"
   for here in "$tree" "$work/moved/usr"; do
-    said=$(watch "$here/bin/pinnquad") && grep -q "the stand-in" "$work/flight.html" || { echo "$here: no page: $said"; exit 1; }
+    if ! said=$(watch "$here/bin/pinnquad") || ! grep -q "the stand-in" "$work/flight.html"; then echo "$here: no page: $said"; exit 1; fi
   done
   echo "the page of the program: found in the build tree and in the unpacked package"
 else
