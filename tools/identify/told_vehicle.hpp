@@ -17,7 +17,7 @@
 
 namespace programs {
 
-/// What is said of the vehicle beside its flights.
+/// The caller's word on the vehicle, beside its flights.
 struct SaidOfVehicle {
   std::optional<NamedAirframe> airframe;  ///< mass, arms, motor order and propeller; none: those of the mapping
   std::optional<double> mass_kg, arm_m;   ///< in place of the airframe's; of each rotor along x and y
