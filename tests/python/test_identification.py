@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The vehicle that flew, from Python: the program's numbers and file, an airframe that flies and trains, refusals."""
 import json
+import lzma
 import signal
 import threading
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 import pinnquad
+from conftest import SOURCE
 from pinnquad import Airframe, Dataset, Flight
 
 
@@ -101,7 +103,7 @@ def test_what_is_no_flight():
 
 
 def test_ctrl_c_ends_it(flown):
-    flights = [flown] * 1 + [pinnquad.fly("d1", airframe="px4_sih", seed=seed, rows=6000) for seed in (5, 6, 7)]
+    flights = [flown] + [pinnquad.fly("d1", airframe="px4_sih", seed=seed, rows=6000) for seed in (5, 6, 7)]
     main = threading.main_thread().ident
     threading.Timer(0.02, signal.pthread_kill, (main, signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
@@ -113,3 +115,15 @@ def test_nothing_is_half_written(flown, tmp_path):
     with pytest.raises(OSError):
         found.save(tmp_path / "absent/vehicle.toml")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_log_as_the_program_reads_it(program, tmp_path):
+    packed = SOURCE.parent / "shared/reference/sih/train_excite.ulg.xz"
+    if not packed.exists():
+        pytest.skip(f"no {packed}")
+    log = tmp_path / "train_excite.ulg"
+    log.write_bytes(lzma.open(packed).read())
+    theirs = json.loads(program("identify", "--log", log, "--mapping", "px4", "--mass", 1.2, "--json"))
+    rows = Dataset.read([log], mapping="px4", lag_s=0, keep_saturated=True)
+    ours = pinnquad.identify(rows, mass_kg=1.2)
+    assert (ours.numbers, ours.warnings) == (theirs["numbers"], theirs["warnings"])
