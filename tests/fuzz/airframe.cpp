@@ -7,6 +7,7 @@
 
 #include "airframe/toml_writer.hpp"
 #include "fuzz/fuzzing.hpp"
+#include "fuzz/line_mutator.hpp"
 #include "fuzz/memory_file.hpp"
 #include "pinnquad/io/file_error.hpp"
 
@@ -16,8 +17,14 @@ using pinnquad_test::expect;
 using pinnquad_test::MemoryFile;
 
 pinnquad_test::Tally tally;
+pinnquad_test::LineMutator lines;
 
 }  // namespace
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed) {
+  return lines(data, size, max_size, seed);
+}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const MemoryFile file(std::string(reinterpret_cast<const char*>(data), size));
@@ -30,6 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   ++tally.count["ok"];
+  lines.accepted(data, size);
   expect(check_airframe(airframe.value) == pinnquad::Status::ok, "an airframe that was read is sound");
   const MemoryFile again(programs::airframe_toml(airframe));
   const programs::NamedAirframe read = programs::read_airframe_file(again.path());

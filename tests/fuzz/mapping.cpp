@@ -8,6 +8,7 @@
 #include <string>
 
 #include "fuzz/fuzzing.hpp"
+#include "fuzz/line_mutator.hpp"
 #include "logs/derived_motion.hpp"
 #include "logs/log_parts.hpp"
 #include "logs/mapping.hpp"
@@ -19,6 +20,7 @@ namespace {
 using pinnquad_test::expect;
 
 pinnquad_test::Tally tally;
+pinnquad_test::LineMutator lines;
 
 /// Columns of a topic by which any of its quantities could be told, some with cells that are no number.
 pinnquad::logs::LogTopic topic(const std::string& name, std::size_t rows, double period_s) {
@@ -73,11 +75,17 @@ void use(const pinnquad::logs::Mapping& mapping) {
 
 }  // namespace
 
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed) {
+  return lines(data, size, max_size, seed);
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     const pinnquad::logs::Mapping mapping =
         pinnquad::logs::parse_mapping(std::string(reinterpret_cast<const char*>(data), size), "mapping.toml");
     ++tally.count["ok"];
+    lines.accepted(data, size);
     use(mapping);
     ++tally.count["used"];
   } catch (const pinnquad::InputError& error) {
