@@ -17,6 +17,7 @@
 #include "convert/onnx_file.hpp"
 #include "convert/safetensors.hpp"
 #include "fuzz/fuzzing.hpp"
+#include "fuzz/line_mutator.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/exported/run_time_model.hpp"
 #include "pinnquad/io/file_error.hpp"
@@ -26,6 +27,7 @@ namespace {
 using pinnquad_test::expect;
 
 pinnquad_test::Tally tally;
+pinnquad_test::LineMutator features_lines;
 
 /// As many features as the network reads: a few of the motion, columns behind them.
 programs::ForeignMeaning meaning_of(std::size_t inputs) {
@@ -81,6 +83,13 @@ void use(const programs::ForeignNetwork& network) {
 
 }  // namespace
 
+/// Features files by lines, all others by bytes.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed) {
+  if (size < 2 || data[0] != 'F') return LLVMFuzzerMutate(data, size, max_size);
+  return 1 + features_lines(data + 1, size - 1, max_size - 1, seed);
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
@@ -93,6 +102,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } else {
       static_cast<void>(programs::parse_features(bytes, "features.toml"));
       ++tally.count["features"];
+      features_lines.accepted(data + 1, size - 1);
     }
   } catch (const std::exception& error) {
     const std::string what = error.what();
