@@ -18,8 +18,8 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace pinnquad_test {
 
-/// Drops, repeats or swaps lines, gives one the value of another or another number; or leaves it to libFuzzer. Every other
-/// time it begins with a text that was accepted, for most that a fuzzer keeps are refused.
+/// Drops, repeats or swaps lines, gives one the value of another or another number; or leaves it to libFuzzer. Every
+/// other time it begins with a text that was accepted, for most that a fuzzer keeps are refused.
 class LineMutator {
  public:
   void accepted(const std::uint8_t* data, std::size_t size) {
