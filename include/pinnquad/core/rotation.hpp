@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/select.hpp"
 #include "pinnquad/core/types.hpp"
 
 namespace pinnquad {
@@ -62,7 +63,7 @@ inline constexpr Scalar unit_quaternion_tolerance = Scalar(1e-3);
 
 /// False for NaN.
 template <class Scalar>
-constexpr bool is_unit(const Quaternion<Scalar>& q) noexcept {
+constexpr Mask<Scalar> is_unit(const Quaternion<Scalar>& q) noexcept {
   const Scalar excess = squared_norm(q) - Scalar(1);
   return excess <= unit_quaternion_tolerance<Scalar> && -excess <= unit_quaternion_tolerance<Scalar>;
 }
