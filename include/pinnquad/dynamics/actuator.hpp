@@ -153,18 +153,36 @@ constexpr ThrustFractions<Scalar> lagged(const ThrustFractions<Scalar>& filtered
   return result;
 }
 
-/// The time constant of each rotor's way from `before` to the fraction wanted: thrust approaches what is held from one
-/// side, so that a rotor rises or falls all the step long.
+/// Of two values of each rotor the one for its way from `before` to the fraction wanted: thrust approaches what is held
+/// from one side, so that a rotor rises or falls all the step long.
+template <class Scalar>
+constexpr std::array<Scalar, rotor_count> by_direction(const ThrustFractions<Scalar>& before,
+                                                       const ThrustFractions<Scalar>& wanted,
+                                                       const std::array<Scalar, rotor_count>& rising,
+                                                       const std::array<Scalar, rotor_count>& falling) noexcept {
+  std::array<Scalar, rotor_count> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    result[i] = select(clip_command(wanted[i]) >= before[i], rising[i], falling[i]);
+  }
+  return result;
+}
+
+/// Each rotor's time constant of growing thrust, and of falling thrust.
+template <class Scalar>
+constexpr std::array<Scalar, rotor_count> rise_time_constants_s(const Airframe<Scalar>& a) noexcept {
+  return {a.rise_time_constant_s(0), a.rise_time_constant_s(1), a.rise_time_constant_s(2), a.rise_time_constant_s(3)};
+}
+template <class Scalar>
+constexpr std::array<Scalar, rotor_count> fall_time_constants_s(const Airframe<Scalar>& a) noexcept {
+  return {a.fall_time_constant_s(0), a.fall_time_constant_s(1), a.fall_time_constant_s(2), a.fall_time_constant_s(3)};
+}
+
+/// The time constant of each rotor's way from `before` to the fraction wanted.
 template <class Scalar>
 constexpr std::array<Scalar, rotor_count> time_constants_s(const Airframe<Scalar>& airframe,
                                                            const ThrustFractions<Scalar>& before,
                                                            const ThrustFractions<Scalar>& wanted) noexcept {
-  std::array<Scalar, rotor_count> result{};
-  for (std::size_t i = 0; i < rotor_count; ++i) {
-    result[i] = select(clip_command(wanted[i]) >= before[i], airframe.rise_time_constant_s(i),
-                       airframe.fall_time_constant_s(i));
-  }
-  return result;
+  return by_direction(before, wanted, rise_time_constants_s(airframe), fall_time_constants_s(airframe));
 }
 
 /// The fractions at the start of a step: a rotor without lag has those of the end at once. One time constant for all

@@ -167,22 +167,44 @@ class Quadrotor {
     return result;
   }
 
+  /// The length of a step, and what the rotors' lag leaves over half of it: worked out once where steps are alike.
+  struct TimeStep {
+    Scalar step_s;
+    std::array<Scalar, rotor_count> rise_factor, fall_factor;  ///< of a plain airframe the first is every rotor's
+  };
+  TimeStep time_step(Scalar step_s) const noexcept {
+    TimeStep result{step_s, {}, {}};
+    const Scalar half_s = step_s / Scalar(2);
+    if (all_of(plain_)) {
+      result.rise_factor[0] = lag_factor(airframe_.rise_time_constant_s(0), half_s);
+    } else {
+      result.rise_factor = lag_factor(rise_time_constants_s(airframe_), half_s);
+      result.fall_factor = lag_factor(fall_time_constants_s(airframe_), half_s);
+    }
+    return result;
+  }
+
   /// Advances by one RK4 step under commands held over the step; the rotor lag is integrated exactly. Errors: status();
   /// `not_finite` for a bad input; `out_of_range` for a step backwards, more than half a turn of the body in one step,
   /// a clock so late that the step doesn't move it, air that has no answer (Surroundings) or a battery that is less
   /// than empty; `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is untouched unless the
   /// Status is ok.
-  Outcome<Scalar> step(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s) const noexcept {
-    const Outcome<Scalar> input = check_input(state, commands, step_s);
+  Outcome<Scalar> step(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
+                       const TimeStep& step) const noexcept {
+    const Outcome<Scalar> input = check_input(state, commands, step.step_s);
     if (!any_of(input == Status::ok)) return input;
-    if (all_of(plain_)) return advance<true>(state, commands, step_s, input);
-    if (!any_of(plain_)) return advance<false>(state, commands, step_s, input);
+    if (all_of(plain_)) return advance<true>(state, commands, step, input);
+    if (!any_of(plain_)) return advance<false>(state, commands, step, input);
     // lanes of both kinds: each by the build of its own
     const Outcome<Scalar> of_plain =
-        advance<true>(state, commands, step_s, detail::refused_where(!plain_, Status::invalid_airframe, input));
+        advance<true>(state, commands, step, detail::refused_where(!plain_, Status::invalid_airframe, input));
     const Outcome<Scalar> of_others =
-        advance<false>(state, commands, step_s, detail::refused_where(plain_, Status::invalid_airframe, input));
+        advance<false>(state, commands, step, detail::refused_where(plain_, Status::invalid_airframe, input));
     return select(plain_, of_plain, of_others);
+  }
+  /// The same for a step of this length.
+  Outcome<Scalar> step(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s) const noexcept {
+    return step(state, commands, time_step(step_s));
   }
 
   /// Thrust and torque of the rotors over those in the standard atmosphere with a full battery: rho / rho_0 times the
@@ -205,12 +227,12 @@ class Quadrotor {
 
   /// A step where the input is good.
   template <bool plain>
-  PINNQUAD_FLATTEN Outcome<Scalar> advance(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s,
-                                           const Outcome<Scalar>& input) const noexcept {
+  PINNQUAD_FLATTEN Outcome<Scalar> advance(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
+                                           const TimeStep& step, const Outcome<Scalar>& input) const noexcept {
+    const Scalar step_s = step.step_s;
     const ThrustFractions<Scalar> before = rotors_.template fractions<plain>(state.rotors);
     const ThrustFractions<Scalar> wanted = rotors_.template fractions<plain>(commands);
-    const auto time_constant_s = lag_of<plain>(before, wanted);
-    const auto half_factor = lag_factor(time_constant_s, step_s / Scalar(2));
+    const auto [time_constant_s, half_factor] = lag_of<plain>(before, wanted, step);
     const ThrustFractions<Scalar> middle = lagged(before, wanted, half_factor);
     const ThrustFractions<Scalar> end = lagged(middle, wanted, half_factor);
     const ThrustFractions<Scalar> start = at_start(before, end, time_constant_s);
@@ -232,14 +254,16 @@ class Quadrotor {
     return status;
   }
 
-  /// One time constant for all, or each rotor's own.
+  /// Time constant and factor over half a step: one for all, or each rotor's own.
   template <bool plain>
-  auto lag_of(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& wanted) const noexcept {
+  auto lag_of(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& wanted,
+              const TimeStep& step) const noexcept {
     if constexpr (plain) {
       static_cast<void>(before), static_cast<void>(wanted);
-      return airframe_.rise_time_constant_s(0);
+      return std::pair(airframe_.rise_time_constant_s(0), step.rise_factor[0]);
     } else {
-      return time_constants_s(airframe_, before, wanted);
+      return std::pair(time_constants_s(airframe_, before, wanted),
+                       by_direction(before, wanted, step.rise_factor, step.fall_factor));
     }
   }
 
@@ -282,6 +306,8 @@ class Quadrotor {
     Vector3<Scalar> to_world(Scalar x, Scalar y, Scalar z) const noexcept {
       return Vector3<Scalar>(xx * x + xy * y + xz * z, yx * x + yy * y + yz * z, zx * x + zy * y + zz * z);
     }
+    /// Of a vector along the body's z axis.
+    Vector3<Scalar> to_world(Scalar z) const noexcept { return Vector3<Scalar>(xz * z, yz * z, zz * z); }
     Vector3<Scalar> to_body(Scalar x, Scalar y, Scalar z) const noexcept {
       return Vector3<Scalar>(xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z);
     }
@@ -352,9 +378,13 @@ class Quadrotor {
     const Wrench<Scalar> wrench = total(e);
     detail::StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
-    d.acceleration_m_s2 = Axes(state.attitude)
-                              .to_world(wrench.force_N[0] * inverse_mass_, wrench.force_N[1] * inverse_mass_,
-                                        wrench.force_N[2] * inverse_mass_);
+    const Axes axes(state.attitude);
+    if constexpr (plain && !(makes_wrench<Effects> || ...)) {
+      d.acceleration_m_s2 = axes.to_world(wrench.force_N[2] * inverse_mass_);
+    } else {
+      d.acceleration_m_s2 = axes.to_world(wrench.force_N[0] * inverse_mass_, wrench.force_N[1] * inverse_mass_,
+                                          wrench.force_N[2] * inverse_mass_);
+    }
     d.acceleration_m_s2[2] += site_.gravity_m_s2;
     d.attitude_rate = attitude_rate(state.attitude, state.body_rates_rad_s);
     d.angular_acceleration_rad_s2 = angular_acceleration<plain>(airframe_, state.body_rates_rad_s, wrench.torque_N_m);
