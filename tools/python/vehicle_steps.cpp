@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compiled once per instruction set, with its table's name as PINNQUAD_STEPS. Nothing here may be emitted that another
-// object could take: templates are on Lanes, which are named by the instruction set, and the rest is in this file alone.
+// Compiled once per instruction set, with its table's name as PINNQUAD_STEPS. It may emit nothing that another object
+// could take: templates are on Lanes, which are named by the instruction set, and the rest is in this file alone.
 #include "python/vehicle_steps.hpp"
 
 #include <cstring>

@@ -37,7 +37,7 @@ class VehicleSteps {
   virtual std::size_t lanes() const noexcept = 0;
 };
 
-/// What an object compiled for an instruction set has.
+/// The table of an object compiled for an instruction set.
 struct CompiledSteps {
   const char* instruction_set;
   std::unique_ptr<VehicleSteps> (*of)(const pinnquad::Airframe<double>& airframe, const pinnquad::Site<double>& site,

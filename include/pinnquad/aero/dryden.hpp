@@ -64,7 +64,8 @@ class DrydenTurbulence {
   template <class Scalar>
   void surroundings(Surroundings<Scalar>& air) const noexcept {
     using Real = Wide<Scalar>;
-    const Real x(air.position_m[0]), y(air.position_m[1]), north(direction_[0]), east(direction_[1]);
+    const Real x = Real(air.position_m[0]), y = Real(air.position_m[1]);
+    const Real north(direction_[0]), east(direction_[1]);
     const Real along_m = north * x + east * y - Real(mean_wind_m_s_) * Real(air.time_s);
     const Real u = gust(0, along_m), v = gust(1, along_m), w = gust(2, along_m);
     air.wind_m_s[0] += Scalar(north * u - east * v);

@@ -11,8 +11,10 @@
 // Optional:
 //   static constexpr VariesWith varies_with    less than place_and_time lets an inverse go without them
 //   auto bound(const Airframe<Scalar>&)        the effect that a vehicle keeps in its place, of the airframe
-//   Status status(const Airframe<Scalar>&)     (or Outcome<Scalar>, of each lane) whether its values make sense and its model holds for the airframe: a
-//                                              vehicle whose effect is not ok neither steps nor inverts
+//   Status status(const Airframe<Scalar>&)     whether its values make sense and its model holds for the airframe: a
+//                                              vehicle whose effect is not ok neither steps nor inverts. An
+//                                              Outcome<Scalar> where lanes (core/lanes.hpp) can differ in it
+// For vehicles in lanes a comparison of scalars is a mask: an effect chooses by select() (core/select.hpp).
 #pragma once
 
 #include <algorithm>

@@ -345,18 +345,3 @@ namespace std {
 template <class Scalar, int Count>
 struct numeric_limits<pinnquad::Lanes<Scalar, Count>> : numeric_limits<Scalar> {};
 }  // namespace std
-
-namespace Eigen {
-template <class Scalar, int Count>
-struct NumTraits<pinnquad::Lanes<Scalar, Count>> : GenericNumTraits<pinnquad::Lanes<Scalar, Count>> {
-  enum {
-    IsInteger = 0,
-    IsSigned = 1,
-    IsComplex = 0,
-    RequireInitialization = 0,
-    ReadCost = 1,
-    AddCost = 1,
-    MulCost = 1
-  };
-};
-}  // namespace Eigen

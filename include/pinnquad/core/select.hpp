@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A choice written once for one scalar and for the lanes of several (core/lanes.hpp): a comparison of scalars is a
-// bool, one of lanes a mask, and select() chooses by either. A branch asks any_of() or all_of() whether a lane takes it.
+// bool, one of lanes a mask, and select() chooses by either. A branch asks any_of() or all_of() whether it is taken.
 #pragma once
 
 #include <type_traits>
@@ -10,7 +10,7 @@
 
 namespace pinnquad {
 
-/// What a scalar type compares to, keeps time in and is refused with; lanes have a value of each per lane.
+/// Types that go with a scalar: its comparisons, time, refusals. Those of lanes have a value per lane.
 template <class Scalar>
 struct LaneTypes {
   using Mask = bool;

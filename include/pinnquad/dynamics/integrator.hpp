@@ -36,8 +36,8 @@ Value simpson(const Value& a, const Value& b, const Value& c, const Value& d) no
   return Value((a + b + b + c + c + d) / Scalar(6));
 }
 
-/// Classical RK4. `rate(state, offset_s)` returns the StateDerivative at a time `offset_s` after the step's start. It is
-/// called four times: at the start, twice in the middle, at the end.
+/// Classical RK4. `rate(state, offset_s)` returns the StateDerivative at a time `offset_s` after the step's start: it
+/// is called at the start, twice in the middle, and at the end.
 template <class Scalar, class Rate>
 State<Scalar> rk4_step(const State<Scalar>& state, Scalar step_s, const Rate& rate) noexcept {
   const Scalar half = step_s / Scalar(2);

@@ -13,25 +13,9 @@
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
+#include "pinnquad/vehicle/site.hpp"
 
 namespace pinnquad {
-
-/// The place of a flight on earth.
-template <class Scalar>
-struct Site {
-  Scalar elevation_m{0};  ///< of the NED origin above sea level
-  Scalar ground_z_m{0};   ///< NED z of the vehicle's centre where the rotors' height above ground counts as zero
-  Scalar gravity_m_s2{standard_gravity_m_s2<Scalar>};
-};
-
-/// The site of the paper's simulator: home at 122 m, ground 0.877 m below the origin.
-template <class Scalar>
-constexpr Site<Scalar> paper_site() noexcept {
-  Site<Scalar> site{};
-  site.elevation_m = Scalar(122);
-  site.ground_z_m = Scalar(0.877);
-  return site;
-}
 
 /// Everything that step() advances.
 template <class Scalar>
