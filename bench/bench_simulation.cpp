@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// One 1 kHz step of the simulated vehicle, beside the naive prediction that other programs compare with.
+// One 1 kHz step of the simulated vehicle, alone and as one of a thousand in lanes, beside the naive prediction that
+// other programs compare with.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <random>
+#include <vector>
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
@@ -13,7 +16,7 @@
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/harder_quadrotor.hpp"
-#include "pinnquad/vehicle/quadrotor.hpp"
+#include "pinnquad/vehicle/lanes_of_vehicles.hpp"
 #include "support/naive_eigen_network.hpp"
 #include "support/program.hpp"
 
@@ -43,10 +46,11 @@ void steps_of(benchmark::State& state, const Quadrotor<Scalar, Effects...>& quad
   const VehicleState<Scalar> start = low_and_moving<Scalar>();
   VehicleState<Scalar> vehicle = start;
   Commands<Scalar> commands = {Scalar(0.52), Scalar(0.50), Scalar(0.51), Scalar(0.49)};
+  const auto step = quadrotor.time_step(Scalar(0.001));
   int steps = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(commands.data());
-    if (quadrotor.step(vehicle, commands, Scalar(0.001)) != Status::ok) {
+    if (quadrotor.step(vehicle, commands, step) != Status::ok) {
       state.SkipWithError("the vehicle's state diverged");
       break;
     }
@@ -63,6 +67,42 @@ template <class Scalar, class... Effects>
 void simulation_step(benchmark::State& state) {
   steps_of(state,
            Quadrotor<Scalar, Effects...>(airframe_value<PaperQuadrotor, Scalar>(), paper_site<Scalar>(), Effects{}...));
+}
+
+/// The same of a thousand vehicles, each lane with an airframe of its own; the time is that of one vehicle.
+template <class Scalar, class... Effects>
+void lanes_step(benchmark::State& state) {
+  using Wide = Lanes<Scalar, native_lanes<Scalar>>;
+  constexpr int vehicles = 1000, steps_per_flight = 100;
+  std::mt19937_64 engine(1);
+  auto airframes = in_every_lane<Wide>(airframe_value<PaperQuadrotor, Scalar>());
+  VehicleState<Wide> start;
+  for (int lane = 0; lane < Wide::count; ++lane) {
+    airframes.mass_kg.set_lane(lane, airframes.mass_kg.lane(lane) * Scalar(uniform(engine, 0.9, 1.1)));
+    set_lane(start, lane, low_and_moving<Scalar>());
+  }
+  const Site<Scalar> site = paper_site<Scalar>();
+  const Site<Wide> same_site{Wide(site.elevation_m), Wide(site.ground_z_m), Wide(site.gravity_m_s2)};
+  const Quadrotor<Wide, Effects...> quadrotors(airframes, same_site, Effects{}...);
+  const auto step = quadrotors.time_step(Wide(Scalar(0.001)));
+  Commands<Wide> commands = {Wide(0.52), Wide(0.50), Wide(0.51), Wide(0.49)};
+  std::vector<VehicleState<Wide>> fleet((vehicles + Wide::count - 1) / Wide::count, start);
+  std::size_t pack = 0;
+  int steps = 0;
+  while (state.KeepRunningBatch(Wide::count)) {
+    benchmark::DoNotOptimize(commands.data());
+    if (any_of(quadrotors.step(fleet[pack], commands, step) != Status::ok)) {
+      state.SkipWithError("a vehicle's state diverged");
+      break;
+    }
+    benchmark::ClobberMemory();
+    if (++pack < fleet.size()) continue;
+    pack = 0;
+    if (++steps == steps_per_flight) {
+      std::fill(fleet.begin(), fleet.end(), start);
+      steps = 0;
+    }
+  }
 }
 
 void harder_step(benchmark::State& state) {
@@ -86,5 +126,12 @@ int main(int argc, char** argv) {
       "SimulationStep/rotor_air",
       simulation_step<double, StandardAtmosphere, QuadraticDrag, RotorDrag, Inflow, BladeFlapping, Wake>);
   benchmark::RegisterBenchmark("SimulationStep/harder", harder_step);
+  benchmark::RegisterBenchmark("SimulationStep/lanes_bare", lanes_step<double>);
+  benchmark::RegisterBenchmark("SimulationStep/lanes_bare_float", lanes_step<float>);
+  benchmark::RegisterBenchmark(
+      "SimulationStep/lanes_full",
+      lanes_step<double, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
+  benchmark::RegisterBenchmark("SimulationStep/lanes_full_float",
+                               lanes_step<float, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
   return run_benchmarks(argc, argv);
 }

@@ -58,3 +58,4 @@
 #include "pinnquad/training/trainer.hpp"
 #include "pinnquad/training/training_data.hpp"
 #include "pinnquad/training/wrench_fit.hpp"
+#include "pinnquad/vehicle/lanes_of_vehicles.hpp"

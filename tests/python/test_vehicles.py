@@ -10,20 +10,38 @@ import pinnquad
 from pinnquad import Effects, HoverEnv, Simulator, Status, VectorHoverEnv, Vehicles
 
 
-def test_they_fly_as_the_simulator_does():
-    effects = Effects(wind_m_s=(3, 1, 0), wake=True)
-    alone = Simulator(pilot="hover", effects=effects)
-    many = Vehicles(3, effects=effects)
+@pytest.mark.parametrize("effects", [
+    Effects(), Effects(wind_m_s=(3, 1, 0), wake=True), Effects(wind_m_s=(3, 1, 0), gust_m_s=(0, 2, 0)),
+    Effects(ground_effect="conyers"), Effects(ground_effect="cheeseman_bennett")])
+def test_they_fly_as_the_simulator_does(effects):
+    """To the bit, in lanes or one by one; eleven leave lanes over."""
+    start_m = (0, 0, 0)
+    alone = [Simulator(pilot="hover", effects=effects, start_m=start_m) for _ in range(11)]
+    many = Vehicles(11, effects=effects)
+    many.reset(position_m=start_m)
     random = np.random.default_rng(1)
     for _ in range(50):
-        commands = alone.hover_commands() + random.uniform(-0.02, 0.02, 4)
-        alone.step(commands, 0.01)
-        many.step(np.tile(commands, (3, 1)), 0.01)
-    state = alone.state
-    for i in range(3):
-        np.testing.assert_array_equal(many.position_m[i], state["position_m"])
-        np.testing.assert_array_equal(many.attitude[i], state["attitude"])
-        np.testing.assert_array_equal(many.rotor_commands[i], state["rotor_commands"])
+        commands = many.hover_commands(start_m) + random.uniform(-0.02, 0.03, (11, 4))
+        for one, its in zip(alone, commands):
+            one.step(its, 0.01)
+        assert (many.step(commands, 0.01) == 0).all()
+        many.time_s[:] = alone[0].time_s  # a simulator's clock is set at its rows
+    for i, one in enumerate(alone):
+        np.testing.assert_array_equal(many.position_m[i], one.state["position_m"])
+        np.testing.assert_array_equal(many.velocity_m_s[i], one.state["velocity_m_s"])
+        np.testing.assert_array_equal(many.attitude[i], one.state["attitude"])
+        np.testing.assert_array_equal(many.body_rates_rad_s[i], one.state["body_rates_rad_s"])
+        np.testing.assert_array_equal(many.rotor_commands[i], one.state["rotor_commands"])
+
+
+def test_what_is_refused_on_the_way_stays_there():
+    vehicles = Vehicles(9)
+    vehicles.position_m[4, 2] = -10_878 + 0.01  # just below where the atmosphere ends
+    vehicles.velocity_m_s[4, 2] = -5
+    commands = np.tile(vehicles.hover_commands(), (9, 1))
+    statuses = vehicles.step(commands, 0.5)
+    assert Status(statuses[4]) == Status.out_of_range and (np.delete(statuses, 4) == 0).all()
+    assert 0 < vehicles.time_s[4] < 0.01 and vehicles.time_s[5] == pytest.approx(0.5)
 
 
 def test_each_has_commands_and_a_place_of_its_own():

@@ -24,6 +24,7 @@
 #include "pinnquad/aero/wake.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/simulation/switchable_quadrotor.hpp"
+#include "python/vehicle_steps.hpp"
 
 namespace python {
 
@@ -117,6 +118,13 @@ class SwitchedQuadrotor {
   const pinnquad::Airframe<double>& airframe() const noexcept { return airframe_; }
   const pinnquad::Site<double>& site() const noexcept { return site_; }
   const Effects& effects() const noexcept { return effects_; }
+  /// Null where it has other effects than the vehicle of the paper's flights.
+  const PaperEffects* paper_effects() const noexcept {
+    const Plain* const plain = std::get_if<Plain>(&chosen_);
+    return plain == nullptr ? nullptr : &plain->effects();
+  }
+  /// Of that vehicle.
+  pinnquad::GroundEffectModel ground_effect() const noexcept { return std::get<Plain>(chosen_).ground_effect(); }
 
   template <class Function>
   decltype(auto) visit(Function&& function) const {

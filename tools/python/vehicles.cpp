@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "pinnquad/control/feed_forward.hpp"
+#include "pinnquad/core/processor.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 #include "python/effects.hpp"
+#include "python/vehicle_steps.hpp"
 
 namespace python {
 
@@ -18,9 +21,23 @@ namespace {
 using namespace pinnquad;
 using OneState = VehicleState<double>;
 
-constexpr std::size_t state_numbers = 18;
 static_assert(sizeof(OneState) == state_numbers * sizeof(double),
               "pinnquad: vehicles are shown to Python as rows of 18 numbers");
+
+#if defined(PINNQUAD_STEPS_IN_LANES)
+/// The fastest that runs here, or null.
+const CompiledSteps* steps_in_lanes() {
+  static const CompiledSteps* const chosen = []() -> const CompiledSteps* {
+    for (const CompiledSteps* candidate : {&steps_avx512, &steps_avx2}) {
+      if (runs_on_this_processor(candidate->instruction_set)) return candidate;
+    }
+    return nullptr;
+  }();
+  return chosen;
+}
+#else
+const CompiledSteps* steps_in_lanes() { return nullptr; }
+#endif
 
 /// Parts of a state.
 constexpr std::array<RowPart, 7> parts = {
@@ -40,6 +57,10 @@ class Vehicles {
         physics_step_s_(checked("physics_step_s", physics_step_s, 1e-6)),
         vehicle_(vehicle_of(airframe, effects_of(effects))),
         states_(count) {
+    if (steps_in_lanes() != nullptr && vehicle_.paper_effects() != nullptr) {
+      lanes_ = steps_in_lanes()->of(vehicle_.airframe(), vehicle_.site(), *vehicle_.paper_effects(),
+                                    vehicle_.ground_effect(), physics_step_s_);
+    }
     reset(py::none(), triple(FlightPlan{}.start_m));
   }
 
@@ -98,7 +119,11 @@ class Vehicles {
       const Busy busy(busy_);
       const py::gil_scoped_release without_gil;
       SignalWatch watch;
-      with_quadrotor(vehicle_, [&](const auto& quadrotor) { run(quadrotor, u, steps, said, watch); });
+      if (lanes_) {
+        run_in_lanes(u, steps, said, watch);
+      } else {
+        with_quadrotor(vehicle_, [&](const auto& quadrotor) { run(quadrotor, u, steps, said, watch); });
+      }
     }
     return statuses;
   }
@@ -125,15 +150,31 @@ class Vehicles {
   /// A vehicle whose step is refused stays as it was before that step.
   template <class Quadrotor>
   void run(const Quadrotor& quadrotor, const double* u, double steps, std::uint8_t* said, SignalWatch& watch) {
+    const auto step = quadrotor.time_step(physics_step_s_);
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const Commands<double> commands = {u[4 * i], u[4 * i + 1], u[4 * i + 2], u[4 * i + 3]};
       Status status = Status::ok;
       for (double done = 0; done < steps && status == Status::ok; ++done) {
-        status = quadrotor.step(states_[i], commands, physics_step_s_);
+        status = quadrotor.step(states_[i], commands, step);
         if (std::fmod(done, 64) == 63) watch.look();
       }
       said[i] = static_cast<std::uint8_t>(status);
       if (i % 64 == 63) watch.look();
+    }
+  }
+
+  /// The same, many at a time.
+  void run_in_lanes(const double* u, double steps, std::uint8_t* said, SignalWatch& watch) {
+    constexpr double steps_per_look = 64;
+    const std::size_t vehicles_per_look = 8 * lanes_->lanes();
+    auto* const states = reinterpret_cast<double*>(states_.data());
+    if (steps < 1) std::fill_n(said, size(), static_cast<std::uint8_t>(Status::ok));
+    for (std::size_t first = 0; first < size(); first += vehicles_per_look) {
+      for (double left = steps; left > 0; left -= steps_per_look) {
+        lanes_->step(states, u, first, std::min(first + vehicles_per_look, size()),
+                     static_cast<std::uint64_t>(std::min(left, steps_per_look)), said);
+        watch.look();
+      }
     }
   }
 
@@ -146,10 +187,13 @@ class Vehicles {
   double physics_step_s_;
   SwitchedQuadrotor vehicle_;
   std::vector<OneState> states_;
+  std::unique_ptr<VehicleSteps> lanes_;  ///< null where effects or processor are not those of lanes
   bool busy_ = false;
 };
 
 }  // namespace
+
+VehicleSteps::~VehicleSteps() = default;
 
 void bind_vehicles(py::module_& module) {
   py::class_<Vehicles> vehicles(module, "Vehicles",

@@ -41,7 +41,7 @@ constexpr Scalar polynomial(const std::array<double, 16>& c, Scalar x) noexcept 
 
 /// False for NaN.
 template <class Scalar>
-PINNQUAD_ALWAYS_INLINE constexpr bool in_troposphere(Scalar altitude_m) noexcept {
+PINNQUAD_ALWAYS_INLINE constexpr Mask<Scalar> in_troposphere(Scalar altitude_m) noexcept {
   return altitude_m >= Scalar(lowest_m) && altitude_m <= Scalar(tropopause_m);
 }
 
@@ -58,10 +58,10 @@ PINNQUAD_ALWAYS_INLINE constexpr Scalar troposphere_density_kg_m3(Scalar altitud
 /// (287.053 T), by its power series in h. Source: US Standard Atmosphere 1976 as the paper's simulator evaluates it.
 template <class Scalar>
 Scalar standard_atmosphere_density_kg_m3(Scalar altitude_m) noexcept {
-  constexpr Scalar lowest(detail::lowest_m), highest(detail::tropopause_m);
-  constexpr Scalar most = detail::troposphere_density_kg_m3(lowest), least = detail::troposphere_density_kg_m3(highest);
+  const Scalar lowest(detail::lowest_m), highest(detail::tropopause_m);
+  const Scalar most = detail::troposphere_density_kg_m3(lowest), least = detail::troposphere_density_kg_m3(highest);
   const Scalar density = detail::troposphere_density_kg_m3(altitude_m);
-  return altitude_m < lowest ? most : (altitude_m > highest ? least : density);
+  return select(altitude_m < lowest, most, select(altitude_m > highest, least, density));
 }
 
 /// Sets the density of the surroundings from their altitude; `out_of_range` outside the standard's troposphere.
@@ -71,9 +71,10 @@ struct StandardAtmosphere {
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
     air.air_density_kg_m3 = detail::troposphere_density_kg_m3(air.altitude_m);
-    if (!detail::in_troposphere(air.altitude_m)) {  // a branch, which no one waits for
-      air.air_density_kg_m3 = standard_atmosphere_density_kg_m3(air.altitude_m);
-      air.status = Status::out_of_range;
+    const Mask<Scalar> within = detail::in_troposphere(air.altitude_m);
+    if (!all_of(within)) {  // a branch, which no one waits for
+      air.air_density_kg_m3 = select(within, air.air_density_kg_m3, standard_atmosphere_density_kg_m3(air.altitude_m));
+      air.status = select(within, air.status, Outcome<Scalar>(Status::out_of_range));
     }
   }
 };

@@ -18,7 +18,7 @@ struct BatterySag {
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
     const Scalar share = air.time_s * Scalar(1 / endurance_s);
-    const Scalar used = share < Scalar(0) ? Scalar(0) : (share > Scalar(1) ? Scalar(1) : share);
+    const Scalar used = select(share < Scalar(0), Scalar(0), select(share > Scalar(1), Scalar(1), share));
     const Scalar voltage = Scalar(1) - used * Scalar((full_V - empty_V) / full_V);
     air.thrust_scale *= voltage * voltage;
   }

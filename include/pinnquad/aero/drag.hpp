@@ -17,11 +17,11 @@ struct QuadraticDrag {
     Wrench<Scalar> result;
     for (int i = 0; i < 3; ++i) {
       const Scalar v = condition.air_relative_velocity_m_s[i];
-      const Scalar speed = v < Scalar(0) ? -v : v;
+      const Scalar speed = select(v < Scalar(0), Scalar(-v), v);
       const Scalar k = airframe.drag_area_m2[static_cast<std::size_t>(i)];
       // chosen, not branched: near the deadband a branch would be guessed wrong
       const Scalar drag = -(k * condition.air_density_kg_m3) * (speed * v);
-      result.force_N[i] = speed <= airframe.drag_deadband_m_s ? Scalar(0) : drag;
+      result.force_N[i] = select(speed <= airframe.drag_deadband_m_s, Scalar(0), drag);
     }
     return result;
   }
@@ -72,15 +72,16 @@ struct RotorDrag {
     for (std::size_t i = 0; i < rotor_count; ++i) {
       const RotorMount<Scalar>& hub = airframe.rotors[i];
       const Scalar thrust = condition.rotor_thrust_N[i];
-      if (!is_upright(hub) || !detail::equal(hub.z_m, Scalar(0))) {
-        add_anywhere(hub, v, rates, k * thrust, result);
-        continue;
+      const Mask<Scalar> plain = is_upright(hub) && detail::equal(hub.z_m, Scalar(0));
+      const Wrench<Scalar> before = result;
+      if (any_of(plain)) {
+        const Scalar force_x = -k * thrust * (v[0] - rates[2] * hub.y_m);
+        const Scalar force_y = -k * thrust * (v[1] + rates[2] * hub.x_m);
+        result.force_N[0] += force_x;
+        result.force_N[1] += force_y;
+        result.torque_N_m[2] += hub.x_m * force_y - hub.y_m * force_x;
       }
-      const Scalar force_x = -k * thrust * (v[0] - rates[2] * hub.y_m);
-      const Scalar force_y = -k * thrust * (v[1] + rates[2] * hub.x_m);
-      result.force_N[0] += force_x;
-      result.force_N[1] += force_y;
-      result.torque_N_m[2] += hub.x_m * force_y - hub.y_m * force_x;
+      if (!all_of(plain)) result = select(plain, result, with_any(hub, v, rates, k * thrust, before));
     }
     return result;
   }
@@ -94,14 +95,15 @@ struct RotorDrag {
  private:
   /// One tilted rotor, or one above or below the centre of gravity.
   template <class Scalar>
-  static PINNQUAD_NOINLINE void add_anywhere(const RotorMount<Scalar>& hub, const Vector3<Scalar>& v,
-                                             const Vector3<Scalar>& rates, Scalar drag_N_s_m,
-                                             Wrench<Scalar>& sum) noexcept {
+  static PINNQUAD_NOINLINE Wrench<Scalar> with_any(const RotorMount<Scalar>& hub, const Vector3<Scalar>& v,
+                                                   const Vector3<Scalar>& rates, Scalar drag_N_s_m,
+                                                   Wrench<Scalar> sum) noexcept {
     const Vector3<Scalar> arm(hub.x_m, hub.y_m, hub.z_m), axis = to_vector(hub.axis);
     const Vector3<Scalar> moving = v + cross<Scalar>(rates, arm);
-    const Vector3<Scalar> force = (axis * axis.dot(moving) - moving) * drag_N_s_m;
+    const Vector3<Scalar> force = (axis * dot(axis, moving) - moving) * drag_N_s_m;
     sum.force_N += force;
     sum.torque_N_m += cross<Scalar>(arm, force);
+    return sum;
   }
 };
 

@@ -7,6 +7,7 @@
 
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/core/random.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 
 namespace pinnquad {
 
@@ -62,11 +63,13 @@ class DrydenTurbulence {
 
   template <class Scalar>
   void surroundings(Surroundings<Scalar>& air) const noexcept {
-    const double x = static_cast<double>(air.position_m[0]), y = static_cast<double>(air.position_m[1]);
-    const double along_m = direction_[0] * x + direction_[1] * y - mean_wind_m_s_ * static_cast<double>(air.time_s);
-    const double u = gust(0, along_m), v = gust(1, along_m), w = gust(2, along_m);
-    air.wind_m_s[0] += Scalar(direction_[0] * u - direction_[1] * v);
-    air.wind_m_s[1] += Scalar(direction_[1] * u + direction_[0] * v);
+    using Real = Wide<Scalar>;
+    const Real x = Real(air.position_m[0]), y = Real(air.position_m[1]);
+    const Real north(direction_[0]), east(direction_[1]);
+    const Real along_m = north * x + east * y - Real(mean_wind_m_s_) * Real(air.time_s);
+    const Real u = gust(0, along_m), v = gust(1, along_m), w = gust(2, along_m);
+    air.wind_m_s[0] += Scalar(north * u - east * v);
+    air.wind_m_s[1] += Scalar(east * u + north * v);
     air.wind_m_s[2] += Scalar(w);
   }
 
@@ -78,11 +81,13 @@ class DrydenTurbulence {
   }
 
   /// One component at a distance along the field, m/s: 0 along the wind, 1 across (to its right), 2 down.
-  double gust(std::size_t axis, double along_m) const noexcept {
-    double sum = 0;
-    for (std::size_t i = 0; i < waves; ++i)
-      sum += std::cos(wave_number_rad_m_[axis][i] * along_m + phase_rad_[axis][i]);
-    return amplitude_m_s_[axis] * sum;
+  template <class Real>
+  Real gust(std::size_t axis, Real along_m) const noexcept {
+    Real sum(0);
+    for (std::size_t i = 0; i < waves; ++i) {
+      sum += detail::cosine(Real(wave_number_rad_m_[axis][i]) * along_m + Real(phase_rad_[axis][i]));
+    }
+    return Real(amplitude_m_s_[axis]) * sum;
   }
 
  private:

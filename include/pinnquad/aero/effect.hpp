@@ -12,7 +12,9 @@
 //   static constexpr VariesWith varies_with    less than place_and_time lets an inverse go without them
 //   auto bound(const Airframe<Scalar>&)        the effect that a vehicle keeps in its place, of the airframe
 //   Status status(const Airframe<Scalar>&)     whether its values make sense and its model holds for the airframe: a
-//                                              vehicle whose effect is not ok neither steps nor inverts
+//                                              vehicle whose effect is not ok neither steps nor inverts. An
+//                                              Outcome<Scalar> where lanes (core/lanes.hpp) can differ in it
+// For vehicles in lanes a comparison of scalars is a mask: an effect chooses by select() (core/select.hpp).
 #pragma once
 
 #include <algorithm>
@@ -21,6 +23,7 @@
 #include <utility>
 
 #include "pinnquad/core/detected.hpp"
+#include "pinnquad/core/select.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/dynamics/state.hpp"
@@ -42,7 +45,7 @@ struct Surroundings {
   Vector3<Scalar> wind_m_s = Vector3<Scalar>::Zero();    ///< NED, the air's velocity over ground
   Scalar air_density_kg_m3{standard_air_density_kg_m3<Scalar>};
   Scalar thrust_scale{1};  ///< of all rotors, above 0: below 1 what a sagging battery leaves of thrust and torque
-  Status status{Status::ok};
+  Outcome<Scalar> status{Status::ok};
 };
 
 namespace detail {
@@ -110,7 +113,10 @@ using WrenchOnCall = std::bool_constant<noexcept(
 template <class Effect, class Scalar>
 using BoundCall = std::bool_constant<noexcept(some<Effect>().bound(some<Airframe<Scalar>>()))>;
 template <class Effect, class Scalar>
-using StatusCall = std::enable_if_t<std::is_same_v<decltype(some<Effect>().status(some<Airframe<Scalar>>())), Status>,
+using StatusOf = decltype(some<Effect>().status(some<Airframe<Scalar>>()));
+template <class Effect, class Scalar>
+using StatusCall = std::enable_if_t<std::is_same_v<StatusOf<Effect, Scalar>, Status> ||
+                                        std::is_same_v<StatusOf<Effect, Scalar>, Outcome<Scalar>>,
                                     std::bool_constant<noexcept(some<Effect>().status(some<Airframe<Scalar>>()))>>;
 
 template <template <class...> class Call, class... Args>
@@ -210,7 +216,7 @@ using BoundEffect = decltype(bound_effect(std::declval<const Effect&>(), std::de
 
 /// Status of an effect for an airframe; ok for an effect that has no `status`.
 template <class Effect, class Scalar>
-constexpr Status effect_status(const Effect& effect, const Airframe<Scalar>& airframe) noexcept {
+constexpr Outcome<Scalar> effect_status(const Effect& effect, const Airframe<Scalar>& airframe) noexcept {
   if constexpr (is_detected<detail::StatusCall, Effect, Scalar>) {
     return effect.status(airframe);
   } else {

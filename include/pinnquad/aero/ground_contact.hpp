@@ -33,8 +33,11 @@ struct GroundContact {
     Wrench<Scalar> result;
     for (std::size_t i = 0; i < rotor_count; ++i) {
       const Vector3<Scalar> arm(airframe.rotors[i].x_m, airframe.rotors[i].y_m, Scalar(leg_length_m));
-      const Scalar depth_m = down.dot(arm) - condition.height_above_ground_m;
-      if (!(depth_m <= Scalar(0))) add_foot(condition, airframe, down, arm, depth_m, result);  // NaN goes through
+      const Scalar depth_m = dot(down, arm) - condition.height_above_ground_m;
+      const Mask<Scalar> touches = !(depth_m <= Scalar(0));  // NaN goes through
+      if (any_of(touches)) {
+        result = select(touches, with_foot(condition, airframe, down, arm, depth_m, result), result);
+      }
     }
     return result;
   }
@@ -50,22 +53,23 @@ struct GroundContact {
 
  private:
   template <class Scalar>
-  PINNQUAD_NOINLINE void add_foot(const AeroCondition<Scalar>& condition, const Airframe<Scalar>& airframe,
-                                  const Vector3<Scalar>& down, const Vector3<Scalar>& arm, Scalar depth_m,
-                                  Wrench<Scalar>& sum) const noexcept {
-    constexpr Scalar g = standard_gravity_m_s2<Scalar>, slowest_s = Scalar(0.005), four = Scalar(4);
+  PINNQUAD_NOINLINE Wrench<Scalar> with_foot(const AeroCondition<Scalar>& condition, const Airframe<Scalar>& airframe,
+                                             const Vector3<Scalar>& down, const Vector3<Scalar>& arm, Scalar depth_m,
+                                             Wrench<Scalar> sum) const noexcept {
+    const Scalar g = standard_gravity_m_s2<Scalar>, slowest_s = Scalar(0.005), four = Scalar(4);
     const Vector3<Scalar> v = condition.ground_velocity_m_s + cross<Scalar>(condition.body_rates_rad_s, arm);
-    const Scalar sinking = down.dot(v);
+    const Scalar sinking = dot(down, v);
     const Scalar stiffness_N_m = airframe.mass_kg * g / (four * Scalar(static_depth_m));
     const Scalar damping_s_m = Scalar(2 * damping_ratio) / detail::square_root(g * Scalar(static_depth_m));
     const Scalar normal_N = stiffness_N_m * depth_m * detail::positive_part(Scalar(1) + damping_s_m * sinking);
     const Vector3<Scalar> slip = v - down * sinking;
     const Scalar limit_N = Scalar(friction) * normal_N;
-    const Scalar speed = detail::square_root(slip.squaredNorm() + Scalar(slip_m_s * slip_m_s));
+    const Scalar speed = detail::square_root(dot(slip, slip) + Scalar(slip_m_s * slip_m_s));
     const Vector3<Scalar> force =
         down * -normal_N - slip * (limit_N / (speed + limit_N * (four * slowest_s / airframe.mass_kg)));
     sum.force_N += force;
     sum.torque_N_m += cross<Scalar>(arm, force);
+    return sum;
   }
 };
 

@@ -20,19 +20,26 @@ struct CheesemanBennett {
 
   template <class Scalar>
   Scalar thrust_ratio(Scalar height_over_radius, const Airframe<Scalar>&) const noexcept {
-    if (height_over_radius < Scalar(least_height)) return Scalar(most_ratio);
     const Scalar q = Scalar(0.25) / height_over_radius;
-    return Scalar(1) / (Scalar(1) - q * q);
+    return select(height_over_radius < Scalar(least_height), Scalar(most_ratio),
+                  Scalar(Scalar(1) / (Scalar(1) - q * q)));
   }
 };
 
 namespace detail {
 /// The root while compiling, where std::sqrt can't be called; from above, by Newton.
-constexpr double compiled_root(double value) noexcept {
-  if (!(value > 0)) return value;
-  double root = value > 1 ? value : 1;
-  for (double next = (root + value / root) / 2; next < root; next = (root + value / root) / 2) root = next;
-  return root;
+template <class Scalar>
+constexpr Scalar compiled_root(Scalar value) noexcept {
+  const Mask<Scalar> positive = value > Scalar(0);
+  if (!any_of(positive)) return value;
+  Scalar root = select(value > Scalar(1), value, Scalar(1));
+  for (bool falls = true; falls;) {
+    const Scalar next = (root + value / root) / Scalar(2);
+    const Mask<Scalar> nearer = next < root;
+    root = select(nearer, next, root);
+    falls = any_of(positive && nearer);
+  }
+  return select(positive, root, value);
 }
 
 /// Length of the diagonals between motors, the mean of both, in whatever order the rotors come: of the three ways to
@@ -48,7 +55,7 @@ constexpr Scalar motor_diagonal_m(const Airframe<Scalar>& airframe, const Root& 
   for (std::size_t partner = 1; partner < rotor_count; ++partner) {
     const std::size_t third = partner == 1 ? 2 : 1;
     const Scalar sum = distance(0, partner) + distance(third, 6 - partner - third);
-    if (sum > both) both = sum;
+    both = select(sum > both, sum, both);
   }
   return both / Scalar(2);
 }
@@ -69,23 +76,23 @@ struct Conyers {
     std::array<Scalar, 3> denominator{};  ///< x^2, x, 1, behind x^3
 
     Scalar thrust_ratio(Scalar x, const Airframe<Scalar>&) const noexcept {
-      if (x < Scalar(0.25) || x > Scalar(10)) return Scalar(1);
-      return above(x) / below(x);
+      const Mask<Scalar> without = x < Scalar(0.25) || x > Scalar(10);
+      if (all_of(without)) return Scalar(1);
+      return select(without, Scalar(1), Scalar(above(x) / below(x)));
     }
 
     /// No pole in the range and no ratio out of its bounds. The polynomials bend slowly: between two points looked at,
     /// a denominator that touches zero is so small at both that the ratio there is out of bounds.
-    constexpr bool plausible() const noexcept {
+    constexpr Mask<Scalar> plausible() const noexcept {
       constexpr int intervals = 195;
+      Mask<Scalar> holds(true);
       for (int i = 0; i <= intervals; ++i) {
         const Scalar x = Scalar(0.25) + Scalar(9.75) * Scalar(i) / Scalar(intervals);
         const Scalar divisor = below(x);
-        if (!(divisor > Scalar(0) && above(x) >= Scalar(least_ratio) * divisor &&
-              above(x) <= Scalar(most_ratio) * divisor)) {
-          return false;
-        }
+        holds = holds && divisor > Scalar(0) && above(x) >= Scalar(least_ratio) * divisor &&
+                above(x) <= Scalar(most_ratio) * divisor;
       }
-      return true;
+      return holds;
     }
 
    private:
@@ -110,9 +117,9 @@ struct Conyers {
 
   /// A literal airframe's can be asked for when compiled.
   template <class Scalar>
-  constexpr Status status(const Airframe<Scalar>& airframe) const noexcept {
-    const auto root = [](Scalar square) { return Scalar(detail::compiled_root(double(square))); };
-    return curve(airframe, root).plausible() ? Status::ok : Status::out_of_range;
+  constexpr Outcome<Scalar> status(const Airframe<Scalar>& airframe) const noexcept {
+    const auto root = [](Scalar square) { return Scalar(detail::compiled_root(Wide<Scalar>(square))); };
+    return select(curve(airframe, root).plausible(), Status::ok, Status::out_of_range);
   }
 
   template <class Scalar>
@@ -152,16 +159,17 @@ struct GroundEffect {
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const RotorCondition<Scalar>& condition,
                                                const Airframe<Scalar>& airframe) const noexcept {
     const Scalar vertical = vertical_force(condition);
-    return lift(condition, airframe, vertical < Scalar(0) ? -vertical : vertical);
+    return lift(condition, airframe, select(vertical < Scalar(0), Scalar(-vertical), vertical));
   }
 
   /// F_z has the sign of -R_zz where thrust outweighs drag: there, on the upper branch, |F_z| grows with thrust.
   template <class Scalar>
   Wrench<Scalar> wrench_on(ThrustBranch branch, const RotorCondition<Scalar>& condition,
                            const Airframe<Scalar>& airframe) const noexcept {
-    const bool upright = world_down_axis(condition.attitude)[2] >= Scalar(0);
+    const Mask<Scalar> upright = world_down_axis(condition.attitude)[2] >= Scalar(0);
+    const Mask<Scalar> turned = branch == ThrustBranch::upper ? upright : !upright;
     const Scalar vertical = vertical_force(condition);
-    return lift(condition, airframe, upright == (branch == ThrustBranch::upper) ? -vertical : vertical);
+    return lift(condition, airframe, select(turned, Scalar(-vertical), vertical));
   }
 
   template <class Scalar>
@@ -170,7 +178,7 @@ struct GroundEffect {
   }
 
   template <class Scalar>
-  constexpr Status status(const Airframe<Scalar>& airframe) const noexcept {
+  constexpr Outcome<Scalar> status(const Airframe<Scalar>& airframe) const noexcept {
     return effect_status(ratio, airframe);
   }
 
@@ -211,20 +219,23 @@ struct RotorGroundEffect {
                                                const Airframe<Scalar>& airframe) const noexcept {
     const Scalar per_radius_1_m = Scalar(2) / airframe.propeller_diameter_m;
     const Vector3<Scalar> down = world_down_axis(condition.attitude);
-    const Scalar share = down[2] < Scalar(0) ? -down[2] : down[2];
+    const Scalar share = select(down[2] < Scalar(0), Scalar(-down[2]), Scalar(down[2]));
     Wrench<Scalar> result;
     for (std::size_t i = 0; i < rotor_count; ++i) {
       const RotorMount<Scalar>& hub = airframe.rotors[i];
-      if (!is_upright(hub) || !detail::equal(hub.z_m, Scalar(0))) {
-        add_anywhere(hub, condition, airframe, condition.rotor_thrust_N[i], result);
-        continue;
+      const Mask<Scalar> plain = is_upright(hub) && detail::equal(hub.z_m, Scalar(0));
+      const Wrench<Scalar> before = result;
+      if (any_of(plain)) {
+        const Scalar height_m = condition.height_above_ground_m - (down[0] * hub.x_m + down[1] * hub.y_m);
+        const Scalar r = ratio.thrust_ratio(height_m * per_radius_1_m, airframe);
+        const Scalar lift = (r - Scalar(1)) * share * condition.rotor_thrust_N[i];
+        result.force_N[2] -= lift;
+        result.torque_N_m[0] -= hub.y_m * lift;
+        result.torque_N_m[1] += hub.x_m * lift;
       }
-      const Scalar height_m = condition.height_above_ground_m - (down[0] * hub.x_m + down[1] * hub.y_m);
-      const Scalar r = ratio.thrust_ratio(height_m * per_radius_1_m, airframe);
-      const Scalar lift = (r - Scalar(1)) * share * condition.rotor_thrust_N[i];
-      result.force_N[2] -= lift;
-      result.torque_N_m[0] -= hub.y_m * lift;
-      result.torque_N_m[1] += hub.x_m * lift;
+      if (!all_of(plain)) {
+        result = select(plain, result, with_any(hub, condition, airframe, condition.rotor_thrust_N[i], before));
+      }
     }
     return result;
   }
@@ -235,23 +246,24 @@ struct RotorGroundEffect {
   }
 
   template <class Scalar>
-  constexpr Status status(const Airframe<Scalar>& airframe) const noexcept {
+  constexpr Outcome<Scalar> status(const Airframe<Scalar>& airframe) const noexcept {
     return effect_status(ratio, airframe);
   }
 
  private:
   /// One tilted rotor, or one above or below the centre of gravity.
   template <class Scalar>
-  void add_anywhere(const RotorMount<Scalar>& hub, const RotorCondition<Scalar>& condition,
-                    const Airframe<Scalar>& airframe, Scalar thrust_N, Wrench<Scalar>& sum) const noexcept {
+  Wrench<Scalar> with_any(const RotorMount<Scalar>& hub, const RotorCondition<Scalar>& condition,
+                          const Airframe<Scalar>& airframe, Scalar thrust_N, Wrench<Scalar> sum) const noexcept {
     const Vector3<Scalar> down = world_down_axis(condition.attitude);
     const Vector3<Scalar> arm(hub.x_m, hub.y_m, hub.z_m), axis = to_vector(hub.axis);
-    const Scalar upright = down.dot(axis), share = upright < Scalar(0) ? -upright : upright;
-    const Scalar height_m = condition.height_above_ground_m - down.dot(arm);
+    const Scalar upright = dot(down, axis), share = select(upright < Scalar(0), Scalar(-upright), upright);
+    const Scalar height_m = condition.height_above_ground_m - dot(down, arm);
     const Scalar r = ratio.thrust_ratio(height_m * (Scalar(2) / airframe.propeller_diameter_m), airframe);
     const Vector3<Scalar> force = axis * ((r - Scalar(1)) * share * thrust_N);
     sum.force_N += force;
     sum.torque_N_m += cross<Scalar>(arm, force);
+    return sum;
   }
 };
 

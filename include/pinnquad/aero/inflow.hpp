@@ -16,7 +16,7 @@ namespace detail {
 /// density, m/s (momentum theory: Leishman, Principles of Helicopter Aerodynamics, 2006, ch. 2).
 template <class Scalar>
 Scalar hover_induced_velocity_m_s(const Airframe<Scalar>& airframe) noexcept {
-  constexpr Scalar two_pi = Scalar(6.283185307179586);
+  const Scalar two_pi = Scalar(6.283185307179586);
   const Scalar weight_N = airframe.mass_kg * standard_gravity_m_s2<Scalar>;
   const Scalar d = airframe.propeller_diameter_m;
   return square_root(weight_N / (two_pi * rated_air_density_kg_m3<Scalar> * d * d));
@@ -133,19 +133,20 @@ struct Inflow {
    private:
     /// z up to `straight`, then bent towards `straight + span`, with a slope that has no step.
     static PINNQUAD_ALWAYS_INLINE Scalar held(Scalar z, Scalar without_thrust) noexcept {
-      const bool down = z < Scalar(0);
-      const Scalar straight = down ? Scalar(0.5) : Scalar(0.65) * without_thrust;
-      const Scalar span = down ? Scalar(0.5) : Scalar(0.2) * without_thrust;
-      const Scalar magnitude = down ? -z : z, beyond = magnitude - straight;
-      if (!(beyond > Scalar(0))) return z;  // NaN stays NaN
+      const Mask<Scalar> down = z < Scalar(0);
+      const Scalar straight = select(down, Scalar(0.5), Scalar(Scalar(0.65) * without_thrust));
+      const Scalar span = select(down, Scalar(0.5), Scalar(Scalar(0.2) * without_thrust));
+      const Scalar magnitude = select(down, Scalar(-z), z), beyond = magnitude - straight;
+      const Mask<Scalar> bends = beyond > Scalar(0);
+      if (!any_of(bends)) return z;  // NaN stays NaN
       const Scalar bent = straight + span * (beyond / (span + beyond));
-      return down ? -bent : bent;
+      return select(bends, select(down, Scalar(-bent), bent), z);
     }
   };
 
   template <class Scalar>
   Hover<Scalar> bound(const Airframe<Scalar>& airframe) const noexcept {
-    constexpr Scalar pi_cubed = Scalar(31.006276680299816);
+    const Scalar pi_cubed = Scalar(31.006276680299816);
     Hover<Scalar> hover;
     hover.induced_velocity_m_s = detail::hover_induced_velocity_m_s(airframe);
     hover.inflow_ratio = detail::square_root(Scalar(2) * airframe.thrust_coefficient / pi_cubed);

@@ -18,11 +18,13 @@ struct Payload {
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const RotorCondition<Scalar>& condition,
                                                const Airframe<Scalar>& airframe) const noexcept {
+    const Wrench<Scalar> none;
+    const Mask<Scalar> taken = !(condition.time_s < Scalar(from_s));
+    if (!any_of(taken)) return none;
     Wrench<Scalar> result;
-    if (condition.time_s < Scalar(from_s)) return result;
     const Scalar share = Scalar(mass_kg) / (airframe.mass_kg + Scalar(mass_kg));
     result.force_N = (condition.rotors.force_N + condition.aerodynamic.force_N) * -share;
-    return result;
+    return select(taken, result, none);
   }
 
   /// `out_of_range` for a mass that is negative or no number, or such a time.

@@ -19,14 +19,16 @@ struct RotorFault {
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> wrench(const RotorCondition<Scalar>& condition,
                                                const Airframe<Scalar>& airframe) const noexcept {
+    const Wrench<Scalar> none;
+    const Mask<Scalar> weak = !(condition.time_s < Scalar(from_s));
+    if (!any_of(weak)) return none;
     Wrench<Scalar> result;
-    if (condition.time_s < Scalar(from_s)) return result;
     const RotorMount<Scalar>& hub = airframe.rotors[rotor % rotor_count];
     const Scalar along_N = Scalar(share - 1) * condition.rotor_thrust_N[rotor % rotor_count];
     const Scalar torque_over_thrust_m = airframe.max_rotor_torque_N_m() / airframe.max_rotor_thrust_N();
     result.force_N = to_vector(hub.axis) * along_N;
     result.torque_N_m = to_vector(detail::rotor_torque_N_m(hub, along_N, torque_over_thrust_m * along_N));
-    return result;
+    return select(weak, result, none);
   }
 
   /// `out_of_range` for a rotor that is not there, a share outside 0 to 1, or a time that is no number.

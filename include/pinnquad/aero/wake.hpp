@@ -34,7 +34,7 @@ struct Wake {
     /// depth B g_i for a velocity in the body's x-y plane, m/s.
     PINNQUAD_ALWAYS_INLINE std::array<Scalar, rotor_count> lost_shares(
         Scalar forward_m_s, Scalar right_m_s, const Airframe<Scalar>& airframe) const noexcept {
-      constexpr Scalar slow = Scalar(1e-6);  // s^2 below which there is no direction
+      const Scalar slow = Scalar(1e-6);  // s^2 below which there is no direction
       const Scalar x = forward_m_s / peak_speed_m_s, y = right_m_s / peak_speed_m_s, s2 = x * x + y * y;
       const Scalar bell = Scalar(4) * depth * s2 / ((Scalar(1) + s2) * (Scalar(1) + s2));
       const Scalar per_length = Scalar(1) / detail::square_root(s2 + slow);

@@ -10,6 +10,7 @@
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/instruction_set.hpp"
+#include "pinnquad/core/select.hpp"
 
 namespace pinnquad {
 
@@ -50,15 +51,15 @@ constexpr bool is_finite_constant(Scalar value) noexcept {
 
 /// True if `count` values from `first` are all finite. No early return: the time does not depend on the data.
 template <class Scalar>
-PINNQUAD_ALWAYS_INLINE bool all_finite(const Scalar* first, int count) noexcept {
-  bool finite = true;
+PINNQUAD_ALWAYS_INLINE Mask<Scalar> all_finite(const Scalar* first, int count) noexcept {
+  Mask<Scalar> finite(true);
   for (int i = 0; i < count; ++i) finite &= is_finite(first[i]);
   return finite;
 }
 
 /// The same for anything contiguous with data() and size(): std::array, Eigen matrices.
 template <class Container>
-PINNQUAD_ALWAYS_INLINE bool all_finite(const Container& values) noexcept {
+PINNQUAD_ALWAYS_INLINE auto all_finite(const Container& values) noexcept {
   return all_finite(values.data(), static_cast<int>(values.size()));
 }
 

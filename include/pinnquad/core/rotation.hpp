@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pinnquad/core/attributes.hpp"
+#include "pinnquad/core/select.hpp"
 #include "pinnquad/core/types.hpp"
 
 namespace pinnquad {
@@ -62,7 +63,7 @@ inline constexpr Scalar unit_quaternion_tolerance = Scalar(1e-3);
 
 /// False for NaN.
 template <class Scalar>
-constexpr bool is_unit(const Quaternion<Scalar>& q) noexcept {
+constexpr Mask<Scalar> is_unit(const Quaternion<Scalar>& q) noexcept {
   const Scalar excess = squared_norm(q) - Scalar(1);
   return excess <= unit_quaternion_tolerance<Scalar> && -excess <= unit_quaternion_tolerance<Scalar>;
 }
@@ -152,8 +153,9 @@ EulerAngles<Scalar> to_euler(const Quaternion<Scalar>& q) noexcept {
 template <class Scalar>
 Quaternion<Scalar> attitude_rate(const Quaternion<Scalar>& q, const Vector3<Scalar>& body_rates_rad_s) noexcept {
   const Scalar half(0.5);
-  return q * Quaternion<Scalar>{Scalar(0), half * body_rates_rad_s[0], half * body_rates_rad_s[1],
-                                half * body_rates_rad_s[2]};
+  const Scalar x = half * body_rates_rad_s[0], y = half * body_rates_rad_s[1], z = half * body_rates_rad_s[2];
+  return {-(q.x * x) - q.y * y - q.z * z, q.w * x + q.y * z - q.z * y, q.w * y - q.x * z + q.z * x,
+          q.w * z + q.x * y - q.y * x};
 }
 
 /// Attitude from a proper rotation matrix body -> world (Shepperd's choice of the largest divisor).

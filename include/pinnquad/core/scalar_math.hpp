@@ -12,13 +12,14 @@
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/finite.hpp"
+#include "pinnquad/core/select.hpp"
 
 namespace pinnquad {
 namespace detail {
 
 /// a == b for scalars, false for NaN: firmware is compiled with -Wfloat-equal.
 template <class Scalar>
-PINNQUAD_ALWAYS_INLINE constexpr bool equal(const Scalar& a, const Scalar& b) noexcept {
+PINNQUAD_ALWAYS_INLINE constexpr Mask<Scalar> equal(const Scalar& a, const Scalar& b) noexcept {
   return a <= b && a >= b;
 }
 
@@ -45,7 +46,7 @@ PINNQUAD_ALWAYS_INLINE float absolute(float v) noexcept { return __builtin_fabsf
 PINNQUAD_ALWAYS_INLINE double absolute(double v) noexcept { return __builtin_fabs(v); }
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar absolute(const Scalar& v) noexcept {
-  return v < Scalar(0) ? -v : v;
+  return select(v < Scalar(0), Scalar(-v), v);
 }
 
 /// 1 / (1 + exp(-v)). exp(-v) may be infinite: the quotient is 0 then.
@@ -61,7 +62,7 @@ inline constexpr int above_negatives = -0x007fffff;
 /// v < 0 ? 0 : v. NaN goes through.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar positive_part(const Scalar& v) noexcept {
-  return v < Scalar(0) ? Scalar(0) : v;
+  return select(v < Scalar(0), Scalar(0), v);
 }
 PINNQUAD_ALWAYS_INLINE float positive_part(float v) noexcept {
   if constexpr (finite_math_only) {
@@ -101,7 +102,7 @@ PINNQUAD_ALWAYS_INLINE Scalar sine_of_turns(Scalar turns) noexcept {
   constexpr std::array<double, 10> c = detail::sine_series();
   const Scalar half(0.5), quarter(0.25);
   Scalar r = turns - floor(turns + half);  // -1/2 .. 1/2, exact
-  r = r > quarter ? half - r : (r < -quarter ? -half - r : r);
+  r = select(r > quarter, half - r, select(r < -quarter, -half - r, r));
   const Scalar x = r * r, x2 = x * x, x4 = x2 * x2;
   const auto pair = [&](std::size_t k) noexcept { return Scalar(c[k]) + Scalar(c[k + 1]) * x; };
   return r * ((pair(0) + pair(2) * x2) + ((pair(4) + pair(6) * x2) + pair(8) * x4) * x4);

@@ -45,6 +45,12 @@ constexpr Vector3<Scalar> cross(const Vector3<Scalar>& a, const Vector3<Scalar>&
   return Vector3<Scalar>(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
 }
 
+/// a . b, in this order of sums; Eigen's depends on the scalar.
+template <class Scalar>
+constexpr Scalar dot(const Vector3<Scalar>& a, const Vector3<Scalar>& b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /// Vector from the three literals of an airframe.
 template <class Scalar>
 Vector3<Scalar> to_vector(const std::array<Scalar, 3>& values) noexcept {

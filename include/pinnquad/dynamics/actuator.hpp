@@ -24,14 +24,14 @@ using ThrustFractions = std::array<Scalar, rotor_count>;
 /// fraction n / n_max, and a throttle of an electronic speed controller lies between.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE constexpr Scalar thrust_fraction(Scalar curve, Scalar command) noexcept {
-  const Scalar magnitude = command < Scalar(0) ? -command : command;
+  const Scalar magnitude = select(command < Scalar(0), Scalar(-command), command);
   return command * ((Scalar(1) - curve) + curve * magnitude);
 }
 
 /// ds/du of thrust_fraction(), 0 only for k = 1 at u = 0.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE constexpr Scalar thrust_fraction_slope(Scalar curve, Scalar command) noexcept {
-  const Scalar magnitude = command < Scalar(0) ? -command : command;
+  const Scalar magnitude = select(command < Scalar(0), Scalar(-command), command);
   return (Scalar(1) - curve) + Scalar(2) * curve * magnitude;
 }
 
@@ -39,11 +39,13 @@ PINNQUAD_ALWAYS_INLINE constexpr Scalar thrust_fraction_slope(Scalar curve, Scal
 /// no near numbers.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar command_of_fraction(Scalar curve, Scalar fraction) noexcept {
-  if (detail::equal(curve, Scalar(0))) return fraction;
+  const Mask<Scalar> straight = detail::equal(curve, Scalar(0));
+  if (all_of(straight)) return fraction;
   const Scalar linear = Scalar(1) - curve;
-  const Scalar magnitude = fraction < Scalar(0) ? -fraction : fraction;
+  const Scalar magnitude = select(fraction < Scalar(0), Scalar(-fraction), fraction);
   const Scalar divisor = linear + detail::square_root(linear * linear + Scalar(4) * curve * magnitude);
-  return divisor > Scalar(0) ? Scalar(2) * fraction / divisor : fraction;  // 0 / 0 at k = 1, s = 0; NaN stays NaN
+  // 0 / 0 at k = 1, s = 0; NaN stays NaN
+  return select(!straight && divisor > Scalar(0), Scalar(Scalar(2) * fraction / divisor), fraction);
 }
 
 namespace detail {
@@ -102,7 +104,7 @@ PINNQUAD_ALWAYS_INLINE Scalar speed_from_command(const Airframe<Scalar>& airfram
 /// The command, or all four, held between 0 and 1. NaN stays NaN.
 template <class Scalar>
 constexpr Scalar clip_command(Scalar command) noexcept {
-  return command < Scalar(0) ? Scalar(0) : (command > Scalar(1) ? Scalar(1) : command);
+  return select(command < Scalar(0), Scalar(0), select(command > Scalar(1), Scalar(1), command));
 }
 /// All four.
 template <class Scalar>
@@ -114,7 +116,8 @@ constexpr Commands<Scalar> clipped(const Commands<Scalar>& commands) noexcept {
 template <class Scalar>
 Scalar lag_factor(Scalar time_constant_s, Scalar step_s) noexcept {
   using std::exp;
-  return time_constant_s > Scalar(0) ? Scalar(exp(-step_s / time_constant_s)) : Scalar(0);
+  const Mask<Scalar> lags = time_constant_s > Scalar(0);
+  return any_of(lags) ? select(lags, Scalar(exp(-step_s / time_constant_s)), Scalar(0)) : Scalar(0);
 }
 /// Of each rotor.
 template <class Scalar>
@@ -150,18 +153,36 @@ constexpr ThrustFractions<Scalar> lagged(const ThrustFractions<Scalar>& filtered
   return result;
 }
 
-/// The time constant of each rotor's way from `before` to the fraction wanted: thrust approaches what is held from one
-/// side, so that a rotor rises or falls all the step long.
+/// Of two values of each rotor the one for its way from `before` to the fraction wanted: thrust approaches what is held
+/// from one side, so that a rotor rises or falls all the step long.
+template <class Scalar>
+constexpr std::array<Scalar, rotor_count> by_direction(const ThrustFractions<Scalar>& before,
+                                                       const ThrustFractions<Scalar>& wanted,
+                                                       const std::array<Scalar, rotor_count>& rising,
+                                                       const std::array<Scalar, rotor_count>& falling) noexcept {
+  std::array<Scalar, rotor_count> result{};
+  for (std::size_t i = 0; i < rotor_count; ++i) {
+    result[i] = select(clip_command(wanted[i]) >= before[i], rising[i], falling[i]);
+  }
+  return result;
+}
+
+/// Each rotor's time constant of growing thrust, and of falling thrust.
+template <class Scalar>
+constexpr std::array<Scalar, rotor_count> rise_time_constants_s(const Airframe<Scalar>& a) noexcept {
+  return {a.rise_time_constant_s(0), a.rise_time_constant_s(1), a.rise_time_constant_s(2), a.rise_time_constant_s(3)};
+}
+template <class Scalar>
+constexpr std::array<Scalar, rotor_count> fall_time_constants_s(const Airframe<Scalar>& a) noexcept {
+  return {a.fall_time_constant_s(0), a.fall_time_constant_s(1), a.fall_time_constant_s(2), a.fall_time_constant_s(3)};
+}
+
+/// The time constant of each rotor's way from `before` to the fraction wanted.
 template <class Scalar>
 constexpr std::array<Scalar, rotor_count> time_constants_s(const Airframe<Scalar>& airframe,
                                                            const ThrustFractions<Scalar>& before,
                                                            const ThrustFractions<Scalar>& wanted) noexcept {
-  std::array<Scalar, rotor_count> result{};
-  for (std::size_t i = 0; i < rotor_count; ++i) {
-    result[i] =
-        clip_command(wanted[i]) >= before[i] ? airframe.rise_time_constant_s(i) : airframe.fall_time_constant_s(i);
-  }
-  return result;
+  return by_direction(before, wanted, rise_time_constants_s(airframe), fall_time_constants_s(airframe));
 }
 
 /// The fractions at the start of a step: a rotor without lag has those of the end at once. One time constant for all
@@ -169,14 +190,14 @@ constexpr std::array<Scalar, rotor_count> time_constants_s(const Airframe<Scalar
 template <class Scalar>
 constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
                                            Scalar time_constant_s) noexcept {
-  return time_constant_s > Scalar(0) ? before : end;
+  return select(time_constant_s > Scalar(0), before, end);
 }
 /// Of each rotor its own.
 template <class Scalar>
 constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
                                            const std::array<Scalar, rotor_count>& time_constants_s) noexcept {
   ThrustFractions<Scalar> result{};
-  for (std::size_t i = 0; i < rotor_count; ++i) result[i] = time_constants_s[i] > Scalar(0) ? before[i] : end[i];
+  for (std::size_t i = 0; i < rotor_count; ++i) result[i] = select(time_constants_s[i] > Scalar(0), before[i], end[i]);
   return result;
 }
 

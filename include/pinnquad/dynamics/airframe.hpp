@@ -42,14 +42,14 @@ struct RotorMount {
 
 /// True for thrust along -z, without lateral force.
 template <class Scalar>
-constexpr bool is_upright(const RotorMount<Scalar>& rotor) noexcept {
+constexpr Mask<Scalar> is_upright(const RotorMount<Scalar>& rotor) noexcept {
   return detail::equal(rotor.axis[0], Scalar(0)) && detail::equal(rotor.axis[1], Scalar(0)) &&
          detail::equal(rotor.axis[2], Scalar(-1));
 }
 
 /// True for an axis of length 1, to 0.001.
 template <class Scalar>
-constexpr bool has_unit_axis(const RotorMount<Scalar>& rotor) noexcept {
+constexpr Mask<Scalar> has_unit_axis(const RotorMount<Scalar>& rotor) noexcept {
   const Scalar square = rotor.axis[0] * rotor.axis[0] + rotor.axis[1] * rotor.axis[1] + rotor.axis[2] * rotor.axis[2];
   return square >= Scalar(0.998) && square <= Scalar(1.002);
 }
@@ -107,12 +107,12 @@ struct Airframe {
   /// Time constant of a rotor's growing thrust, s.
   constexpr Scalar rise_time_constant_s(std::size_t rotor) const noexcept {
     const Scalar own = rotors[rotor].rise_time_constant_s;
-    return detail::equal(own, as_airframe<Scalar>) ? rotor_time_constant_s : own;
+    return select(detail::equal(own, as_airframe<Scalar>), rotor_time_constant_s, own);
   }
   /// Time constant of a rotor's falling thrust, s.
   constexpr Scalar fall_time_constant_s(std::size_t rotor) const noexcept {
     const Scalar own = rotors[rotor].fall_time_constant_s;
-    return detail::equal(own, as_airframe<Scalar>) ? rotor_time_constant_s : own;
+    return select(detail::equal(own, as_airframe<Scalar>), rotor_time_constant_s, own);
   }
 };
 
@@ -150,7 +150,7 @@ inline constexpr int airframe_number_count = 16 + 11 * rotor_count;
 
 /// True for a body whose principal axes are those of the body frame.
 template <class Scalar>
-constexpr bool has_diagonal_inertia(const Airframe<Scalar>& airframe) noexcept {
+constexpr Mask<Scalar> has_diagonal_inertia(const Airframe<Scalar>& airframe) noexcept {
   const auto& products = airframe.inertia_products_kg_m2;
   return detail::equal(products[0], Scalar(0)) && detail::equal(products[1], Scalar(0)) &&
          detail::equal(products[2], Scalar(0));
@@ -159,8 +159,8 @@ constexpr bool has_diagonal_inertia(const Airframe<Scalar>& airframe) noexcept {
 /// True for upright rotors whose commands are thrust fractions, with one lag, and a diagonal inertia: code for such an
 /// airframe leaves out the rest (`template <bool plain>`).
 template <class Scalar>
-constexpr bool is_plain(const Airframe<Scalar>& airframe) noexcept {
-  bool plain = has_diagonal_inertia(airframe);
+constexpr Mask<Scalar> is_plain(const Airframe<Scalar>& airframe) noexcept {
+  Mask<Scalar> plain = has_diagonal_inertia(airframe);
   for (std::size_t i = 0; i < rotor_count; ++i) {
     plain = plain && is_upright(airframe.rotors[i]) && detail::equal(airframe.rotors[i].thrust_curve, Scalar(0)) &&
             detail::equal(airframe.rise_time_constant_s(i), airframe.rise_time_constant_s(0)) &&
@@ -172,32 +172,31 @@ constexpr bool is_plain(const Airframe<Scalar>& airframe) noexcept {
 namespace detail {
 /// Above zero and no larger than anything that was ever built; false for NaN and Inf.
 template <class Scalar>
-constexpr bool plausible(Scalar value) noexcept {
+constexpr Mask<Scalar> plausible(Scalar value) noexcept {
   return value > Scalar(0) && value <= Scalar(1e9);
 }
 template <class Scalar>
-constexpr bool plausible_or_zero(Scalar value) noexcept {
+constexpr Mask<Scalar> plausible_or_zero(Scalar value) noexcept {
   return value >= Scalar(0) && value <= Scalar(1e9);
 }
 /// Of either sign.
 template <class Scalar>
-constexpr bool bounded(Scalar value) noexcept {
-  return plausible_or_zero(value < Scalar(0) ? -value : value);
+constexpr Mask<Scalar> bounded(Scalar value) noexcept {
+  return plausible_or_zero(select(value < Scalar(0), -value, value));
 }
 template <class Scalar, std::size_t Size>
-constexpr bool all_bounded(const std::array<Scalar, Size>& values) noexcept {
-  for (const Scalar value : values) {
-    if (!bounded(value)) return false;
-  }
-  return true;
+constexpr Mask<Scalar> all_bounded(const std::array<Scalar, Size>& values) noexcept {
+  Mask<Scalar> all(true);
+  for (const Scalar& value : values) all = all && bounded(value);
+  return all;
 }
 
 /// True for products of inertia that a body can have: S = tr(J) / 2 - J, the second moments of the mass, has no
 /// negative eigenvalue (the triangle inequality of the principal moments), and J is invertible.
 template <class Scalar>
-constexpr bool plausible_products(const Airframe<Scalar>& a) noexcept {
-  if (has_diagonal_inertia(a)) return true;
-  if (!all_bounded(a.inertia_products_kg_m2)) return false;
+constexpr Mask<Scalar> plausible_products(const Airframe<Scalar>& a) noexcept {
+  const Mask<Scalar> diagonal = has_diagonal_inertia(a);
+  if (all_of(diagonal)) return diagonal;
   const Scalar size = a.inertia_kg_m2[0] + a.inertia_kg_m2[1] + a.inertia_kg_m2[2];
   const auto determinant = [](Scalar x, Scalar y, Scalar z, Scalar xy, Scalar xz, Scalar yz) {
     return x * (y * z - yz * yz) - xy * (xy * z - yz * xz) + xz * (xy * yz - y * xz);
@@ -205,16 +204,18 @@ constexpr bool plausible_products(const Airframe<Scalar>& a) noexcept {
   const Scalar jx = a.inertia_kg_m2[0] / size, jy = a.inertia_kg_m2[1] / size, jz = a.inertia_kg_m2[2] / size;
   const Scalar xy = a.inertia_products_kg_m2[0] / size, xz = a.inertia_products_kg_m2[1] / size,
                yz = a.inertia_products_kg_m2[2] / size;
-  const Scalar half = Scalar(0.5), rounding = Scalar(64) * std::numeric_limits<Scalar>::epsilon();
+  const Scalar half = Scalar(0.5), rounding = Scalar(64) * Scalar(std::numeric_limits<Scalar>::epsilon());
   const Scalar sx = half - jx, sy = half - jy, sz = half - jz;
-  return sx * sy - xy * xy >= -rounding && sx * sz - xz * xz >= -rounding && sy * sz - yz * yz >= -rounding &&
-         determinant(sx, sy, sz, -xy, -xz, -yz) >= -rounding && determinant(jx, jy, jz, xy, xz, yz) > rounding;
+  const Mask<Scalar> products = sx * sy - xy * xy >= -rounding && sx * sz - xz * xz >= -rounding &&
+                                sy * sz - yz * yz >= -rounding && determinant(sx, sy, sz, -xy, -xz, -yz) >= -rounding &&
+                                determinant(jx, jy, jz, xy, xz, yz) > rounding;
+  return diagonal || (all_bounded(a.inertia_products_kg_m2) && products);
 }
 
 /// A rotor that can be built: bounded place, an axis of length 1 (to 0.001), a scale above 0, a rising curve, and time
 /// constants of its own that are no less than 0.
 template <class Scalar>
-constexpr bool plausible_rotor(const RotorMount<Scalar>& r) noexcept {
+constexpr Mask<Scalar> plausible_rotor(const RotorMount<Scalar>& r) noexcept {
   const auto time_constant = [](Scalar own) { return equal(own, as_airframe<Scalar>) || plausible_or_zero(own); };
   return bounded(r.x_m) && bounded(r.y_m) && bounded(r.z_m) && has_unit_axis(r) &&
          (r.spin == Spin::clockwise || r.spin == Spin::counter_clockwise) && plausible(r.thrust_scale) &&
@@ -227,21 +228,21 @@ constexpr bool plausible_rotor(const RotorMount<Scalar>& r) noexcept {
 /// axes, positive rotor values, rotors at a place with an axis and a rising curve, thrust-to-weight above 1. Rotors
 /// checks the allocation (rotor.hpp).
 template <class Scalar>
-constexpr Status check_airframe(const Airframe<Scalar>& a) noexcept {
+constexpr Outcome<Scalar> check_airframe(const Airframe<Scalar>& a) noexcept {
   using detail::plausible;
   using detail::plausible_or_zero;
   const Scalar jx = a.inertia_kg_m2[0], jy = a.inertia_kg_m2[1], jz = a.inertia_kg_m2[2];
-  const bool body = plausible(a.mass_kg) && plausible(jx) && plausible(jy) && plausible(jz) && jx + jy >= jz &&
-                    jy + jz >= jx && jz + jx >= jy && detail::plausible_products(a);
-  const bool rotors = plausible(a.thrust_coefficient) && plausible(a.power_coefficient) &&
-                      plausible(a.propeller_diameter_m) && plausible(a.max_rotor_speed_rev_s) &&
-                      plausible_or_zero(a.rotor_time_constant_s);
-  const bool drag = plausible_or_zero(a.drag_area_m2[0]) && plausible_or_zero(a.drag_area_m2[1]) &&
-                    plausible_or_zero(a.drag_area_m2[2]) && plausible_or_zero(a.drag_deadband_m_s);
-  bool mounts = true;
+  const Mask<Scalar> body = plausible(a.mass_kg) && plausible(jx) && plausible(jy) && plausible(jz) && jx + jy >= jz &&
+                            jy + jz >= jx && jz + jx >= jy && detail::plausible_products(a);
+  const Mask<Scalar> rotors = plausible(a.thrust_coefficient) && plausible(a.power_coefficient) &&
+                              plausible(a.propeller_diameter_m) && plausible(a.max_rotor_speed_rev_s) &&
+                              plausible_or_zero(a.rotor_time_constant_s);
+  const Mask<Scalar> drag = plausible_or_zero(a.drag_area_m2[0]) && plausible_or_zero(a.drag_area_m2[1]) &&
+                            plausible_or_zero(a.drag_area_m2[2]) && plausible_or_zero(a.drag_deadband_m_s);
+  Mask<Scalar> mounts(true);
   for (const RotorMount<Scalar>& rotor : a.rotors) mounts = mounts && detail::plausible_rotor(rotor);
-  if (!(body && rotors && mounts && drag)) return Status::invalid_airframe;
-  return a.thrust_to_weight() > Scalar(1) ? Status::ok : Status::invalid_airframe;
+  return select(body && rotors && mounts && drag && a.thrust_to_weight() > Scalar(1), Status::ok,
+                Status::invalid_airframe);
 }
 
 namespace detail {

@@ -52,16 +52,12 @@ constexpr AllocationMatrix<Scalar> allocation(const Airframe<Scalar>& airframe) 
     const RotorMount<Scalar>& rotor = airframe.rotors[i];
     const Scalar thrust = rotor.thrust_scale * airframe.max_rotor_thrust_N();
     const Scalar torque = rotor.thrust_scale * airframe.max_rotor_torque_N_m();
-    if (is_upright(rotor)) {
-      matrix[0][i] = thrust;
-      matrix[1][i] = -rotor.y_m * thrust;
-      matrix[2][i] = rotor.x_m * thrust;
-      matrix[3][i] = Scalar(static_cast<int>(rotor.spin)) * torque;
-    } else {
-      matrix[0][i] = -rotor.axis[2] * thrust;
-      const std::array<Scalar, 3> turning = detail::rotor_torque_N_m(rotor, thrust, torque);
-      for (std::size_t axis = 0; axis < 3; ++axis) matrix[axis + 1][i] = turning[axis];
-    }
+    const Mask<Scalar> upright = is_upright(rotor);
+    const std::array<Scalar, 3> tilted = detail::rotor_torque_N_m(rotor, thrust, torque);
+    matrix[0][i] = select(upright, thrust, Scalar(-rotor.axis[2] * thrust));
+    matrix[1][i] = select(upright, Scalar(-rotor.y_m * thrust), tilted[0]);
+    matrix[2][i] = select(upright, Scalar(rotor.x_m * thrust), tilted[1]);
+    matrix[3][i] = select(upright, Scalar(Scalar(static_cast<int>(rotor.spin)) * torque), tilted[2]);
   }
   return matrix;
 }
@@ -103,27 +99,37 @@ constexpr std::array<Scalar, 4> product(const AllocationMatrix<Scalar>& m, const
 /// Inverse of a 4 x 4 matrix by Gauss-Jordan with partial pivoting, rows scaled to a largest entry of 1. `no_solution`
 /// if it is singular to the scalar's precision (a pivot below 1000 epsilon); the output stays untouched then.
 template <class Scalar>
-constexpr Status invert_allocation(const AllocationMatrix<Scalar>& matrix, AllocationMatrix<Scalar>& inverse) noexcept {
+constexpr Outcome<Scalar> invert_allocation(const AllocationMatrix<Scalar>& matrix,
+                                            AllocationMatrix<Scalar>& inverse) noexcept {
   std::array<std::array<Scalar, 8>, 4> rows{};  // the matrix, and beside it the identity, which becomes the inverse
-  const auto magnitude = [](Scalar v) { return v < Scalar(0) ? -v : v; };
+  const auto magnitude = [](Scalar v) { return select(v < Scalar(0), Scalar(-v), v); };
+  Mask<Scalar> regular(true);
   for (std::size_t row = 0; row < 4; ++row) {
     Scalar largest(0);
-    for (const Scalar entry : matrix[row]) largest = magnitude(entry) > largest ? magnitude(entry) : largest;
-    if (!(largest > Scalar(0))) return Status::no_solution;
+    for (const Scalar entry : matrix[row]) largest = select(magnitude(entry) > largest, magnitude(entry), largest);
+    regular = regular && largest > Scalar(0);
+    if (!any_of(regular)) return Status::no_solution;
     for (std::size_t k = 0; k < 4; ++k) rows[row][k] = matrix[row][k] / largest;
     rows[row][row + 4] = Scalar(1) / largest;
   }
   for (std::size_t column = 0; column < 4; ++column) {
-    std::size_t pivot = column;
+    Scalar largest = magnitude(rows[column][column]);
     for (std::size_t row = column + 1; row < 4; ++row) {
-      if (magnitude(rows[row][column]) > magnitude(rows[pivot][column])) pivot = row;
+      const Scalar next = magnitude(rows[row][column]);
+      largest = select(next > largest, next, largest);
     }
-    if (!(magnitude(rows[pivot][column]) > Scalar(1000) * std::numeric_limits<Scalar>::epsilon())) {
-      return Status::no_solution;
+    regular = regular && largest > Scalar(1000) * Scalar(std::numeric_limits<Scalar>::epsilon());
+    if (!any_of(regular)) return Status::no_solution;
+    Mask<Scalar> sought = magnitude(rows[column][column]) < largest;  // the first of the largest changes places
+    for (std::size_t row = column + 1; row < 4; ++row) {
+      const Mask<Scalar> pivot = sought && magnitude(rows[row][column]) >= largest;
+      for (std::size_t k = 0; k < 8; ++k) {
+        const Scalar above = rows[column][k], below = rows[row][k];
+        rows[column][k] = select(pivot, below, above);
+        rows[row][k] = select(pivot, above, below);
+      }
+      sought = sought && !pivot;
     }
-    const std::array<Scalar, 8> chosen = rows[pivot];
-    rows[pivot] = rows[column];
-    rows[column] = chosen;
     const Scalar scale = Scalar(1) / rows[column][column];
     for (Scalar& entry : rows[column]) entry *= scale;
     for (std::size_t row = 0; row < 4; ++row) {
@@ -133,9 +139,9 @@ constexpr Status invert_allocation(const AllocationMatrix<Scalar>& matrix, Alloc
     }
   }
   for (std::size_t row = 0; row < 4; ++row) {
-    for (std::size_t k = 0; k < 4; ++k) inverse[row][k] = rows[row][k + 4];
+    for (std::size_t k = 0; k < 4; ++k) inverse[row][k] = select(regular, rows[row][k + 4], inverse[row][k]);
   }
-  return Status::ok;
+  return select(regular, Status::ok, Status::no_solution);
 }
 
 }  // namespace pinnquad

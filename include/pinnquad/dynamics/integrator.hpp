@@ -30,13 +30,14 @@ State<Scalar> advanced(const State<Scalar>& state, const StateDerivative<Scalar>
   return result;
 }
 
-/// RK4's weights: (a + 2 b + 2 c + d) / 6; the division by an int is exact for scalars and vectors alike.
-template <class Value>
+/// RK4's weights: (a + 2 b + 2 c + d) / 6, of scalars and vectors.
+template <class Scalar, class Value>
 Value simpson(const Value& a, const Value& b, const Value& c, const Value& d) noexcept {
-  return Value((a + b + b + c + c + d) / 6);
+  return Value((a + b + b + c + c + d) / Scalar(6));
 }
 
-/// Classical RK4. `rate(state, offset_s)` returns the StateDerivative at a time `offset_s` after the step's start.
+/// Classical RK4. `rate(state, offset_s)` returns the StateDerivative at a time `offset_s` after the step's start: it
+/// is called at the start, twice in the middle, and at the end.
 template <class Scalar, class Rate>
 State<Scalar> rk4_step(const State<Scalar>& state, Scalar step_s, const Rate& rate) noexcept {
   const Scalar half = step_s / Scalar(2);
@@ -45,14 +46,15 @@ State<Scalar> rk4_step(const State<Scalar>& state, Scalar step_s, const Rate& ra
   const StateDerivative<Scalar> k3 = rate(advanced(state, k2, half), half);
   const StateDerivative<Scalar> k4 = rate(advanced(state, k3, step_s), step_s);
   StateDerivative<Scalar> k;
-  k.velocity_m_s = simpson(k1.velocity_m_s, k2.velocity_m_s, k3.velocity_m_s, k4.velocity_m_s);
-  k.acceleration_m_s2 = simpson(k1.acceleration_m_s2, k2.acceleration_m_s2, k3.acceleration_m_s2, k4.acceleration_m_s2);
+  k.velocity_m_s = simpson<Scalar>(k1.velocity_m_s, k2.velocity_m_s, k3.velocity_m_s, k4.velocity_m_s);
+  k.acceleration_m_s2 =
+      simpson<Scalar>(k1.acceleration_m_s2, k2.acceleration_m_s2, k3.acceleration_m_s2, k4.acceleration_m_s2);
   const Quaternion<Scalar>&q1 = k1.attitude_rate, &q2 = k2.attitude_rate, &q3 = k3.attitude_rate,
         &q4 = k4.attitude_rate;
-  k.attitude_rate = {simpson(q1.w, q2.w, q3.w, q4.w), simpson(q1.x, q2.x, q3.x, q4.x), simpson(q1.y, q2.y, q3.y, q4.y),
-                     simpson(q1.z, q2.z, q3.z, q4.z)};
-  k.angular_acceleration_rad_s2 = simpson(k1.angular_acceleration_rad_s2, k2.angular_acceleration_rad_s2,
-                                          k3.angular_acceleration_rad_s2, k4.angular_acceleration_rad_s2);
+  k.attitude_rate = {simpson<Scalar>(q1.w, q2.w, q3.w, q4.w), simpson<Scalar>(q1.x, q2.x, q3.x, q4.x),
+                     simpson<Scalar>(q1.y, q2.y, q3.y, q4.y), simpson<Scalar>(q1.z, q2.z, q3.z, q4.z)};
+  k.angular_acceleration_rad_s2 = simpson<Scalar>(k1.angular_acceleration_rad_s2, k2.angular_acceleration_rad_s2,
+                                                  k3.angular_acceleration_rad_s2, k4.angular_acceleration_rad_s2);
   State<Scalar> result = advanced(state, k, step_s);
   result.attitude = normalized(result.attitude);
   return result;

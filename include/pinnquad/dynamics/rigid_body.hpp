@@ -15,11 +15,12 @@ template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Vector3<Scalar> inertia_times(const Airframe<Scalar>& airframe,
                                                      const Vector3<Scalar>& w) noexcept {
   Vector3<Scalar> result = to_vector(airframe.inertia_kg_m2).cwiseProduct(w);
-  if (!has_diagonal_inertia(airframe)) {
+  const Mask<Scalar> diagonal = has_diagonal_inertia(airframe);
+  if (!all_of(diagonal)) {
     const auto& [xy, xz, yz] = airframe.inertia_products_kg_m2;
-    result[0] += xy * w[1] + xz * w[2];
-    result[1] += xy * w[0] + yz * w[2];
-    result[2] += xz * w[0] + yz * w[1];
+    result[0] = select(diagonal, result[0], Scalar(result[0] + (xy * w[1] + xz * w[2])));
+    result[1] = select(diagonal, result[1], Scalar(result[1] + (xy * w[0] + yz * w[2])));
+    result[2] = select(diagonal, result[2], Scalar(result[2] + (xz * w[0] + yz * w[1])));
   }
   return result;
 }
@@ -44,10 +45,10 @@ PINNQUAD_NOINLINE Vector3<Scalar> full_inertia_solved(const Airframe<Scalar>& ai
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Vector3<Scalar> inertia_solved(const Airframe<Scalar>& airframe,
                                                       const Vector3<Scalar>& t) noexcept {
-  if (has_diagonal_inertia(airframe)) {
-    return t.cwiseQuotient(to_vector(airframe.inertia_kg_m2));
-  }
-  return detail::full_inertia_solved(airframe, t);
+  const Mask<Scalar> diagonal = has_diagonal_inertia(airframe);
+  const Vector3<Scalar> quotient = t.cwiseQuotient(to_vector(airframe.inertia_kg_m2));
+  if (all_of(diagonal)) return quotient;
+  return select(diagonal, quotient, detail::full_inertia_solved(airframe, t));
 }
 
 /// Euler's equation: omega_dot = J^-1 (J omega x omega + tau). `plain`: for a diagonal J (is_plain()).

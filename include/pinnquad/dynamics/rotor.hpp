@@ -32,19 +32,19 @@ class Rotors {
     }
   }
 
-  constexpr Status status() const noexcept { return status_; }
+  constexpr Outcome<Scalar> status() const noexcept { return status_; }
 
   /// Thrust fractions of settled commands (not clipped), and back.
   template <bool plain = false>
   PINNQUAD_ALWAYS_INLINE constexpr ThrustFractions<Scalar> fractions(const Commands<Scalar>& u) const noexcept {
-    if (plain || straight_) return u;
+    if (plain || all_of(straight_)) return u;
     ThrustFractions<Scalar> result{};
-    for (std::size_t i = 0; i < rotor_count; ++i) result[i] = thrust_fraction(curve_[i], u[i]);
+    for (std::size_t i = 0; i < rotor_count; ++i) result[i] = select(straight_, u[i], thrust_fraction(curve_[i], u[i]));
     return result;
   }
   template <bool plain = false>
   PINNQUAD_ALWAYS_INLINE Commands<Scalar> commands_of(const ThrustFractions<Scalar>& fractions) const noexcept {
-    if (plain || straight_) return fractions;
+    if (plain || all_of(straight_)) return fractions;
     Commands<Scalar> result{};
     for (std::size_t i = 0; i < rotor_count; ++i) result[i] = command_of_fraction(curve_[i], fractions[i]);
     return result;
@@ -58,10 +58,13 @@ class Rotors {
     Wrench<Scalar> result;
     result.force_N = Vector3<Scalar>(Scalar(0), Scalar(0), -w[0] * scale);
     result.torque_N_m = Vector3<Scalar>(w[1] * scale, w[2] * scale, w[3] * scale);
-    if (!plain && !upright_) {
+    if (!plain && !all_of(upright_)) {
       for (std::size_t i = 0; i < rotor_count; ++i) {
-        result.force_N[0] += lateral_N_[0][i] * s[i] * scale;
-        result.force_N[1] += lateral_N_[1][i] * s[i] * scale;
+        for (int axis = 0; axis < 2; ++axis) {
+          const Scalar& before = result.force_N[axis];
+          const Scalar lateral = lateral_N_[static_cast<std::size_t>(axis)][i] * s[i] * scale;
+          result.force_N[axis] = select(upright_, before, Scalar(before + lateral));
+        }
       }
     }
     return result;
@@ -108,17 +111,17 @@ class Rotors {
   }
 
   /// True where a command is its thrust fraction: no rotor has a curve.
-  constexpr bool straight() const noexcept { return straight_; }
+  constexpr Mask<Scalar> straight() const noexcept { return straight_; }
 
  private:
   AllocationMatrix<Scalar> allocation_{};
   AllocationMatrix<Scalar> inverse_{};
-  Status status_{Status::ok};
+  Outcome<Scalar> status_{Status::ok};
   std::array<Scalar, rotor_count> curve_{};
   std::array<Scalar, rotor_count> most_thrust_N_{};
   std::array<std::array<Scalar, rotor_count>, 2> lateral_N_{};  ///< rows F_x, F_y
-  bool straight_{true};
-  bool upright_{true};
+  Mask<Scalar> straight_{true};
+  Mask<Scalar> upright_{true};
 };
 
 }  // namespace pinnquad

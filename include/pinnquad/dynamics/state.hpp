@@ -46,6 +46,13 @@ Wrench<Scalar> operator-(const Wrench<Scalar>& a, const Wrench<Scalar>& b) noexc
   return {a.force_N - b.force_N, a.torque_N_m - b.torque_N_m};
 }
 
+/// Of each lane its own.
+template <class Scalar, class = OfLanes<Scalar>>
+PINNQUAD_ALWAYS_INLINE Wrench<Scalar> select(const Mask<Scalar>& mask, const Wrench<Scalar>& yes,
+                                             const Wrench<Scalar>& no) noexcept {
+  return {select(mask, yes.force_N, no.force_N), select(mask, yes.torque_N_m, no.torque_N_m)};
+}
+
 /// Velocity in the body frame, m/s.
 template <class Scalar>
 Vector3<Scalar> body_velocity(const State<Scalar>& state) noexcept {
@@ -66,9 +73,22 @@ Vector3<Scalar> body_derivative(const State<Scalar>& state, const Vector3<Scalar
          cross<Scalar>(state.body_rates_rad_s, body_velocity(state));
 }
 
+/// Of each lane its own.
+template <class Scalar, class = OfLanes<Scalar>>
+PINNQUAD_ALWAYS_INLINE State<Scalar> select(const Mask<Scalar>& mask, const State<Scalar>& yes,
+                                            const State<Scalar>& no) noexcept {
+  const Quaternion<Scalar>&a = yes.attitude, &b = no.attitude;
+  State<Scalar> result;
+  result.position_m = select(mask, yes.position_m, no.position_m);
+  result.velocity_m_s = select(mask, yes.velocity_m_s, no.velocity_m_s);
+  result.attitude = {select(mask, a.w, b.w), select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+  result.body_rates_rad_s = select(mask, yes.body_rates_rad_s, no.body_rates_rad_s);
+  return result;
+}
+
 /// True where no number of the state is NaN or infinite.
 template <class Scalar>
-bool all_finite(const State<Scalar>& state) noexcept {
+Mask<Scalar> all_finite(const State<Scalar>& state) noexcept {
   const Quaternion<Scalar>& q = state.attitude;
   const Scalar attitude[4] = {q.w, q.x, q.y, q.z};
   return all_finite(state.position_m) && all_finite(state.velocity_m_s) && all_finite(attitude, 4) &&

@@ -199,9 +199,10 @@ class Simulator {
   template <class Actual>
   Status hold_and_step(const Actual& quadrotor) {
     recorder_.hold(commands_, vehicle_.time_s);
+    const auto step = quadrotor.time_step(settings_.physics_step_s);
     Status status = Status::ok;
     for (int i = 0; i < settings_.steps_per_control && status == Status::ok; ++i) {
-      status = quadrotor.step(vehicle_, commands_, settings_.physics_step_s);
+      status = quadrotor.step(vehicle_, commands_, step);
     }
     return status;
   }

@@ -32,6 +32,7 @@ class SwitchableQuadrotor {
   explicit SwitchableQuadrotor(const Airframe<double>& airframe, const Site<double>& site, Effects... effects)
       : airframe_(airframe), site_(site), effects_(effects...), chosen_(Plain(airframe, site, effects...)) {}
 
+  const std::tuple<Effects...>& effects() const noexcept { return effects_; }  ///< without the ground effect
   GroundEffectModel ground_effect() const noexcept { return model_; }
 
   void set_ground_effect(GroundEffectModel model) {

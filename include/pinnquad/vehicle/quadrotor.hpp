@@ -13,32 +13,16 @@
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
+#include "pinnquad/vehicle/site.hpp"
 
 namespace pinnquad {
-
-/// The place of a flight on earth.
-template <class Scalar>
-struct Site {
-  Scalar elevation_m{0};  ///< of the NED origin above sea level
-  Scalar ground_z_m{0};   ///< NED z of the vehicle's centre where the rotors' height above ground counts as zero
-  Scalar gravity_m_s2{standard_gravity_m_s2<Scalar>};
-};
-
-/// The site of the paper's simulator: home at 122 m, ground 0.877 m below the origin.
-template <class Scalar>
-constexpr Site<Scalar> paper_site() noexcept {
-  Site<Scalar> site{};
-  site.elevation_m = Scalar(122);
-  site.ground_z_m = Scalar(0.877);
-  return site;
-}
 
 /// Everything that step() advances.
 template <class Scalar>
 struct VehicleState {
   State<Scalar> body{};
   Commands<Scalar> rotors{};  ///< behind the lag: the commands at which the present thrusts would be settled
-  double time_s{0};           ///< double also for a float vehicle: in float a millisecond is lost after a few hours
+  Wide<Scalar> time_s{0.0};   ///< double also for a float vehicle
 };
 
 namespace detail {
@@ -123,7 +107,7 @@ class Quadrotor {
 
   /// Unless ok, step() and the inverse refuse with it: `invalid_airframe`, `no_solution` for an allocation that can't
   /// be inverted, `out_of_range` for a site that is no place, or what an effect's status() says of the airframe.
-  Status status() const noexcept { return status_; }
+  Outcome<Scalar> status() const noexcept { return status_; }
 
   /// The air at a place and time: density, wind, thrust scale and status as the effects set them.
   PINNQUAD_ALWAYS_INLINE Surroundings<Scalar> surroundings(const State<Scalar>& state, Scalar time_s) const noexcept {
@@ -167,15 +151,44 @@ class Quadrotor {
     return result;
   }
 
+  /// The length of a step, and what the rotors' lag leaves over half of it: worked out once where steps are alike.
+  struct TimeStep {
+    Scalar step_s;
+    std::array<Scalar, rotor_count> rise_factor, fall_factor;  ///< of a plain airframe the first is every rotor's
+  };
+  TimeStep time_step(Scalar step_s) const noexcept {
+    TimeStep result{step_s, {}, {}};
+    const Scalar half_s = step_s / Scalar(2);
+    if (all_of(plain_)) {
+      result.rise_factor[0] = lag_factor(airframe_.rise_time_constant_s(0), half_s);
+    } else {
+      result.rise_factor = lag_factor(rise_time_constants_s(airframe_), half_s);
+      result.fall_factor = lag_factor(fall_time_constants_s(airframe_), half_s);
+    }
+    return result;
+  }
+
   /// Advances by one RK4 step under commands held over the step; the rotor lag is integrated exactly. Errors: status();
   /// `not_finite` for a bad input; `out_of_range` for a step backwards, more than half a turn of the body in one step,
   /// a clock so late that the step doesn't move it, air that has no answer (Surroundings) or a battery that is less
   /// than empty; `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is untouched unless the
   /// Status is ok.
-  Status step(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s) const noexcept {
-    const Status input = check_input(state, commands, step_s);
-    if (input != Status::ok) return input;
-    return plain_ ? advance<true>(state, commands, step_s) : advance<false>(state, commands, step_s);
+  Outcome<Scalar> step(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
+                       const TimeStep& step) const noexcept {
+    const Outcome<Scalar> input = check_input(state, commands, step.step_s);
+    if (!any_of(input == Status::ok)) return input;
+    if (all_of(plain_)) return advance<true>(state, commands, step, input);
+    if (!any_of(plain_)) return advance<false>(state, commands, step, input);
+    // lanes of both kinds: each by the build of its own
+    const Outcome<Scalar> of_plain =
+        advance<true>(state, commands, step, detail::refused_where(!plain_, Status::invalid_airframe, input));
+    const Outcome<Scalar> of_others =
+        advance<false>(state, commands, step, detail::refused_where(plain_, Status::invalid_airframe, input));
+    return select(plain_, of_plain, of_others);
+  }
+  /// The same for a step of this length.
+  Outcome<Scalar> step(VehicleState<Scalar>& state, const Commands<Scalar>& commands, Scalar step_s) const noexcept {
+    return step(state, commands, time_step(step_s));
   }
 
   /// Thrust and torque of the rotors over those in the standard atmosphere with a full battery: rho / rho_0 times the
@@ -186,56 +199,60 @@ class Quadrotor {
   }
 
  private:
-  Status first_fault(const Effects&... effects) const noexcept {
-    Status fault = check_airframe(airframe_);
-    if (fault == Status::ok) fault = rotors_.status();
-    const bool place =
+  Outcome<Scalar> first_fault(const Effects&... effects) const noexcept {
+    Outcome<Scalar> fault = check_airframe(airframe_);
+    fault = select(fault == Status::ok, rotors_.status(), fault);
+    const Mask<Scalar> place =
         detail::bounded(site_.elevation_m) && detail::bounded(site_.ground_z_m) && detail::bounded(site_.gravity_m_s2);
-    if (fault == Status::ok && !place) fault = Status::out_of_range;
-    ((fault = fault == Status::ok ? effect_status(effects, airframe_) : fault), ...);
+    fault = detail::refused_where(!place, Status::out_of_range, fault);
+    ((fault = select(fault == Status::ok, Outcome<Scalar>(effect_status(effects, airframe_)), fault)), ...);
     return fault;
   }
 
-  /// A step whose input is good.
+  /// A step where the input is good.
   template <bool plain>
-  PINNQUAD_FLATTEN Status advance(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
-                                  Scalar step_s) const noexcept {
+  PINNQUAD_FLATTEN Outcome<Scalar> advance(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
+                                           const TimeStep& step, const Outcome<Scalar>& input) const noexcept {
+    const Scalar step_s = step.step_s;
     const ThrustFractions<Scalar> before = rotors_.template fractions<plain>(state.rotors);
     const ThrustFractions<Scalar> wanted = rotors_.template fractions<plain>(commands);
-    const auto time_constant_s = lag_of<plain>(before, wanted);
-    const auto half_factor = lag_factor(time_constant_s, step_s / Scalar(2));
+    const auto [time_constant_s, half_factor] = lag_of<plain>(before, wanted, step);
     const ThrustFractions<Scalar> middle = lagged(before, wanted, half_factor);
     const ThrustFractions<Scalar> end = lagged(middle, wanted, half_factor);
     const ThrustFractions<Scalar> start = at_start(before, end, time_constant_s);
-    Status air = Status::ok;
+    Outcome<Scalar> status = input;
+    int calls = 0;
     const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
-      const ThrustFractions<Scalar>& now =
-          detail::equal(offset_s, Scalar(0)) ? start : (offset_s < step_s ? middle : end);
-      return rate_of_change<plain>(body, now, static_cast<Scalar>(state.time_s + static_cast<double>(offset_s)), air);
+      const ThrustFractions<Scalar>& now = calls == 0 ? start : (calls < 3 ? middle : end);
+      ++calls;
+      return rate_of_change<plain>(body, now, Scalar(state.time_s + Wide<Scalar>(offset_s)), status);
     };
     const State<Scalar> next = detail::rk4_step(state.body, step_s, rate);
-    if (air != Status::ok) return air;
-    if (!(all_finite(next) && is_unit(next.attitude))) return Status::output_not_finite;
-    if (!can_follow(next, step_s)) return Status::out_of_range;
-    state.body = next;
-    state.rotors = rotors_.template commands_of<plain>(end);
-    state.time_s += static_cast<double>(step_s);
-    return Status::ok;
+    status = detail::refused_where(!(all_finite(next) && is_unit(next.attitude)), Status::output_not_finite, status);
+    status = detail::refused_where(!can_follow(next, step_s), Status::out_of_range, status);
+    const Mask<Scalar> good = status == Status::ok;
+    if (!any_of(good)) return status;
+    state.body = select(good, next, state.body);
+    state.rotors = select(good, rotors_.template commands_of<plain>(end), state.rotors);
+    state.time_s = select(Mask<Wide<Scalar>>(good), Wide<Scalar>(state.time_s + Wide<Scalar>(step_s)), state.time_s);
+    return status;
   }
 
-  /// One time constant for all, or each rotor's own.
+  /// Time constant and factor over half a step: one for all, or each rotor's own.
   template <bool plain>
-  auto lag_of(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& wanted) const noexcept {
+  auto lag_of(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& wanted,
+              const TimeStep& step) const noexcept {
     if constexpr (plain) {
       static_cast<void>(before), static_cast<void>(wanted);
-      return airframe_.rise_time_constant_s(0);
+      return std::pair(airframe_.rise_time_constant_s(0), step.rise_factor[0]);
     } else {
-      return time_constants_s(airframe_, before, wanted);
+      return std::pair(time_constants_s(airframe_, before, wanted),
+                       by_direction(before, wanted, step.rise_factor, step.fall_factor));
     }
   }
 
   /// Beyond half a turn in one step an attitude is no longer followed but guessed.
-  static PINNQUAD_ALWAYS_INLINE bool can_follow(const State<Scalar>& body, Scalar step_s) noexcept {
+  static PINNQUAD_ALWAYS_INLINE Mask<Scalar> can_follow(const State<Scalar>& body, Scalar step_s) noexcept {
     constexpr Scalar half_turn_rad = Scalar(3.141592653589793);
     const Scalar x = body.body_rates_rad_s[0] * step_s, y = body.body_rates_rad_s[1] * step_s,
                  z = body.body_rates_rad_s[2] * step_s;
@@ -243,19 +260,18 @@ class Quadrotor {
   }
 
   /// Out of line: the integers of its bit tests would cost the step a tenth of its time.
-  PINNQUAD_NOINLINE Status check_input(const VehicleState<Scalar>& state, const Commands<Scalar>& commands,
-                                       Scalar step_s) const noexcept {
-    if (status_ != Status::ok) return status_;
-    if (!(all_finite(state.body) && all_finite(state.rotors) && is_finite(state.time_s) && all_finite(commands) &&
-          is_finite(step_s))) {
-      return Status::not_finite;
-    }
-    constexpr double latest_s = 1e12;  // beyond, no clock in seconds tells milliseconds apart
-    const double start_s = state.time_s, end_s = start_s + static_cast<double>(step_s);
-    const bool clock_moves = end_s > start_s || detail::equal(step_s, Scalar(0));
-    if (!(clock_moves && start_s >= -latest_s && end_s <= latest_s)) return Status::out_of_range;
-    if (!can_follow(state.body, step_s)) return Status::out_of_range;
-    return is_unit(state.body.attitude) ? Status::ok : Status::not_unit_quaternion;
+  PINNQUAD_NOINLINE Outcome<Scalar> check_input(const VehicleState<Scalar>& state, const Commands<Scalar>& commands,
+                                                Scalar step_s) const noexcept {
+    const Mask<Scalar> finite = all_finite(state.body) && all_finite(state.rotors) &&
+                                Mask<Scalar>(is_finite(state.time_s)) && all_finite(commands) && is_finite(step_s);
+    constexpr Wide<Scalar> latest_s(1e12);  // beyond, no clock in seconds tells milliseconds apart
+    const Wide<Scalar> start_s = state.time_s, end_s = start_s + Wide<Scalar>(step_s);
+    const Mask<Scalar> clock_moves = Mask<Scalar>(end_s > start_s) || detail::equal(step_s, Scalar(0));
+    const Mask<Scalar> in_time(start_s >= -latest_s && end_s <= latest_s);
+    Outcome<Scalar> status = detail::refused_where(!finite, Status::not_finite, status_);
+    status = detail::refused_where(!(clock_moves && in_time && can_follow(state.body, step_s)), Status::out_of_range,
+                                   status);
+    return detail::refused_where(!is_unit(state.body.attitude), Status::not_unit_quaternion, status);
   }
 
   /// The rotation worked out once for the two vectors that an evaluation turns: less than half the work of turning each
@@ -274,6 +290,8 @@ class Quadrotor {
     Vector3<Scalar> to_world(Scalar x, Scalar y, Scalar z) const noexcept {
       return Vector3<Scalar>(xx * x + xy * y + xz * z, yx * x + yy * y + yz * z, zx * x + zy * y + zz * z);
     }
+    /// Of a vector along the body's z axis.
+    Vector3<Scalar> to_world(Scalar z) const noexcept { return Vector3<Scalar>(xz * z, yz * z, zz * z); }
     Vector3<Scalar> to_body(Scalar x, Scalar y, Scalar z) const noexcept {
       return Vector3<Scalar>(xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z);
     }
@@ -335,16 +353,22 @@ class Quadrotor {
   template <bool plain>
   PINNQUAD_ALWAYS_INLINE detail::StateDerivative<Scalar> rate_of_change(const State<Scalar>& state,
                                                                         const ThrustFractions<Scalar>& thrusts,
-                                                                        Scalar time_s, Status& air) const noexcept {
+                                                                        Scalar time_s,
+                                                                        Outcome<Scalar>& status) const noexcept {
     const Evaluation e = loads<plain>(state, thrusts, time_s);
-    if (e.surroundings.status != Status::ok) air = e.surroundings.status;
-    if (!(e.surroundings.thrust_scale >= Scalar(0))) air = Status::out_of_range;  // a battery can't reverse thrust
+    status = select(status == Status::ok, e.surroundings.status, status);
+    // a battery can't reverse thrust
+    status = detail::refused_where(!(e.surroundings.thrust_scale >= Scalar(0)), Status::out_of_range, status);
     const Wrench<Scalar> wrench = total(e);
     detail::StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
-    d.acceleration_m_s2 = Axes(state.attitude)
-                              .to_world(wrench.force_N[0] * inverse_mass_, wrench.force_N[1] * inverse_mass_,
-                                        wrench.force_N[2] * inverse_mass_);
+    const Axes axes(state.attitude);
+    if constexpr (plain && !(makes_wrench<Effects> || ...)) {
+      d.acceleration_m_s2 = axes.to_world(wrench.force_N[2] * inverse_mass_);
+    } else {
+      d.acceleration_m_s2 = axes.to_world(wrench.force_N[0] * inverse_mass_, wrench.force_N[1] * inverse_mass_,
+                                          wrench.force_N[2] * inverse_mass_);
+    }
     d.acceleration_m_s2[2] += site_.gravity_m_s2;
     d.attitude_rate = attitude_rate(state.attitude, state.body_rates_rad_s);
     d.angular_acceleration_rad_s2 = angular_acceleration<plain>(airframe_, state.body_rates_rad_s, wrench.torque_N_m);
@@ -365,8 +389,8 @@ class Quadrotor {
   Site<Scalar> site_;
   std::tuple<detail::BoundEffect<Effects, Scalar>...> effects_;
   Rotors<Scalar> rotors_;
-  bool plain_;
-  Status status_;
+  Mask<Scalar> plain_;
+  Outcome<Scalar> status_;
 };
 
 }  // namespace pinnquad
