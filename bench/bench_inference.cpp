@@ -82,5 +82,6 @@ int main(int argc, char** argv) {
   register_dense<64, 64>();
   register_dense<256, 256>();
   benchmark::RegisterBenchmark("Peak/fma", fma_peak<NativePack<float>, paper_multiply_adds>);
+  benchmark::RegisterBenchmark("Peak/fma_double", fma_peak<NativePack<double>, paper_multiply_adds>);
   return run_benchmarks(argc, argv);
 }

@@ -13,6 +13,8 @@ PROGRAMS = ["bench_inference", "bench_rollout", "bench_model", "bench_training",
 # (what, numerator, denominator, program): a ratio of two medians of one run; "fastest:a|b" takes the smaller
 RATIOS = [
     ("prediction, over the multiply-add peak", "Predict/paper_network", "Peak/fma", "bench_inference"),
+    ("prediction in double, over one in float", "Predict/paper_network_double", "Predict/paper_network",
+     "bench_inference"),
     ("naive Eigen (fastest order), over ours", "fastest:Predict/naive_eigen|Predict/naive_eigen_rowmajor",
      "Predict/paper_network", "bench_inference"),
     ("batch of 256, per sample, over the peak", "Batched/paper_network/256", "Peak/fma", "bench_rollout"),
