@@ -22,6 +22,7 @@ RATIOS = [
     ("value and Jacobian, over one prediction", "Jacobian/paper_network", "Predict/paper_network", "bench_rollout"),
     ("predict() with named inputs, over predict_features()", "Model/predict", "Model/predict_features",
      "bench_model"),
+    ("predict() of a block's view, over a header's", "Block/predict_view", "Model/predict", "bench_model"),
     ("training epoch, naive Eigen over ours", "TrainEpoch/naive_eigen", "TrainEpoch/vanilla", "bench_training"),
     ("training epoch, physics-informed over vanilla", "TrainEpoch/physics_informed", "TrainEpoch/vanilla",
      "bench_training"),
