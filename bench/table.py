@@ -17,6 +17,9 @@ RATIOS = [
      "bench_inference"),
     ("naive Eigen (fastest order), over ours", "fastest:Predict/naive_eigen|Predict/naive_eigen_rowmajor",
      "Predict/paper_network", "bench_inference"),
+    *((f"prediction of {shape}, over its peak", f"Shape/{name}", f"Peak/{name}", "bench_inference")
+      for shape, name in (("2 layers of 32", "2x32"), ("3 of 25", "3x25"), ("3 of 64", "3x64"), ("2 of 128", "2x128"),
+                          ("2 of 32, 60 inputs", "2x32_windowed"))),
     ("batch of 256, per sample, over the peak", "Batched/paper_network/256", "Peak/fma", "bench_rollout"),
     ("batch of 256, Eigen over ours", "Batched/naive_eigen/256", "Batched/paper_network/256", "bench_rollout"),
     ("value and Jacobian, over one prediction", "Jacobian/paper_network", "Predict/paper_network", "bench_rollout"),

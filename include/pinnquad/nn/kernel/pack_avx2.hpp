@@ -52,7 +52,7 @@ struct PackAvx2 {
   static constexpr int values = 8;
   static constexpr int blocks_per_register = 2;
   static constexpr int blocks_at_once = 2;
-  static constexpr int chains = 4;
+  static constexpr int chains = 3;
 
   static constexpr int lane_of_value(int value) noexcept { return value; }
   /// The row whose products stand in lanes 2 pair and 2 pair + 1 of a block, such that collect() puts it in its place.

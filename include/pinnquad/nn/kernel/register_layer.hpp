@@ -194,10 +194,11 @@ struct RegisterLayer {
           [&](auto i) PINNQUAD_INLINE_LAMBDA { together[i] = sum[0][block + i < Count ? block + i : Count - 1]; });
       const Pack values = activation(Pack::collect(together));
       constexpr int target = First / per_register + decltype(r)::value;
+      // registers are assigned, not packs: gcc takes those through memory
       if constexpr (target < Result::registers) {
-        result.value[target] = values;
+        result.value[target].value = values.value;
       } else {
-        result.last = values;
+        result.last.value = values.value;
       }
     });
   }
