@@ -9,7 +9,8 @@ import json
 import pathlib
 import sys
 
-PROGRAMS = ["bench_inference", "bench_rollout", "bench_model", "bench_training", "bench_simulation", "bench_torch"]
+PROGRAMS = ["bench_inference", "bench_rollout", "bench_model", "bench_training", "bench_simulation", "bench_peers", "bench_torch"]
+OURS = {"Predict": "Predict/paper_network", "TrainEpoch": "TrainEpoch/vanilla"}  # in bench_peers, beside the peers
 # (what, numerator, denominator, program): a ratio of two medians of one run; "fastest:a|b" takes the smaller
 RATIOS = [
     ("prediction, over the multiply-add peak", "Predict/paper_network", "Peak/fma", "bench_inference"),
@@ -57,6 +58,15 @@ def pick(found, name):
     return found[name]["median"]
 
 
+def of_peers(runs):
+    """A ratio for each benchmark of a peer: its time over ours, of the same run."""
+    names = sorted({name for (_, program), (_, found) in runs.items() if program == "bench_peers" for name in found})
+    words = {"Predict": "prediction", "TrainEpoch": "training epoch"}
+    kinds = [(name, *name.split("/", 1)) for name in names]
+    return [(f"{words[kind]}, {peer} over ours", name, OURS[kind], "bench_peers") for name, kind, peer in kinds
+            if kind in OURS and name != OURS[kind]]
+
+
 def text(value):
     return f"{value:,.0f}" if value >= 1000 else (f"{value:.0f}" if value >= 100 else f"{value:.1f}")
 
@@ -74,7 +84,7 @@ def main():
     head = "| | " + " | ".join(f"{kinds[m]} (`-march={m}`)" for m in machines) + " |\n" + "|---" * (1 + len(machines)) + "|"
 
     print("Ratios, each within one run:\n\n" + head)
-    for what, above, below, program in RATIOS:
+    for what, above, below, program in RATIOS + of_peers(runs):
         cells = []
         for machine in machines:
             try:
