@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One prediction, batch 1: ours, what Eigen gives, and the time at which this machine's multiply-add units would be
 // full. Predict/* is latency (the output is fed into the next input), PredictThroughput/* independent inputs,
-// Dense/<in>x<out> the latency of one layer with ReLU.
+// Dense/<in>x<out> the latency of one layer with ReLU, Shape/* that of other networks, each with its own Peak/*.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -42,30 +42,52 @@ void register_eigen(const PaperNetwork& network) {
   register_model("naive_eigen_rowmajor", naive_rowmajor, network);
 }
 
-/// `Dense/<In>x<Out>`: as many outputs as there are inputs to take them are fed back.
-template <int In, int Out>
-void register_dense() {
-  using Net = Network<float, InputSize<In>, Dense<Out>, Relu>;
-  static const PackedNetwork<Net> packed = [] {
+/// Latency of a network under a name: as many outputs as there are inputs to take them are fed back.
+template <class Net>
+void register_network(const std::string& name) {
+  static const Net network = [] {
     std::mt19937_64 engine(3);
-    typename Net::Parameters parameters{};
-    for (float& p : parameters) p = static_cast<float>(uniform(engine, -1.0, 1.0)) / static_cast<float>(In);
-    return PackedNetwork<Net>(parameters);
+    Net drawn;
+    for (float& p : drawn.parameters) p = static_cast<float>(uniform(engine, -1.0, 1.0)) / 8.0F;
+    return drawn;
   }();
-  const std::string name = "Dense/" + std::to_string(In) + "x" + std::to_string(Out);
-  benchmark::RegisterBenchmark(name.c_str(), [](benchmark::State& state) {
+  static const PackedNetwork<Net> packed(network.parameters);
+  static const std::array<float, Net::inputs> start = [] {
     std::mt19937_64 engine(4);
-    std::array<float, In> start{};
-    for (float& v : start) v = static_cast<float>(uniform(engine, -1.0, 1.0));
+    std::array<float, Net::inputs> x{};
+    for (float& v : x) v = static_cast<float>(uniform(engine, -1.0, 1.0));
+    return x;
+  }();
+  std::array<float, Net::outputs> expected{}, said{};
+  network.forward(start.data(), expected.data());
+  packed.forward(start.data(), said.data());
+  for (std::size_t i = 0; i < said.size(); ++i) {
+    require_close(name.c_str(), double(expected[i]), double(said[i]), 1e-4 * (1.0 + std::abs(double(expected[i]))));
+  }
+  benchmark::RegisterBenchmark(name.c_str(), [](benchmark::State& state) {
     auto x = start;
-    std::array<float, Out> y{};
+    std::array<float, Net::outputs> y{};
     for (auto _ : state) {
       packed.forward(x.data(), y.data());
-      feed_back(start, y.data(), x.data(), Out);
+      feed_back(start, y.data(), x.data(), y.size());
       benchmark::DoNotOptimize(x.data());
       benchmark::ClobberMemory();
     }
   });
+}
+
+template <int In, int Out>
+void register_dense() {
+  register_network<Network<float, InputSize<In>, Dense<Out>, Relu>>("Dense/" + std::to_string(In) + "x" +
+                                                                    std::to_string(Out));
+}
+
+/// `Shape/<name>` of so many inputs and hidden layers, four outputs, and `Peak/<name>`, its multiply-adds.
+template <int In, int Layers, int Width>
+void register_shape(const std::string& name) {
+  constexpr int multiply_adds = In * Width + (Layers - 1) * Width * Width + Width * 4;
+  register_network<Mlp<float, InputSize<In>, Hidden<Layers, Width>, OutputSize<4>, Relu>>("Shape/" + name);
+  benchmark::RegisterBenchmark(("Peak/" + name).c_str(), fma_peak<NativePack<float>, multiply_adds>);
 }
 
 }  // namespace
@@ -81,6 +103,12 @@ int main(int argc, char** argv) {
   register_dense<40, 40>();
   register_dense<64, 64>();
   register_dense<256, 256>();
+  register_shape<16, 2, 32>("2x32");
+  register_shape<16, 3, 25>("3x25");
+  register_shape<16, 3, 64>("3x64");
+  register_shape<16, 2, 128>("2x128");
+  register_shape<60, 2, 32>("2x32_windowed");
   benchmark::RegisterBenchmark("Peak/fma", fma_peak<NativePack<float>, paper_multiply_adds>);
+  benchmark::RegisterBenchmark("Peak/fma_double", fma_peak<NativePack<double>, paper_multiply_adds>);
   return run_benchmarks(argc, argv);
 }

@@ -9,17 +9,24 @@ import json
 import pathlib
 import sys
 
-PROGRAMS = ["bench_inference", "bench_rollout", "bench_model", "bench_training", "bench_simulation", "bench_torch"]
+PROGRAMS = ["bench_inference", "bench_rollout", "bench_model", "bench_training", "bench_simulation", "bench_peers", "bench_torch"]
+OURS = {"Predict": "Predict/paper_network", "TrainEpoch": "TrainEpoch/vanilla"}  # in bench_peers, beside the peers
 # (what, numerator, denominator, program): a ratio of two medians of one run; "fastest:a|b" takes the smaller
 RATIOS = [
     ("prediction, over the multiply-add peak", "Predict/paper_network", "Peak/fma", "bench_inference"),
+    ("prediction in double, over one in float", "Predict/paper_network_double", "Predict/paper_network",
+     "bench_inference"),
     ("naive Eigen (fastest order), over ours", "fastest:Predict/naive_eigen|Predict/naive_eigen_rowmajor",
      "Predict/paper_network", "bench_inference"),
+    *((f"prediction of {shape}, over its peak", f"Shape/{name}", f"Peak/{name}", "bench_inference")
+      for shape, name in (("2 layers of 32", "2x32"), ("3 of 25", "3x25"), ("3 of 64", "3x64"), ("2 of 128", "2x128"),
+                          ("2 of 32, 60 inputs", "2x32_windowed"))),
     ("batch of 256, per sample, over the peak", "Batched/paper_network/256", "Peak/fma", "bench_rollout"),
     ("batch of 256, Eigen over ours", "Batched/naive_eigen/256", "Batched/paper_network/256", "bench_rollout"),
     ("value and Jacobian, over one prediction", "Jacobian/paper_network", "Predict/paper_network", "bench_rollout"),
     ("predict() with named inputs, over predict_features()", "Model/predict", "Model/predict_features",
      "bench_model"),
+    ("predict() of a block's view, over a header's", "Block/predict_view", "Model/predict", "bench_model"),
     ("training epoch, naive Eigen over ours", "TrainEpoch/naive_eigen", "TrainEpoch/vanilla", "bench_training"),
     ("training epoch, physics-informed over vanilla", "TrainEpoch/physics_informed", "TrainEpoch/vanilla",
      "bench_training"),
@@ -51,6 +58,15 @@ def pick(found, name):
     return found[name]["median"]
 
 
+def of_peers(runs):
+    """A ratio for each benchmark of a peer: its time over ours, of the same run."""
+    names = sorted({name for (_, program), (_, found) in runs.items() if program == "bench_peers" for name in found})
+    words = {"Predict": "prediction", "TrainEpoch": "training epoch"}
+    kinds = [(name, *name.split("/", 1)) for name in names]
+    return [(f"{words[kind]}, {peer} over ours", name, OURS[kind], "bench_peers") for name, kind, peer in kinds
+            if kind in OURS and name != OURS[kind]]
+
+
 def text(value):
     return f"{value:,.0f}" if value >= 1000 else (f"{value:.0f}" if value >= 100 else f"{value:.1f}")
 
@@ -68,7 +84,7 @@ def main():
     head = "| | " + " | ".join(f"{kinds[m]} (`-march={m}`)" for m in machines) + " |\n" + "|---" * (1 + len(machines)) + "|"
 
     print("Ratios, each within one run:\n\n" + head)
-    for what, above, below, program in RATIOS:
+    for what, above, below, program in RATIOS + of_peers(runs):
         cells = []
         for machine in machines:
             try:

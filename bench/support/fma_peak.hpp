@@ -17,20 +17,21 @@ void fma_peak(benchmark::State& state) {
   constexpr int chains = 12;
   constexpr int per_round = chains * Pack::width;
   constexpr int rounds = (MultiplyAdds + per_round - 1) / per_round;
-  float shrink = 0.999f, add = 1e-3f;
+  using Scalar = typename Pack::Scalar;
+  auto shrink = static_cast<Scalar>(0.999), add = static_cast<Scalar>(1e-3);
   benchmark::DoNotOptimize(shrink);
   benchmark::DoNotOptimize(add);
   const Pack factor = Pack::broadcast(shrink);
   const Pack term = Pack::broadcast(add);
   Pack sum[chains];
   unroll<chains>([&](auto i)
-                     PINNQUAD_INLINE_LAMBDA { sum[i] = Pack::broadcast(static_cast<float>(decltype(i)::value)); });
+                     PINNQUAD_INLINE_LAMBDA { sum[i] = Pack::broadcast(static_cast<Scalar>(decltype(i)::value)); });
   for (auto _ : state) {
     for (int round = 0; round < rounds; ++round) {
       unroll<chains>([&](auto i) PINNQUAD_INLINE_LAMBDA { sum[i] = Pack::multiply_add(sum[i], factor, term); });
     }
   }
-  float result[chains * Pack::width];
+  Scalar result[chains * Pack::width];
   unroll<chains>([&](auto i) PINNQUAD_INLINE_LAMBDA { sum[i].store(result + i * Pack::width); });
   benchmark::DoNotOptimize(result);
   // an inverted rate is seconds per 1e9 / MultiplyAdds iterations, which is nanoseconds per forward pass

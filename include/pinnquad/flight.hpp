@@ -36,7 +36,6 @@
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/exported/certificate.hpp"
-#include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/exported/renamed.hpp"
 #include "pinnquad/features/extra_columns.hpp"

@@ -3,9 +3,9 @@
 // CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
 // CASE LONG_DOUBLE: pinnquad: a model block is read in place: float or double of IEEE 754, on a little-endian machine
 // CASE BLOCK_OF_FIRST_FORMAT: pinnquad: a header of format 1 does not check its own names; export it again
+#include "pinnquad/exported/model_view.hpp"
 #include "../support/described_model.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
 
 namespace {
@@ -49,8 +49,7 @@ using Header = test::DescribedModel;
 int main() {
   const std::vector<unsigned char> block = model_block<Header>();
   ModelView<Shape> view;
-  if (ModelView<Shape>::open(block.data(), block.size(), view) != Status::ok) return 1;
-  LoadedModel<Shape> loaded;
-  if (loaded.load(view) != Status::ok) return 1;
-  return self_test(InverseDynamics<LoadedModel<Shape>>(loaded)) == Status::ok ? 0 : 1;
+  ModelView<Shape>::Packed packed;
+  if (ModelView<Shape>::open(block.data(), block.size(), view, packed) != Status::ok) return 1;
+  return self_test(InverseDynamics<ModelView<Shape>>(view)) == Status::ok ? 0 : 1;
 }

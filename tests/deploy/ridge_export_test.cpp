@@ -15,7 +15,6 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/exported/loaded_model.hpp"
 #include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/exported/run_time_model.hpp"
 #include "pinnquad/features/motion_parts.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/exported/loaded_model.hpp"
+#include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "support/block_bytes.hpp"
 #include "support/described_model.hpp"
@@ -27,10 +27,10 @@ ModelView<Shape> view_of(const BlockBytes& block) {
 }
 
 template <class Shape>
-LoadedModel<Shape> loaded_from(const BlockBytes& block) {
-  LoadedModel<Shape> loaded;
-  REQUIRE(loaded.load(view_of<Shape>(block)) == Status::ok);
-  return loaded;
+ModelView<Shape> packed_view_of(const BlockBytes& block, typename ModelView<Shape>::Packed& packed) {
+  ModelView<Shape> view;
+  REQUIRE(ModelView<Shape>::open(block.data(), block.size(), view, packed) == Status::ok);
+  return view;
 }
 
 /// The commands of a model for features between the golden ones, or nothing.
@@ -65,14 +65,16 @@ std::size_t agreeing(const Inverse& inverse, double tolerance) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a view and a loaded model answer as the header does", Model, DescribedModel, DoubleModel) {
+TEST_CASE_TEMPLATE("a view answers as the header does, to its bits where the weights were packed", Model,
+                   DescribedModel, DoubleModel) {
   const BlockBytes block(model_block<Model>());
   const InverseDynamics<ModelView<Model>> viewed(view_of<Model>(block));
-  const InverseDynamics<LoadedModel<Model>> loaded(loaded_from<Model>(block));
+  typename ModelView<Model>::Packed packed;
+  const InverseDynamics<ModelView<Model>> fast(packed_view_of<Model>(block, packed));
   CHECK(agreeing(viewed, golden_tolerance) == 36);
-  CHECK(agreeing(loaded, 0) == 36);  // the same kernel over the same packed weights
+  CHECK(agreeing(fast, 0) == 36);  // the same kernel over the same packed weights
   CHECK(self_test(viewed) == Status::ok);
-  CHECK(self_test(loaded) == Status::ok);
+  CHECK(self_test(fast) == Status::ok);
 }
 
 TEST_CASE("bad inputs are refused by the block's envelope, commands untouched") {
@@ -84,7 +86,8 @@ TEST_CASE("bad inputs are refused by the block's envelope, commands untouched") 
   }
   block.seal();
   const InverseDynamics<ModelView<DescribedModel>> viewed(view_of<DescribedModel>(block));
-  const InverseDynamics<LoadedModel<DescribedModel>> loaded(loaded_from<DescribedModel>(block));
+  ModelView<DescribedModel>::Packed packed;
+  const InverseDynamics<ModelView<DescribedModel>> fast(packed_view_of<DescribedModel>(block, packed));
   const auto refused = [](const auto& inverse, float v_dot, Status expected) {
     MotionInputs<float> inputs;
     inputs.linear_acceleration_m_s2[0] = v_dot;
@@ -96,7 +99,7 @@ TEST_CASE("bad inputs are refused by the block's envelope, commands untouched") 
   for (const auto& [v_dot, expected] : {std::pair{0.4f, Status::ok}, std::pair{1.0f, Status::outside_envelope},
                                         std::pair{std::numeric_limits<float>::quiet_NaN(), Status::not_finite}}) {
     CHECK(refused(viewed, v_dot, expected));
-    CHECK(refused(loaded, v_dot, expected));
+    CHECK(refused(fast, v_dot, expected));
   }
 }
 
@@ -109,7 +112,8 @@ TEST_CASE("a wrong weight under a right checksum fails the self test") {
     block.seal();
     CHECK(self_test(InverseDynamics<ModelView<DescribedModel>>(view_of<DescribedModel>(block))) ==
           Status::self_test_failed);
-    CHECK(self_test(InverseDynamics<LoadedModel<DescribedModel>>(loaded_from<DescribedModel>(block))) ==
+    ModelView<DescribedModel>::Packed packed;
+    CHECK(self_test(InverseDynamics<ModelView<DescribedModel>>(packed_view_of<DescribedModel>(block, packed))) ==
           Status::self_test_failed);
   }
 }
@@ -126,14 +130,11 @@ TEST_CASE("finite weights that overflow are told from sound ones") {
   CHECK(self_test(viewed) == Status::self_test_failed);
 }
 
-TEST_CASE("a view of no block and a model not loaded refuse to fly") {
+TEST_CASE("a view of no block refuses to fly") {
   const InverseDynamics<ModelView<DescribedModel>> viewed{ModelView<DescribedModel>{}};
-  const InverseDynamics<LoadedModel<DescribedModel>> loaded{LoadedModel<DescribedModel>{}};
   Commands<float> commands{};
   CHECK(viewed.predict({}, commands) == Status::outside_envelope);
-  CHECK(loaded.predict({}, commands) == Status::outside_envelope);
   CHECK(self_test(viewed) == Status::self_test_failed);
-  CHECK(self_test(loaded) == Status::self_test_failed);
 }
 
 TEST_CASE("a view is opened anew while it is a copy that flies") {

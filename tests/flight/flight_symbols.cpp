@@ -260,15 +260,13 @@ unsigned char pinnquad_flight_view_predict(const void* block, unsigned long leng
   return static_cast<unsigned char>(inverse.predict_features(x, u));
 }
 
-unsigned char pinnquad_flight_loaded_predict(const void* block, unsigned long length, const double* x, double* u) {
+unsigned char pinnquad_flight_packed_predict(const void* block, unsigned long length, const double* x, double* u) {
   using View = pinnquad::ModelView<pinnquad::test::DoubleModel>;
-  using Loaded = pinnquad::LoadedModel<pinnquad::test::DoubleModel>;
+  static View::Packed packed;
   View view;
-  Status status = View::open(block, length, view);
-  static Loaded loaded;
-  if (status == Status::ok) status = loaded.load(view);
+  const Status status = View::open(block, length, view, packed);
   if (status != Status::ok) return static_cast<unsigned char>(status);
-  const pinnquad::InverseDynamics<Loaded> inverse(loaded);
+  const pinnquad::InverseDynamics<View> inverse(view);
   if (pinnquad::self_test(inverse) != Status::ok) return static_cast<unsigned char>(Status::self_test_failed);
   return static_cast<unsigned char>(inverse.predict_features(x, u));
 }

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "fuzz/fuzzing.hpp"
-#include "pinnquad/exported/loaded_model.hpp"
+#include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "support/described_model.hpp"
 
@@ -156,9 +156,9 @@ void load(const std::uint8_t* data, std::size_t size) {
          "golden vectors come in pairs");
   expect(rows_finite(view.golden_features) && rows_finite(view.golden_commands), "golden vectors are finite");
   fly<Shape>(view);
-  static LoadedModel<Shape> loaded;
-  expect(loaded.load(view) == Status::ok, "what opens loads");
-  fly<Shape>(loaded);
+  static typename View::Packed packed;
+  expect(View::open(memory.block(), size, view, packed) == Status::ok, "what opens is packed");
+  fly<Shape>(view);
 }
 
 void write_u32(std::uint8_t* to, std::size_t value) {

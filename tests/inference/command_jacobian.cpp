@@ -10,7 +10,7 @@
 
 #include "../examples/models/demo_quadrotor.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/exported/loaded_model.hpp"
+#include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "support/block_bytes.hpp"
@@ -53,15 +53,16 @@ void check_against_differences(const Model& model, double tolerance = float_tole
   CHECK(worst <= tolerance);
 }
 
-/// The demo's model as a block, as a view of it and loaded from it.
+/// The demo's model as a block, as a view of it and as one whose weights are packed.
 struct DemoBlock {
+  using View = ModelView<DemoQuadModel>;
   DemoBlock() {
-    REQUIRE(ModelView<DemoQuadModel>::open(bytes.data(), bytes.size(), view) == Status::ok);
-    REQUIRE(loaded->load(view) == Status::ok);
+    REQUIRE(View::open(bytes.data(), bytes.size(), view) == Status::ok);
+    REQUIRE(View::open(bytes.data(), bytes.size(), packed_view, *packed) == Status::ok);
   }
   test::BlockBytes bytes{model_block<DemoQuadModel>()};
-  ModelView<DemoQuadModel> view;
-  std::unique_ptr<LoadedModel<DemoQuadModel>> loaded = std::make_unique<LoadedModel<DemoQuadModel>>();
+  View view, packed_view;
+  std::unique_ptr<View::Packed> packed = std::make_unique<View::Packed>();
 };
 
 struct Narrow {
@@ -75,7 +76,7 @@ TEST_CASE("commands as predicted, derivatives as differences give them, in physi
   SUBCASE("rotor speeds") { check_against_differences<SpeedModel>(SpeedModel{}); }
   const DemoBlock block;
   SUBCASE("a view of a block") { check_against_differences<DemoQuadModel>(block.view); }
-  SUBCASE("a loaded model") { check_against_differences<DemoQuadModel>(*block.loaded); }
+  SUBCASE("a packed view") { check_against_differences<DemoQuadModel>(block.packed_view); }
   SUBCASE("an instance") { check_against_differences<test::SmallModel>(test::SmallInstance{}); }
   SUBCASE("in double") {
     check_against_differences<test::SmallDoubleModel>(test::SmallDoubleModel{}, double_tolerance);
@@ -224,10 +225,10 @@ TEST_CASE("a batch gives each sample what it gets alone") {
   SUBCASE("a header") { check_batch<DemoQuadModel>(); }
   const DemoBlock block;
   SUBCASE("a view of a block") { check_batch(block.view); }
-  SUBCASE("a loaded model") { check_batch(*block.loaded); }
+  SUBCASE("a packed view") { check_batch(block.packed_view); }
 }
 
-TEST_CASE("a view of no block and a model that was not loaded decline: batches and derivatives too") {
+TEST_CASE("a view of no block declines: batches and derivatives too") {
   const auto check = [](const auto& model) {
     const InverseDynamics<std::decay_t<decltype(model)>> inverse(model);
     const auto& x = DemoQuadModel::golden_features[0];
@@ -240,5 +241,4 @@ TEST_CASE("a view of no block and a model that was not loaded decline: batches a
     CHECK(jacobian[0] == -7);
   };
   check(ModelView<DemoQuadModel>{});
-  check(*std::make_unique<LoadedModel<DemoQuadModel>>());
 }

@@ -27,16 +27,16 @@ void predict_outputs(const float* golden, float* y) {
     y[0] = -1.0f;  // the golden commands are those of another schema
 }
 
-/// A block of the exported model, in place and loaded.
+/// A block of the exported model, in place and packed.
 void predict_from_block(float* y) {
-  static pinnquad::LoadedModel<Model> loaded;
-  pinnquad::ModelView<Model> view;
+  using View = pinnquad::ModelView<Model>;
+  static View::Packed memory;
+  View view, packed_view;
   for (int i = 0; i < 8; ++i) y[i] = -1.0f;
-  if (pinnquad::ModelView<Model>::open(block, block_bytes, view) != pinnquad::Status::ok) return;
-  if (loaded.load(view) != pinnquad::Status::ok) return;
+  if (View::open(block, block_bytes, view) != pinnquad::Status::ok) return;
+  if (View::open(block, block_bytes, packed_view, memory) != pinnquad::Status::ok) return;
   constexpr const float* golden = Model::golden_features[0].data();
-  const pinnquad::InverseDynamics<pinnquad::ModelView<Model>> viewed(view);
-  const pinnquad::InverseDynamics<pinnquad::LoadedModel<Model>> from_memory(loaded);
+  const pinnquad::InverseDynamics<View> viewed(view), from_memory(packed_view);
   float jacobian[4 * Model::Features::size];
   pinnquad::Status status = pinnquad::Status::ok;
   pinnquad::predict_batch(viewed, golden, y, &status, 1);

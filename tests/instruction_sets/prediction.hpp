@@ -3,7 +3,7 @@
 #pragma once
 
 #include "../support/small_model.hpp"
-#include "pinnquad/exported/loaded_model.hpp"
+#include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
 #include "pinnquad/inference/self_test.hpp"

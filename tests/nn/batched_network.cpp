@@ -83,15 +83,16 @@ TEST_CASE_TEMPLATE("every sample of a batch as if alone", Net,
   SUBCASE("packs of 3") { check_all_sizes<Net, GenericPack<Scalar, 3>>(); }
 }
 
-TEST_CASE("the bits are those of the portable kernel where both fuse multiply and add" *
-          doctest::skip(!has_vector_unit<float>)) {
-  using Net = Mlp<float, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
+TEST_CASE_TEMPLATE("the bits are those of the portable kernel, rounded once or twice as the target does", Scalar, float,
+                   double) {
+  if (!has_vector_unit<Scalar>) return;
+  using Net = Mlp<Scalar, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
   std::mt19937_64 engine(12);
   Net net;
-  for (float& v : net.parameters) v = static_cast<float>(uniform(engine, -0.4, 0.4));
+  for (Scalar& v : net.parameters) v = static_cast<Scalar>(uniform(engine, -0.4, 0.4));
   constexpr int samples = 77;
-  const auto x = random_values<float>(static_cast<std::size_t>(Net::inputs) * samples, engine);
-  std::vector<float> y(static_cast<std::size_t>(Net::outputs) * samples);
+  const auto x = random_values<Scalar>(static_cast<std::size_t>(Net::inputs) * samples, engine);
+  std::vector<Scalar> y(static_cast<std::size_t>(Net::outputs) * samples);
   BatchedNetwork<Net>::forward(net.parameters.data(), x.data(), y.data(), samples);
   CHECK(y == one_by_one(net, x, samples));
 }

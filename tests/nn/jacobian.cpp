@@ -211,13 +211,14 @@ void check_within_memory() {
 // Rows of weights that end before, with and after a pack; a bias behind the last of them that is long enough to be
 // read, that is not, and none.
 TEST_CASE_TEMPLATE("nothing is read behind parameters and inputs, nothing written behind outputs and Jacobian", Pack,
-                   PINNQUAD_TEST_REGISTER_PACKS, GenericPack<float, 4>) {
-  check_within_memory<Network<float, InputSize<5>, Dense<2>>, Pack>();
-  check_within_memory<Network<float, InputSize<7>, Dense<1>, Gelu>, Pack>();
-  check_within_memory<Network<float, InputSize<17>, Dense<3>>, Pack>();
-  check_within_memory<Network<float, InputSize<16>, Dense<9>, Relu, Dense<4>>, Pack>();
-  check_within_memory<Network<float, InputSize<3>, Sine, Dense<5>, Relu, DenseWithoutBias<2>>, Pack>();
-  check_within_memory<Network<float, InputSize<1>, Relu, DenseWithoutBias<9>>, Pack>();
+                   PINNQUAD_TEST_REGISTER_PACKS, PINNQUAD_TEST_DOUBLE_PACKS, GenericPack<float, 4>) {
+  using Scalar = typename Pack::Scalar;
+  check_within_memory<Network<Scalar, InputSize<5>, Dense<2>>, Pack>();
+  check_within_memory<Network<Scalar, InputSize<7>, Dense<1>, Gelu>, Pack>();
+  check_within_memory<Network<Scalar, InputSize<17>, Dense<3>>, Pack>();
+  check_within_memory<Network<Scalar, InputSize<16>, Dense<9>, Relu, Dense<4>>, Pack>();
+  check_within_memory<Network<Scalar, InputSize<3>, Sine, Dense<5>, Relu, DenseWithoutBias<2>>, Pack>();
+  check_within_memory<Network<Scalar, InputSize<1>, Relu, DenseWithoutBias<9>>, Pack>();
 }
 
 namespace {

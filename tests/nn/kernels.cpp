@@ -97,7 +97,7 @@ TEST_CASE_TEMPLATE("portable matrix-vector product", Scalar, float, double) {
 }
 
 TEST_CASE_TEMPLATE("packed matrix-vector product: values, zero padding, nothing written behind it", Pack,
-                   GenericPack<float, 4>, GenericPack<double, 4>, NativePack<float>) {
+                   GenericPack<float, 4>, GenericPack<double, 4>, NativePack<float>, NativePack<double>) {
   using Scalar = typename Pack::Scalar;
   std::mt19937_64 engine(22);
   const auto check = [&engine](auto shape) {
@@ -127,7 +127,7 @@ TEST_CASE_TEMPLATE("packed matrix-vector product: values, zero padding, nothing 
 }
 
 TEST_CASE_TEMPLATE("mini-batch products: values, and padding that never leaks", Pack, GenericPack<float, 4>,
-                   GenericPack<double, 4>, NativePack<float>) {
+                   GenericPack<double, 4>, NativePack<float>, NativePack<double>) {
   using Scalar = typename Pack::Scalar;
   std::mt19937_64 engine(23);
   for_each_shape(Shapes{}, [&engine](auto shape) {
@@ -183,7 +183,7 @@ TEST_CASE_TEMPLATE("mini-batch products: values, and padding that never leaks", 
 }
 
 TEST_CASE_TEMPLATE("every pack does what a scalar does, lane by lane", Pack, PINNQUAD_TEST_REGISTER_PACKS,
-                   GenericPack<float, 4>, GenericPack<double, 4>, GenericPack<float, 1>) {
+                   PINNQUAD_TEST_DOUBLE_PACKS, GenericPack<float, 4>, GenericPack<double, 4>, GenericPack<float, 1>) {
   using Scalar = typename Pack::Scalar;
   const Scalar infinity = std::numeric_limits<Scalar>::infinity();
   const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();

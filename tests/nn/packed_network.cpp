@@ -97,7 +97,8 @@ std::array<typename Net::Scalar, Net::outputs> packed_outputs(const Parameters& 
 TEST_CASE("a packed network agrees with plain loops in double") {
   SUBCASE("native, float") { agrees_for_many_networks<NativePack<float>>(); }
   SUBCASE("native, double") { agrees_for_many_networks<NativePack<double>>(); }
-  SUBCASE("native, large") { agrees_for_large_networks<NativePack<float>>(); }
+  SUBCASE("native, large, float") { agrees_for_large_networks<NativePack<float>>(); }
+  SUBCASE("native, large, double") { agrees_for_large_networks<NativePack<double>>(); }
   SUBCASE("generic, float") { agrees_for_many_networks<GenericPack<float, 4>>(); }
 }
 
@@ -289,5 +290,6 @@ TEST_CASE("forward_keeping leaves each layer's outputs where they are asked for,
   };
   SUBCASE("float, as wide as registers take") { check(NativePack<float>{}, pinnquad::Index<6>{}); }
   SUBCASE("float, in memory") { check(NativePack<float>{}, pinnquad::Index<41>{}); }
-  SUBCASE("double, in memory") { check(NativePack<double>{}, pinnquad::Index<6>{}); }
+  SUBCASE("double, as wide as registers take") { check(NativePack<double>{}, pinnquad::Index<6>{}); }
+  SUBCASE("double, in memory") { check(NativePack<double>{}, pinnquad::Index<41>{}); }
 }

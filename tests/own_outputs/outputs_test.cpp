@@ -15,7 +15,7 @@
 
 #include "own_outputs/setting.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/exported/loaded_model.hpp"
+#include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
@@ -150,13 +150,14 @@ TEST_CASE_TEMPLATE("a model of other outputs", Model, AccelerationsModel, Wrench
   const test::BlockBytes bytes(model_block<Model>());
   ModelView<Model> view;
   REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), view) == Status::ok);
-  const auto loaded = std::make_unique<LoadedModel<Model>>();
-  REQUIRE(loaded->load(view) == Status::ok);
+  ModelView<Model> packed_view;
+  const auto packed = std::make_unique<typename ModelView<Model>::Packed>();
+  REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), packed_view, *packed) == Status::ok);
 
-  SUBCASE("header, view and loaded block pass their self test and say what plain loops say") {
+  SUBCASE("header, view and packed view pass their self test and say what plain loops say") {
     const InverseDynamics<Model> header;
     const InverseDynamics<ModelView<Model>> viewed(view);
-    const InverseDynamics<LoadedModel<Model>> own(*loaded);
+    const InverseDynamics<ModelView<Model>> own(packed_view);
     CHECK(self_test(header) == Status::ok);
     CHECK(self_test(viewed) == Status::ok);
     CHECK(self_test(own) == Status::ok);
@@ -173,20 +174,20 @@ TEST_CASE_TEMPLATE("a model of other outputs", Model, AccelerationsModel, Wrench
     }
   }
   SUBCASE("a broken output scaler is found") {
-    auto broken = std::make_unique<LoadedModel<Model>>(*loaded);
-    broken->output.mean[Model::Network::outputs - 1] = std::nanf("");
-    CHECK(self_test(InverseDynamics<LoadedModel<Model>>(*broken)) == Status::self_test_failed);
-    broken->output.mean[Model::Network::outputs - 1] = 1e3f;
-    CHECK(self_test(InverseDynamics<LoadedModel<Model>>(*broken)) == Status::self_test_failed);
+    ModelView<Model> broken = packed_view;
+    broken.output.mean[Model::Network::outputs - 1] = std::nanf("");
+    CHECK(self_test(InverseDynamics<ModelView<Model>>(broken)) == Status::self_test_failed);
+    broken.output.mean[Model::Network::outputs - 1] = 1e3f;
+    CHECK(self_test(InverseDynamics<ModelView<Model>>(broken)) == Status::self_test_failed);
   }
   SUBCASE("derivatives") {
     check_jacobian<Model>(Model{});
     check_jacobian<Model>(view);
-    check_jacobian<Model>(*loaded);
+    check_jacobian<Model>(packed_view);
   }
   SUBCASE("batches and the guard") {
     check_batch(Model{});
-    check_batch(*loaded);
+    check_batch(packed_view);
   }
   SUBCASE("outputs of commands are those commands again") {
     using Map = OutputMap<typename Model::Outputs>;
@@ -221,16 +222,17 @@ TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, Structu
   const test::BlockBytes bytes(model_block<Model>());
   ModelView<Model> view;
   REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), view) == Status::ok);
-  const auto loaded = std::make_unique<LoadedModel<Model>>();
-  REQUIRE(loaded->load(view) == Status::ok);
+  ModelView<Model> packed_view;
+  typename ModelView<Model>::Packed packed;
+  REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), packed_view, packed) == Status::ok);
   CHECK(self_test(InverseDynamics<Model>{}) == Status::ok);
   CHECK(self_test(InverseDynamics<ModelView<Model>>(view)) == Status::ok);
-  CHECK(self_test(InverseDynamics<LoadedModel<Model>>(*loaded)) == Status::ok);
+  CHECK(self_test(InverseDynamics<ModelView<Model>>(packed_view)) == Status::ok);
   check_jacobian<Model>(Model{});
   check_jacobian<Model>(view);
-  check_jacobian<Model>(*loaded);
+  check_jacobian<Model>(packed_view);
   check_batch(Model{});
-  check_batch(*loaded);
+  check_batch(packed_view);
   MESSAGE(std::string(Model::name), ": ", 100 * flown_error_m(Model{}), " cm");
 }
 

@@ -303,16 +303,15 @@ int fly_block(const std::string& path, const std::vector<ReplayRow>& rows, const
   require_regular_file(path);
   std::ifstream file(path, std::ios::binary);
   const std::vector<char> block{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  static ModelView<Model>::Packed packed;
   ModelView<Model> view;
-  const Status opened = ModelView<Model>::open(block.data(), block.size(), view);
+  const Status opened = ModelView<Model>::open(block.data(), block.size(), view, packed);
   if (!file || opened != Status::ok) {
     programs::complain("fly_export", path + ": " + (file ? to_string(opened) : "no such readable file"));
     return programs::exit_bad_input;
   }
   std::printf("  block        %s, %zu bytes, trained on %u rows\n", path.c_str(), block.size(), view.training_rows);
-  static LoadedModel<Model> loaded;
-  if (loaded.load(view) != Status::ok) return programs::exit_failed;
-  return fly_model(loaded, rows, columns);
+  return fly_model(view, rows, columns);
 }
 
 int run(int argument_count, char** arguments) {

@@ -55,7 +55,7 @@ constexpr BiasSettings<Scalar> bias_settings() noexcept {
     return {};
   }
 }
-/// Of a block's records: those of a ModelView, a LoadedModel, a RunTimeModel.
+/// Of a block's records: those of a ModelView, a RunTimeModel.
 template <class Scalar, class Number>
 constexpr BiasSettings<Scalar> bias_settings(const ModelRecords<Number>& records) noexcept {
   return records.has_bias ? detail::bias_settings_of<Scalar>(records.bias_time_constants_s) : BiasSettings<Scalar>{};

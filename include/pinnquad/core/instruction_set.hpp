@@ -78,7 +78,7 @@
 
 namespace pinnquad {
 
-/// The registers that kernels of float compute in.
+/// The registers that kernels of float and double compute in.
 enum class VectorUnit { none, sse2, avx2, avx512, neon };
 
 namespace detail {
@@ -106,7 +106,8 @@ inline constexpr bool fuses_float =
     false;
 #endif
 inline constexpr bool fuses_double =
-#if defined(__FP_FAST_FMA) || defined(__FMA__) || (defined(__ARM_FEATURE_FMA) && defined(__aarch64__))
+#if defined(__FP_FAST_FMA) || defined(__FMA__) || defined(__FMA4__) || defined(__AVX512F__) || \
+    (defined(__ARM_FEATURE_FMA) && defined(__aarch64__))
     true;
 #else
     false;

@@ -28,7 +28,7 @@ struct ModelRecords {
   bool beats_linear_regression = false;
   bool has_bias = false;              ///< the next is said
   Scalar bias_time_constants_s[4]{};  ///< sum by sum, of a bias learnt in flight; 0: none of this sum
-  // In the block, or null; as BlockRecord describes them. A LoadedModel has none.
+  // In the block, or null; as BlockRecord describes them.
   const signed char* slope_signs = nullptr;
   const Scalar* residual_range = nullptr;
   const Scalar* distance = nullptr;

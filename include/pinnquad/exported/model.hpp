@@ -50,8 +50,7 @@ enum class ModelKind {
   header,    ///< constants of the compiler: an exported header
   instance,  ///< members of the instance, `parameters` among them, and a forward() of its own
   function,  ///< a forward() of its own, for a Shape; no weights to show
-  view,      ///< for a Shape; weights in a block, behind parameters(): ModelView
-  loaded,    ///< for a Shape; weights of its own, behind parameters() and packed(): LoadedModel
+  view,      ///< for a Shape; weights in a block, behind parameters(), and packed() if asked for: ModelView
 };
 
 namespace detail {

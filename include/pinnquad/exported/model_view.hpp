@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A model whose weights lie in a memory block, checked when it is opened and read in place.
-// The one view of the library: the block must neither move nor change while a view of it is used.
+// A model whose weights lie in a memory block, checked when it is opened and read in place, or packed for the vector
+// unit in memory of the caller's. The block must neither move nor change while a view of it is used.
 #pragma once
 
 #include <cstring>
@@ -10,6 +10,7 @@
 #include "pinnquad/exported/block_records.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_block.hpp"
+#include "pinnquad/nn/packed_network.hpp"
 
 namespace pinnquad {
 
@@ -45,6 +46,20 @@ struct ModelScales {
   ModelRecords<Scalar> records{};
 };
 
+/// Weights as the vector unit's kernel reads them, and where a view finds them; nothing without a vector unit, and for
+/// what is more than a network.
+template <class Answer, bool Packs = has_vector_unit<typename Answer::Scalar>&& is_network<Answer>>
+struct PackedWeights {
+  static constexpr bool exist = true;
+  using type = PackedNetwork<Answer>;
+  const type* packed = nullptr;
+};
+template <class Answer>
+struct PackedWeights<Answer, false> {
+  static constexpr bool exist = false;
+  struct type {};
+};
+
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
@@ -53,16 +68,21 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// A model as `InverseDynamics` reads it, for weights that stay in a block. `Shape` says what the block must hold: an
 /// exported header, or any type with Scalar, Network, Features, Outputs and Vehicle.
 /// Lifetime: scalers and envelope are copied; weights, golden vectors and optional records are read in the block each
-/// time. A copy of a view looks into the same block. As made, a view declines: its envelope is empty, its self test
-/// fails, forward() gives NaN.
+/// time. A copy of a view looks into the same block, and at the same packed weights. As made, a view declines: its
+/// envelope is empty, its self test fails, forward() gives NaN.
 template <class ShapeType>
-class ModelView : public detail::ModelScales<ShapeType> {
+class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedWeights<typename ShapeType::Network> {
+  using Place = detail::PackedWeights<typename ShapeType::Network>;
+
  public:
   static constexpr ModelKind kind = ModelKind::view;
   using Scales = detail::ModelScales<ShapeType>;
   using typename Scales::Features;
   using typename Scales::Network;
   using typename Scales::Scalar;
+  /// Memory for the weights as the vector unit wants them: a PackedNetwork, about as large as they are and aligned to
+  /// 64 bytes; empty where there is no vector unit, and for what is more than a network.
+  using Packed = typename Place::type;
 
   /// Rows of scalars in the block. As made, one row of zeros.
   template <int Columns>
@@ -126,21 +146,46 @@ class ModelView : public detail::ModelScales<ShapeType> {
     view.training_data_hash = detail::read_u64(bytes + Header::training_data_hash);
     view.training_rows = detail::read_u32(bytes + Header::training_rows);
     view.records = records;
+    if constexpr (Place::exist) view.Place::packed = nullptr;
     return Status::ok;
   }
+  /// The same, and the weights are packed in `memory`, which then must neither move nor change either: predictions as
+  /// fast as a header's, to its bits. Without it the portable kernel reads the block.
+  static Status open(const void* block, std::size_t length, ModelView& view, Packed& memory) noexcept {
+    const Status status = open(block, length, view);
+    if constexpr (Place::exist) {
+      if (status == Status::ok) {
+        memory.assign(view.parameters_);
+        view.Place::packed = &memory;
+      }
+    }
+    return status;
+  }
 
-  /// The bare network, standardised in and out, straight from the block: the portable kernel.
+  /// The bare network, standardised in and out: the vector unit's kernel where the weights were packed, else the
+  /// portable one.
   PINNQUAD_ALWAYS_INLINE void forward(const Scalar* standardised, Scalar* outputs) const noexcept {
     if (parameters_ == nullptr) {
       constexpr Scalar nothing = std::numeric_limits<Scalar>::quiet_NaN();
       for (int i = 0; i < Network::outputs; ++i) outputs[i] = nothing;
       return;
     }
+    if constexpr (Place::exist) {
+      if (Place::packed != nullptr) return Place::packed->forward(standardised, outputs);
+    }
     Network::forward(parameters_, standardised, outputs);
   }
 
   /// The weights in the block, or null.
   const Scalar* parameters() const noexcept { return parameters_; }
+  /// The packed weights, or null.
+  const Packed* packed() const noexcept {
+    if constexpr (Place::exist) {
+      return Place::packed;
+    } else {
+      return nullptr;
+    }
+  }
 
  private:
   template <class Array>

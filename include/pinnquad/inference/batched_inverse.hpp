@@ -32,7 +32,7 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// For each sample s InverseDynamics::predict_features(), to rounding: x[k * samples + s] is its feature k in physical
 /// units, commands[i * samples + s] its command i, statuses[s] its Status. Commands of a sample are written only if
 /// has_output(statuses[s]). Of the guard, all but its fallback applies. Any model that shows its weights: a header's,
-/// a ModelView, a LoadedModel. No heap; stack for 2 packs of samples.
+/// a ModelView. No heap; stack for 2 packs of samples.
 template <class Model, class GuardType>
 void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
                    typename Model::Scalar* commands, Status* statuses, int samples) noexcept {

@@ -13,8 +13,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// commands = u(x) and jacobian[i * Features::size + k] = du_i / dx_k, 4 x Features::size, row-major, in physical units
 /// (for the angular accelerations: per rad/s^2). Exact derivatives of network and output schema. Of the guard, the
 /// envelope, the distance and the checks of the commands apply; a fallback is not asked. Where the commands are clipped
-/// (`limited`) the Jacobian is that of the unclipped ones. Any model that shows its weights: a header's, a ModelView,
-/// a LoadedModel. Both outputs are untouched unless has_output(status).
+/// (`limited`) the Jacobian is that of the unclipped ones. Any model that shows its weights: a header's, a ModelView.
+/// Both outputs are untouched unless has_output(status).
 template <class Model, class GuardType>
 Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, const typename Model::Scalar* x,
                              typename Model::Scalar* commands, typename Model::Scalar* jacobian) noexcept {
@@ -35,11 +35,13 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
   Scalar result[rotor_count], by_features[rotor_count * size];
   const Scalar* weights = detail::row_major_weights(inverse.model());
   Pipeline::run(scales, x, outputs, result, [&](const Scalar* standardised, Scalar* made) PINNQUAD_INLINE_LAMBDA {
-    if constexpr (detail::is_packed<Model>) {
-      JacobianPass<Network>::run(detail::packed_weights(inverse.model()), weights, standardised, made, slopes);
-    } else {
-      predictor_jacobian<Network>(weights, standardised, made, slopes);
+    if constexpr (detail::may_be_packed<Model>) {
+      if (const auto* const packed = detail::packed_weights(inverse.model())) {
+        JacobianPass<Network>::run(*packed, weights, standardised, made, slopes);
+        return;
+      }
     }
+    predictor_jacobian<Network>(weights, standardised, made, slopes);
   });
   Pipeline::chain(scales, x, outputs, slopes, by_features);
   if (!all_finite(by_features, rotor_count * size)) return Status::output_not_finite;

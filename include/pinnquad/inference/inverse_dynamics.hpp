@@ -20,16 +20,17 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Model>
 inline constexpr PackedNetwork<typename Model::Network> packed_model{Model::parameters};
 
-/// True where the vector unit's kernel predicts, from packed_weights(): the model's own, or the compiler's.
+/// True for a model whose packed_weights() may be those of the vector unit's kernel: a header's always are, a view's if
+/// it was opened so; else they are null.
 template <class Model>
-inline constexpr bool is_packed = has_vector_unit<typename Model::Scalar>&& is_network<typename Model::Network> &&
-                                  (model_kind<Model> == ModelKind::header || model_kind<Model> == ModelKind::loaded);
+inline constexpr bool may_be_packed = has_vector_unit<typename Model::Scalar>&& is_network<typename Model::Network> &&
+                                      (model_kind<Model> == ModelKind::header || model_kind<Model> == ModelKind::view);
 template <class Model>
-PINNQUAD_ALWAYS_INLINE const PackedNetwork<typename Model::Network>& packed_weights(const Model& model) noexcept {
-  if constexpr (model_kind<Model> == ModelKind::loaded) {
+PINNQUAD_ALWAYS_INLINE const PackedNetwork<typename Model::Network>* packed_weights(const Model& model) noexcept {
+  if constexpr (model_kind<Model> == ModelKind::view) {
     return model.packed();
   } else {
-    return packed_model<Model>;
+    return &packed_model<Model>;
   }
 }
 

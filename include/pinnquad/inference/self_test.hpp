@@ -72,7 +72,10 @@ bool numbers_finite(const Model& model) noexcept {
   finite &= all_finite(scales.input_mean, size) && all_finite(scales.input_deviation, size);
   finite &= all_finite(scales.output_mean, Model::Network::outputs);
   finite &= all_finite(scales.output_deviation, Model::Network::outputs);
-  if constexpr (is_packed<Model>) finite &= packed_weights(model).finite();
+  if constexpr (may_be_packed<Model>) {
+    const auto* const packed = packed_weights(model);
+    finite &= packed == nullptr || packed->finite();
+  }
   return finite;
 }
 

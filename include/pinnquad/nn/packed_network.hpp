@@ -155,21 +155,23 @@ struct MemoryRun {
   };
 };
 
-/// The steps of a network, from register to register: dense layers of float, each with at most one activation, small
+/// The steps of a network, from register to register: dense layers, each with at most one activation, small
 /// enough for the registers. Hidden layers that are all the same are a loop.
 template <class Network, class Pack>
 struct RegisterRun {
+  using Scalar = typename Network::Scalar;
   using Kernel = PackedKernel<Pack>;
   using Sizes = typename Network::Sizes;
 
   static constexpr int size() noexcept {
     return walk_forward<Network, Kernel>(CountSize{}, Count<FirstValues>{0}).size;
   }
-  static constexpr void pack(const float* parameters, float* packed) noexcept {
+  static constexpr void pack(const Scalar* parameters, Scalar* packed) noexcept {
     walk_forward<Network, Kernel>(Arrange{{}, parameters}, Place<FirstValues>{packed});
   }
   template <class Keep>
-  static PINNQUAD_ALWAYS_INLINE void forward(const float* packed, const float* x, float* y, const Keep& keep) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const Scalar* x, Scalar* y,
+                                             const Keep& keep) noexcept {
     run<0>(packed, FirstValues{x}, y, keep);
   }
 
@@ -202,16 +204,16 @@ struct RegisterRun {
   template <class ValuesType>
   struct Place {
     using Values = ValuesType;
-    float* packed;
+    Scalar* packed;
   };
   struct Arrange : Loops {
-    const float* parameters;
+    const Scalar* parameters;
     template <class Step, class State>
     constexpr auto visit(const State& state) const noexcept {
       using Layer = Dense<Step, State>;
       constexpr int count = Loops::template together<Step, State>;
       for (int i = 0; i < count; ++i) {
-        const float* own = parameters + Step::parameters_offset + i * Step::Layer::parameter_count;
+        const Scalar* own = parameters + Step::parameters_offset + i * Step::Layer::parameter_count;
         Layer::pack(own, own + Step::Layer::weight_count, state.packed + i * Layer::size);
       }
       return Place<typename Layer::Result>{state.packed + count * Layer::size};
@@ -221,7 +223,7 @@ struct RegisterRun {
   /// The steps from `Index` on, as walk_forward() takes them. Handed on from call to call: values returned from visit
   /// to visit would cost registers.
   template <int Index, class Values, class Keep>
-  static PINNQUAD_ALWAYS_INLINE void run(const float* packed, const Values& x, float* y, const Keep& keep) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* packed, const Values& x, Scalar* y, const Keep& keep) noexcept {
     using Here = Step<Network, Kernel, Index>;
     using Layer = RegisterLayer<Pack, Here::Layer::outputs, Values>;
     constexpr int count = Loops::template together<Here, Place<Values>>;
@@ -233,7 +235,7 @@ struct RegisterRun {
     }
   }
   template <class Here, int Count, class Values, class Keep>
-  static PINNQUAD_ALWAYS_INLINE auto multiply(const float* packed, const Values& x, const Keep& keep) noexcept {
+  static PINNQUAD_ALWAYS_INLINE auto multiply(const Scalar* packed, const Values& x, const Keep& keep) noexcept {
     using Layer = RegisterLayer<Pack, Here::Layer::outputs, Values>;
     using Activation = typename Here::Activation;
     constexpr int stride = Sizes::outputs_before(Here::next) - Sizes::outputs_before(Here::index);

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "pinnquad/exported/loaded_model.hpp"
+#include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/inference/self_test.hpp"
 
 namespace pinnquad::autopilot {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Matrix-vector product for batch 1: each input is broadcast and multiplies its column, several accumulator chains
-// hide the multiply-add latency. Weights are packed: column by column, each padded to whole packs, the bias as last
-// column.
+// hide the multiply-add latency. Weights are packed as they are read, so that a processor can fetch ahead what lies
+// beyond its nearest cache: by groups of packs of rows, in a group column by column, the bias as last column.
 #pragma once
 
 #include "pinnquad/nn/kernel/pack.hpp"
@@ -14,21 +14,27 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Pack, int Rows, int Columns>
 inline constexpr int packed_size = padded<Pack>(Rows) * (Columns + 1);
 
+/// Packs of rows that are worked on at once; what is left of them is a smaller group.
+inline constexpr int packs_in_group = 4;
+
 /// Row-major weight and bias -> packed, which is all zero before. Usable at compile time.
 template <class Pack, int Rows, int Columns, class Scalar>
 constexpr void pack_columns(const Scalar* weight, const Scalar* bias, Scalar* packed) noexcept {
-  constexpr int stride = padded<Pack>(Rows);
+  constexpr int group = packs_in_group * Pack::width, padded_rows = padded<Pack>(Rows);
   for (int row = 0; row < Rows; ++row) {
-    for (int column = 0; column < Columns; ++column) packed[column * stride + row] = weight[row * Columns + column];
-    packed[Columns * stride + row] = bias[row];
+    const int first = row / group * group;
+    const int stride = padded_rows - first < group ? padded_rows - first : group;
+    Scalar* const to = packed + first * (Columns + 1) + (row - first);
+    for (int column = 0; column < Columns; ++column) to[column * stride] = weight[row * Columns + column];
+    to[Columns * stride] = bias[row];
   }
 }
 
-/// `Count` packs of rows over all columns; `stride` scalars from column to column.
+/// A group of `Count` packs of rows over all columns.
 template <class Pack, int Columns, int Count, class Activation>
-PINNQUAD_ALWAYS_INLINE void multiply_packed_rows(const typename Pack::Scalar* packed, int stride,
-                                                 const typename Pack::Scalar* x, typename Pack::Scalar* y,
-                                                 const Activation& activation) noexcept {
+PINNQUAD_ALWAYS_INLINE void multiply_packed_rows(const typename Pack::Scalar* packed, const typename Pack::Scalar* x,
+                                                 typename Pack::Scalar* y, const Activation& activation) noexcept {
+  constexpr int stride = Count * Pack::width;
   constexpr int chains = Count >= 4 ? 2 : 4;
   Pack sum[chains][Count];
   unroll<Count>([&](auto v) PINNQUAD_INLINE_LAMBDA {
@@ -57,15 +63,14 @@ template <class Pack, int Rows, int Columns, class Activation>
 PINNQUAD_ALWAYS_INLINE void multiply_packed(const typename Pack::Scalar* packed, const typename Pack::Scalar* x,
                                             typename Pack::Scalar* y, const Activation& activation) noexcept {
   static_assert(require_pack<Pack>());
-  constexpr int stride = padded<Pack>(Rows);
-  constexpr int vectors = stride / Pack::width;
-  constexpr int whole = vectors / 4 * 4;  // four packs of rows at once
-  for (int v = 0; v < whole; v += 4) {
-    multiply_packed_rows<Pack, Columns, 4>(packed + v * Pack::width, stride, x, y + v * Pack::width, activation);
+  constexpr int vectors = padded<Pack>(Rows) / Pack::width;
+  constexpr int whole = vectors / packs_in_group * packs_in_group;
+  for (int row = 0; row < whole * Pack::width; row += packs_in_group * Pack::width) {
+    multiply_packed_rows<Pack, Columns, packs_in_group>(packed + row * (Columns + 1), x, y + row, activation);
   }
   if constexpr (vectors > whole) {
-    multiply_packed_rows<Pack, Columns, vectors - whole>(packed + whole * Pack::width, stride, x,
-                                                         y + whole * Pack::width, activation);
+    constexpr int row = whole * Pack::width;
+    multiply_packed_rows<Pack, Columns, vectors - whole>(packed + row * (Columns + 1), x, y + row, activation);
   }
 }
 

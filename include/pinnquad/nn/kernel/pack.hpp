@@ -10,15 +10,19 @@
 #if defined(PINNQUAD_UNIT_AVX512)
 #include "pinnquad/nn/kernel/pack_avx512.hpp"
 #define PINNQUAD_FLOAT_PACK PackAvx512
+#define PINNQUAD_DOUBLE_PACK PackAvx512Double
 #elif defined(PINNQUAD_UNIT_AVX2)
 #include "pinnquad/nn/kernel/pack_avx2.hpp"
 #define PINNQUAD_FLOAT_PACK PackAvx2
+#define PINNQUAD_DOUBLE_PACK PackAvx2Double
 #elif defined(PINNQUAD_UNIT_SSE2)
 #include "pinnquad/nn/kernel/pack_sse2.hpp"
 #define PINNQUAD_FLOAT_PACK PackSse2
+#define PINNQUAD_DOUBLE_PACK PackSse2Double
 #elif defined(PINNQUAD_UNIT_NEON)
 #include "pinnquad/nn/kernel/pack_neon.hpp"
 #define PINNQUAD_FLOAT_PACK PackNeon
+#define PINNQUAD_DOUBLE_PACK PackNeonDouble
 #endif
 
 namespace pinnquad {
@@ -35,9 +39,15 @@ struct NativePack<float> {
   using type = PINNQUAD_FLOAT_PACK;
   static_assert(type::fused == fuses_float, "pinnquad: this pack and the portable kernel round a * b + c differently");
 };
+template <>
+struct NativePack<double> {
+  using type = PINNQUAD_DOUBLE_PACK;
+  static_assert(type::fused == fuses_double, "pinnquad: this pack and the portable kernel round a * b + c differently");
+};
 #undef PINNQUAD_FLOAT_PACK
+#undef PINNQUAD_DOUBLE_PACK
 #endif
-static_assert(NativePack<float>::type::unit == vector_unit,
+static_assert(NativePack<float>::type::unit == vector_unit && NativePack<double>::type::unit == vector_unit,
               "pinnquad: this pack is not of the vector unit that core/instruction_set.hpp names");
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail

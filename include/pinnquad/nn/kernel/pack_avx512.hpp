@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sixteen floats with AVX-512.
+// Sixteen floats, or eight doubles, with AVX-512.
 // The interface is that of pack_contract.hpp; include only where the compiler targets AVX-512F.
 #pragma once
 
@@ -118,6 +118,106 @@ struct PackAvx512 {
     } else {
       alignas(64) float lane[width];
       dense.store(lane);
+      for (int i = 0; i < Count; ++i) y[i] = lane[i];
+    }
+  }
+};
+
+/// 8 doubles in one register.
+struct PackAvx512Double {
+  using Scalar = double;
+  static constexpr VectorUnit unit = VectorUnit::avx512;
+  static constexpr bool fused = true;
+  static constexpr int width = 8;
+  static constexpr int tile_rows = 8;
+  static constexpr int tile_vectors = 2;
+
+  __m512d value;
+  static constexpr __mmask8 all = 0xff;  ///< as above
+
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double load(const double* p) noexcept { return {_mm512_loadu_pd(p)}; }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double broadcast(double v) noexcept { return {_mm512_set1_pd(v)}; }
+  PINNQUAD_ALWAYS_INLINE void store(double* p) const noexcept { _mm512_storeu_pd(p, value); }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double multiply_add(PackAvx512Double a, PackAvx512Double b,
+                                                              PackAvx512Double c) noexcept {
+    return {_mm512_fmadd_pd(a.value, b.value, c.value)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double square_root(PackAvx512Double a) noexcept {
+    return {_mm512_maskz_sqrt_pd(all, a.value)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double positive_part(PackAvx512Double a) noexcept {
+    if constexpr (finite_math_only) {
+      const __m512i bits = _mm512_castpd_si512(a.value);
+      const __mmask8 kept = _mm512_cmp_epi64_mask(bits, _mm512_set1_epi64(above_negatives_double), _MM_CMPINT_NLT);
+      return {_mm512_castsi512_pd(_mm512_maskz_mov_epi64(kept, bits))};
+    } else {
+      return {_mm512_maskz_max_pd(all, _mm512_setzero_pd(), a.value)};
+    }
+  }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double where_positive(PackAvx512Double gate, PackAvx512Double a) noexcept {
+    const __mmask8 positive = _mm512_cmp_pd_mask(gate.value, _mm512_setzero_pd(), _CMP_GT_OQ);
+    return {_mm512_maskz_mov_pd(positive, a.value)};
+  }
+
+  // A layer in registers (register_layer.hpp): four rows, each in two neighbouring lanes that take two inputs; two such
+  // sums make a register of eight values.
+  static constexpr int columns = 2;
+  static constexpr int values = 8;
+  static constexpr int blocks_per_register = 2;
+  static constexpr int blocks_at_once = 6;
+  static constexpr int chains = 2;
+
+  static constexpr int lane_of_value(int value) noexcept { return value; }
+  /// The row whose products stand in lanes 2 pair and 2 pair + 1 of a block, such that collect() puts it in its place.
+  static constexpr int row_of_pair(int block, int pair) noexcept { return 2 * pair + block; }
+
+  /// Values First and First + 1, in turn.
+  template <int First>
+  PINNQUAD_ALWAYS_INLINE PackAvx512Double repeat() const noexcept {
+    return {_mm512_maskz_shuffle_f64x2(all, value, value, First / 2 * 0x55)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double repeat(const double* x) noexcept {
+    return {_mm512_castps_pd(_mm512_maskz_broadcast_f32x4(0xffff, _mm_castpd_ps(_mm_loadu_pd(x))))};
+  }
+  /// `v`, the last of an odd count, and 1 in turn.
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double repeat_last(PackAvx512Double v) noexcept {
+    return {_mm512_mask_broadcastsd_pd(_mm512_set1_pd(1.0), 0x55, v.lowest_two())};
+  }
+  PINNQUAD_ALWAYS_INLINE PackAvx512Double with_one() const noexcept {
+    return {_mm512_mask_blend_pd(0xaa, value, _mm512_set1_pd(1.0))};
+  }
+  PINNQUAD_ALWAYS_INLINE __m128d lowest_two() const noexcept {
+    return _mm_castps_pd(_mm512_maskz_extractf32x4_ps(0xf, _mm512_castpd_ps(value), 0));
+  }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double from_scalar(double v) noexcept { return broadcast(v); }
+  /// The sums of two blocks, both lanes of a row added, as values.
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double collect(const PackAvx512Double* sum) noexcept {
+    return {_mm512_add_pd(_mm512_maskz_unpacklo_pd(all, sum[0].value, sum[1].value),
+                          _mm512_maskz_unpackhi_pd(all, sum[0].value, sum[1].value))};
+  }
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE PackAvx512Double head() const noexcept {
+    return {_mm512_maskz_mov_pd((1 << Count) - 1, value)};
+  }
+  /// Sum over the lanes, in the first.
+  PINNQUAD_ALWAYS_INLINE PackAvx512Double sum_of_values() const noexcept {
+    const __m256d four = _mm256_add_pd(_mm512_maskz_extractf64x4_pd(0xf, value, 0),  //
+                                       _mm512_maskz_extractf64x4_pd(0xf, value, 1));
+    const __m128d two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd(four, 1));
+    return {_mm512_zextpd128_pd512(_mm_add_pd(two, _mm_unpackhi_pd(two, two)))};
+  }
+  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+v"(value)); }
+  PINNQUAD_ALWAYS_INLINE double first_value() const noexcept { return _mm512_cvtsd_f64(value); }
+  /// y[0, Count) and nothing behind.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE void store_values(double* y) const noexcept {
+    if constexpr (Count == width) {
+      store(y);
+    } else if constexpr (Count == 4) {
+      _mm256_storeu_pd(y, _mm512_maskz_extractf64x4_pd(0xf, value, 0));
+    } else {
+      alignas(64) double lane[width];
+      store(lane);
       for (int i = 0; i < Count; ++i) y[i] = lane[i];
     }
   }

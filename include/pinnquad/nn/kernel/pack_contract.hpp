@@ -10,6 +10,7 @@
 //
 // The second contract: how a dense layer lies in registers (register_layer.hpp). A pack that states `blocks_at_once`
 // takes part.
+//   value: its register
 //   columns: inputs that a step takes, 1 or 2; each row stands in `columns` neighbouring lanes (a "pair")
 //   values: outputs that one register holds; blocks_per_register: blocks (of width / columns rows) that make it
 //   blocks_at_once: blocks worked on side by side; chains: sums per block that hide the multiply-add's latency

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A pack of scalars without instruction set: plain loops that a compiler may vectorise.
-// The interface is that of pack_contract.hpp; used for double, for other scalars, and where no vector unit is targeted.
+// The interface is that of pack_contract.hpp; used for other scalars than float and double, and where no vector unit is
+// targeted.
 #pragma once
 
 #include "pinnquad/core/attributes.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Four floats with NEON (aarch64).
+// Four floats, or two doubles, with NEON (aarch64).
 // The interface is that of pack_contract.hpp; include only where the compiler targets aarch64.
 #pragma once
 
@@ -80,6 +80,73 @@ struct PackNeon {
       alignas(16) float lane[width];
       store(lane);
       for (int i = 0; i < Count; ++i) y[i] = lane[i];
+    }
+  }
+};
+
+/// 2 doubles in one register.
+struct PackNeonDouble {
+  using Scalar = double;
+  static constexpr VectorUnit unit = VectorUnit::neon;
+  static constexpr bool fused = true;
+  static constexpr int width = 2;
+  static constexpr int tile_rows = 4;
+  static constexpr int tile_vectors = 2;
+
+  float64x2_t value;
+
+  static PINNQUAD_ALWAYS_INLINE PackNeonDouble load(const double* p) noexcept { return {vld1q_f64(p)}; }
+  static PINNQUAD_ALWAYS_INLINE PackNeonDouble broadcast(double v) noexcept { return {vdupq_n_f64(v)}; }
+  PINNQUAD_ALWAYS_INLINE void store(double* p) const noexcept { vst1q_f64(p, value); }
+  /// a * b + c
+  static PINNQUAD_ALWAYS_INLINE PackNeonDouble multiply_add(PackNeonDouble a, PackNeonDouble b,
+                                                            PackNeonDouble c) noexcept {
+    return {vfmaq_f64(c.value, a.value, b.value)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackNeonDouble square_root(PackNeonDouble a) noexcept { return {vsqrtq_f64(a.value)}; }
+  /// As that of floats.
+  static PINNQUAD_ALWAYS_INLINE PackNeonDouble positive_part(PackNeonDouble a) noexcept {
+    return {vmaxq_f64(a.value, vdupq_n_f64(0.0))};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackNeonDouble where_positive(PackNeonDouble gate, PackNeonDouble a) noexcept {
+    return {vreinterpretq_f64_u64(vandq_u64(vcgtzq_f64(gate.value), vreinterpretq_u64_f64(a.value)))};
+  }
+
+  // A layer in registers (register_layer.hpp): two rows, one input.
+  static constexpr int columns = 1;
+  static constexpr int values = 2;
+  static constexpr int blocks_per_register = 1;
+  static constexpr int blocks_at_once = 12;
+  static constexpr int chains = 1;
+
+  static constexpr int lane_of_value(int value) noexcept { return value; }
+  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
+
+  /// Value First in both lanes.
+  template <int First>
+  PINNQUAD_ALWAYS_INLINE PackNeonDouble repeat() const noexcept {
+    return {vdupq_laneq_f64(value, First)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackNeonDouble repeat(const double* x) noexcept { return broadcast(*x); }
+  static PINNQUAD_ALWAYS_INLINE PackNeonDouble repeat_last(PackNeonDouble v) noexcept { return v.repeat<0>(); }
+  static PINNQUAD_ALWAYS_INLINE PackNeonDouble from_scalar(double v) noexcept { return broadcast(v); }
+  static PINNQUAD_ALWAYS_INLINE PackNeonDouble collect(const PackNeonDouble* sum) noexcept { return *sum; }
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE PackNeonDouble head() const noexcept {
+    static_assert(Count == 1 || Count == 2);
+    return Count == 2 ? *this : PackNeonDouble{vcopyq_laneq_f64(value, 1, vdupq_n_f64(0.0), 0)};
+  }
+  /// Sum over the lanes, in every one.
+  PINNQUAD_ALWAYS_INLINE PackNeonDouble sum_of_values() const noexcept { return broadcast(vaddvq_f64(value)); }
+  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+w"(value)); }
+  PINNQUAD_ALWAYS_INLINE double first_value() const noexcept { return vgetq_lane_f64(value, 0); }
+  /// y[0, Count) and nothing behind.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE void store_values(double* y) const noexcept {
+    if constexpr (Count == width) {
+      store(y);
+    } else {
+      vst1q_lane_f64(y, value, 0);
     }
   }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Four floats with SSE2, which every x86-64 has.
+// Four floats, or two doubles, with SSE2, which every x86-64 has.
 // The interface is that of pack_contract.hpp; include only where the compiler targets SSE2.
 #pragma once
 
@@ -102,6 +102,85 @@ struct PackSse2 {
       alignas(16) float lane[width];
       store(lane);
       for (int i = 0; i < Count; ++i) y[i] = lane[i];
+    }
+  }
+};
+
+/// 2 doubles in one register; rounded as floats are.
+struct PackSse2Double {
+  using Scalar = double;
+  static constexpr VectorUnit unit = VectorUnit::sse2;
+  static constexpr bool fused = PackSse2::fused;
+  static constexpr int width = 2;
+  static constexpr int tile_rows = 4;
+  static constexpr int tile_vectors = 2;
+
+  __m128d value;
+
+  static PINNQUAD_ALWAYS_INLINE PackSse2Double load(const double* p) noexcept { return {_mm_loadu_pd(p)}; }
+  static PINNQUAD_ALWAYS_INLINE PackSse2Double broadcast(double v) noexcept { return {_mm_set1_pd(v)}; }
+  PINNQUAD_ALWAYS_INLINE void store(double* p) const noexcept { _mm_storeu_pd(p, value); }
+  /// a * b + c
+  static PINNQUAD_ALWAYS_INLINE PackSse2Double multiply_add(PackSse2Double a, PackSse2Double b,
+                                                            PackSse2Double c) noexcept {
+#if defined(__FMA__)
+    return {_mm_fmadd_pd(a.value, b.value, c.value)};
+#elif defined(__FMA4__)
+    return {_mm_macc_pd(a.value, b.value, c.value)};
+#else
+    return a * b + c;
+#endif
+  }
+  static PINNQUAD_ALWAYS_INLINE PackSse2Double square_root(PackSse2Double a) noexcept { return {_mm_sqrt_pd(a.value)}; }
+  static PINNQUAD_ALWAYS_INLINE PackSse2Double positive_part(PackSse2Double a) noexcept {
+    if constexpr (finite_math_only) {  // integers of 64 bits are not compared before SSE 4.2
+      return {_mm_set_pd(detail::positive_part(_mm_cvtsd_f64(_mm_unpackhi_pd(a.value, a.value))),
+                         detail::positive_part(_mm_cvtsd_f64(a.value)))};
+    } else {
+      return {_mm_max_pd(_mm_setzero_pd(), a.value)};
+    }
+  }
+  static PINNQUAD_ALWAYS_INLINE PackSse2Double where_positive(PackSse2Double gate, PackSse2Double a) noexcept {
+    return {_mm_and_pd(_mm_cmpgt_pd(gate.value, _mm_setzero_pd()), a.value)};
+  }
+
+  // A layer in registers (register_layer.hpp): two rows, one input.
+  static constexpr int columns = 1;
+  static constexpr int values = 2;
+  static constexpr int blocks_per_register = 1;
+  static constexpr int blocks_at_once = 6;
+  static constexpr int chains = 1;
+
+  static constexpr int lane_of_value(int value) noexcept { return value; }
+  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
+
+  /// Value First in both lanes.
+  template <int First>
+  PINNQUAD_ALWAYS_INLINE PackSse2Double repeat() const noexcept {
+    return {_mm_shuffle_pd(value, value, First * 3)};
+  }
+  static PINNQUAD_ALWAYS_INLINE PackSse2Double repeat(const double* x) noexcept { return broadcast(*x); }
+  static PINNQUAD_ALWAYS_INLINE PackSse2Double repeat_last(PackSse2Double v) noexcept { return v.repeat<0>(); }
+  static PINNQUAD_ALWAYS_INLINE PackSse2Double from_scalar(double v) noexcept { return broadcast(v); }
+  static PINNQUAD_ALWAYS_INLINE PackSse2Double collect(const PackSse2Double* sum) noexcept { return *sum; }
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE PackSse2Double head() const noexcept {
+    static_assert(Count == 1 || Count == 2);
+    return Count == 2 ? *this : PackSse2Double{_mm_move_sd(_mm_setzero_pd(), value)};
+  }
+  /// Sum over the lanes, in the first.
+  PINNQUAD_ALWAYS_INLINE PackSse2Double sum_of_values() const noexcept {
+    return {_mm_add_pd(value, _mm_unpackhi_pd(value, value))};
+  }
+  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+x"(value)); }
+  PINNQUAD_ALWAYS_INLINE double first_value() const noexcept { return _mm_cvtsd_f64(value); }
+  /// y[0, Count) and nothing behind.
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE void store_values(double* y) const noexcept {
+    if constexpr (Count == width) {
+      store(y);
+    } else {
+      _mm_store_sd(y, value);
     }
   }
 };

@@ -61,7 +61,7 @@ struct RegisterValues {
     if constexpr (lone) last = activation(last);
   }
   /// y[0, Size) and nothing behind.
-  PINNQUAD_ALWAYS_INLINE void store(float* y) const noexcept {
+  PINNQUAD_ALWAYS_INLINE void store(typename Pack::Scalar* y) const noexcept {
     unroll<registers>([&](auto r) PINNQUAD_INLINE_LAMBDA {
       constexpr int first = decltype(r)::value * Pack::values;
       constexpr int left = in_registers - first;
@@ -78,7 +78,7 @@ struct MemoryValues {
   static constexpr int size = Size;
   static constexpr int registers = 0;
 
-  const float* x;
+  const typename Pack::Scalar* x;
 
   template <int Step>
   PINNQUAD_ALWAYS_INLINE Pack repeat() const noexcept {
@@ -94,6 +94,7 @@ struct MemoryValues {
 /// W x + b; `Values` is RegisterValues or MemoryValues.
 template <class Pack, int Out, class Values>
 struct RegisterLayer {
+  using Scalar = typename Pack::Scalar;
   static_assert(require_pack<Pack>() && require_register_layout<Pack>());
   using Result = RegisterValues<Pack, Out>;
   static constexpr int in = Values::size;
@@ -121,13 +122,13 @@ struct RegisterLayer {
   static constexpr int size = dot ? lone_start + 2 * Pack::width : dot_start;
 
   /// Row-major weight and bias -> packed, which is all zero before. Usable at compile time.
-  static constexpr void pack(const float* weight, const float* bias, float* packed) noexcept {
+  static constexpr void pack(const Scalar* weight, const Scalar* bias, Scalar* packed) noexcept {
     for (int block = 0; block < blocks; ++block) {
       for (int pair = 0; pair < rows_per_block; ++pair) {
         const int row = row_of(block, pair);
         if (row >= rows) continue;
         const int lane = pair * Pack::columns;
-        float* const weights = packed + Pack::width * steps * block + lane;
+        Scalar* const weights = packed + Pack::width * steps * block + lane;
         for (int column = 0; column < in; ++column) {
           weights[Pack::width * (column / Pack::columns) + column % Pack::columns] = weight[row * in + column];
         }
@@ -147,7 +148,7 @@ struct RegisterLayer {
 
   /// `activation` maps a pack to a pack.
   template <class Activation>
-  static PINNQUAD_ALWAYS_INLINE Result multiply(const float* packed, const Values& x,
+  static PINNQUAD_ALWAYS_INLINE Result multiply(const Scalar* packed, const Values& x,
                                                 const Activation& activation) noexcept {
     Result result;
     if constexpr (dot) result.last = activation(lone_row(packed, x));  // first: it takes longest
@@ -162,8 +163,8 @@ struct RegisterLayer {
  private:
   /// Blocks First, ..., First + Count - 1, step by step.
   template <int First, int Count, class Activation>
-  static PINNQUAD_ALWAYS_INLINE void multiply_blocks(const float* packed, const Values& x, const Activation& activation,
-                                                     Result& result) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void multiply_blocks(const Scalar* packed, const Values& x,
+                                                     const Activation& activation, Result& result) noexcept {
     constexpr int chains = Pack::chains < steps ? Pack::chains : steps;
     Pack sum[chains][Count];
     unroll<steps>([&](auto s) PINNQUAD_INLINE_LAMBDA {
@@ -193,10 +194,11 @@ struct RegisterLayer {
           [&](auto i) PINNQUAD_INLINE_LAMBDA { together[i] = sum[0][block + i < Count ? block + i : Count - 1]; });
       const Pack values = activation(Pack::collect(together));
       constexpr int target = First / per_register + decltype(r)::value;
+      // registers are assigned, not packs: gcc takes those through memory
       if constexpr (target < Result::registers) {
-        result.value[target] = values;
+        result.value[target].value = values.value;
       } else {
-        result.last = values;
+        result.last.value = values.value;
       }
     });
   }
@@ -210,7 +212,7 @@ struct RegisterLayer {
                                  PINNQUAD_INLINE_LAMBDA { sum[0][Block] = sum[0][Block] + sum[2 * c + 2][Block]; });
   }
 
-  static PINNQUAD_ALWAYS_INLINE Pack lone_row(const float* packed, const Values& x) noexcept {
+  static PINNQUAD_ALWAYS_INLINE Pack lone_row(const Scalar* packed, const Values& x) noexcept {
     Pack sum = x.template used<0>() * Pack::load(packed + dot_start);
     unroll<Values::registers - 1>([&](auto r) PINNQUAD_INLINE_LAMBDA {
       constexpr int next = decltype(r)::value + 1;
