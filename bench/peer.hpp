@@ -37,7 +37,7 @@ struct TrainingTask {
   int samples;
 };
 
-/// What was registered; read by bench_peers.
+/// A registered prediction; read by bench_peers.
 struct PeerNetwork {
   std::string name;
   std::function<std::shared_ptr<const void>(const float* parameters)> make;
