@@ -10,10 +10,9 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
-#include <tuple>
 
+#include "pinnquad/exported/run_time_activation.hpp"
 #include "pinnquad/model/path_bound.hpp"
-#include "pinnquad/nn/activations.hpp"
 #include "pinnquad/nn/kernel/lane_row.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
 
@@ -59,34 +58,6 @@ struct RunTimePart {
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
-
-template <class Number>
-struct RunTimeActivation {
-  std::string_view description;
-  Number (*activate)(Number) noexcept;
-  void (*activate_all)(Number*, std::size_t) noexcept;
-  Number (*slope)(Number) noexcept;  ///< by its input
-  bool slopes_from_0_to_1;
-};
-template <class Spec, class Number>
-constexpr RunTimeActivation<Number> run_time_activation() noexcept {
-  using Layer = typename Spec::template Bind<Number, 1>;
-  const auto all = [](Number* values, std::size_t count) noexcept {
-    for (std::size_t i = 0; i < count; ++i) values[i] = Number(Layer::activate(values[i]));
-  };
-  return {Spec::description, [](Number v) noexcept { return Number(Layer::activate(v)); }, all,
-          [](Number v) noexcept { return Number(slope_at<Layer>(slopes_from_input<Layer> ? v : Layer::activate(v))); },
-          pinnquad::slopes_from_0_to_1<Layer>};
-}
-template <class Number, class List>
-struct ActivationTable;
-template <class Number, class... Specs>
-struct ActivationTable<Number, std::tuple<Specs...>> {
-  static constexpr RunTimeActivation<Number> of[] = {run_time_activation<Specs, Number>()...};
-};
-/// Those of the library, in the order of Activations.
-template <class Number>
-inline constexpr auto& run_time_activations = ActivationTable<Number, Activations>::of;
 
 /// Reads a description from left to right; spaces don't count. std::string_view::substr() may throw: it does not fly.
 class DescriptionReader {
@@ -302,11 +273,10 @@ class RunTimeNetwork {
       }
       const Scalar* const biases = own + width * layer.outputs;
       for (int row = 0; row < layer.outputs; ++row) {
-        Values<Number, Count> sum{};
-        if (layer.has_bias) begin<Kind>(static_cast<Number>(biases[row]), sum);
-        add_row<Kind>(own + row * width, width, work, sum);
-        spare[row] = sum;
+        spare[row] = {};
+        if (layer.has_bias) begin<Kind>(static_cast<Number>(biases[row]), spare[row]);
       }
+      add_rows<Kind>(own, layer.outputs, width, work, spare);
       own = biases + (layer.has_bias ? layer.outputs : 0);
       width = layer.outputs;
       Values<Number, Count>* const before = work;
@@ -345,12 +315,14 @@ class RunTimeNetwork {
   }
 
   template <RunTimeEntry Kind, class Scalar, class Number, std::size_t Count>
-  static void add_row(const Scalar* row, int width, const std::array<Number, Count>* x,
-                      std::array<Number, Count>& sum) noexcept {
-    if constexpr (Kind == RunTimeEntry::lanes) {
-      detail::add_lane_row(row, width, x, sum);
+  static void add_rows(const Scalar* weights, int rows, int width, const std::array<Number, Count>* x,
+                       std::array<Number, Count>* sums) noexcept {
+    if constexpr (Kind == RunTimeEntry::lanes || Count == 1) {
+      detail::add_lane_rows(weights, rows, width, x, sums);
     } else {
-      for (int column = 0; column < width; ++column) add_product(row[column], x[column], sum);
+      for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < width; ++column) add_product(*weights++, x[column], sums[row]);
+      }
     }
   }
 
@@ -362,12 +334,12 @@ class RunTimeNetwork {
   template <class Number, int Count, RunTimeEntry Kind>
   static void activate(const detail::RunTimeActivation<Number>& activation, Values<Number, Count>* values,
                        int width) noexcept {
-    for (int i = 0; i < width; ++i) {
-      Values<Number, Count>& entry = values[i];
-      if constexpr (Kind == RunTimeEntry::lanes) {
-        activation.activate_all(entry.data(), Count);
-      } else {
-        const Number slope = Count > 1 ? activation.slope(entry[0]) : Number(1);
+    if constexpr (Kind == RunTimeEntry::lanes || Count == 1) {
+      activation.activate_all(reinterpret_cast<Number*>(values), std::size_t(width) * std::size_t(Count));
+    } else {
+      for (int i = 0; i < width; ++i) {
+        Values<Number, Count>& entry = values[i];
+        const Number slope = activation.slope(entry[0]);
         for (std::size_t c = 1; c < std::size_t(Count); ++c) entry[c] *= slope;
         entry[0] = activation.activate(entry[0]);
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One row of a dense layer for many motions side by side, a lane each. Every lane is the chain of the portable kernel:
-// bias, then its inputs ascending. The same bits.
+// Rows of a dense layer for many motions side by side, a lane each, or for one. Every lane is the chain of the portable
+// kernel: bias, then its inputs ascending. The same bits: rows that run together hide each other's latency.
 #pragma once
 
 #include <array>
@@ -13,31 +13,72 @@
 namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// sum[lane] += sum over the columns of weights[column] x[column][lane].
-template <class Scalar, std::size_t Lanes>
-PINNQUAD_ALWAYS_INLINE void add_lane_row(const Scalar* weights, int columns, const std::array<Scalar, Lanes>* x,
-                                         std::array<Scalar, Lanes>& sum) noexcept {
-  if constexpr (has_vector_unit<Scalar>) {
-    using Pack = pinnquad::NativePack<Scalar>;
+/// True for lanes that fill packs.
+template <class Number, std::size_t Lanes>
+inline constexpr bool lanes_fill_packs = Lanes > 1 && has_vector_unit<Number>&& Lanes %
+                                                              std::size_t(pinnquad::NativePack<Number>::width) ==
+                                                          0;
+
+/// Rows whose sums run side by side: eight chains, of packs or of numbers.
+template <class Number, std::size_t Lanes>
+constexpr int rows_together() noexcept {
+  constexpr int chains = 8;
+  if constexpr (lanes_fill_packs<Number, Lanes>) {
+    constexpr int packs = static_cast<int>(Lanes) / pinnquad::NativePack<Number>::width;
+    return packs < chains ? chains / packs : 1;
+  } else {
+    return Lanes == 1 ? chains : 1;
+  }
+}
+
+/// sum[row][lane] += sum over the columns of weights[row * columns + column] x[column][lane], `Rows` of them.
+template <int Rows, class Scalar, class Number, std::size_t Lanes>
+PINNQUAD_ALWAYS_INLINE void add_rows_together(const Scalar* weights, int columns, const std::array<Number, Lanes>* x,
+                                              std::array<Number, Lanes>* sum) noexcept {
+  if constexpr (lanes_fill_packs<Number, Lanes>) {
+    using Pack = pinnquad::NativePack<Number>;
     constexpr int packs = static_cast<int>(Lanes) / Pack::width;
-    static_assert(packs * Pack::width == static_cast<int>(Lanes));
-    Pack sums[packs];
-    unroll<packs>([&](auto p) PINNQUAD_INLINE_LAMBDA { sums[p] = Pack::load(sum.data() + p * Pack::width); });
+    Pack sums[Rows][packs];
+    const auto each = [](const auto& body) PINNQUAD_INLINE_LAMBDA {
+      unroll<Rows>([&](auto r)
+                       PINNQUAD_INLINE_LAMBDA { unroll<packs>([&](auto p) PINNQUAD_INLINE_LAMBDA { body(r, p); }); });
+    };
+    each([&](auto r, auto p) PINNQUAD_INLINE_LAMBDA { sums[r][p] = Pack::load(sum[r].data() + p * Pack::width); });
     for (int column = 0; column < columns; ++column) {
-      const Pack weight = Pack::broadcast(weights[column]);
-      const Scalar* const values = x[column].data();
-      unroll<packs>([&](auto p) PINNQUAD_INLINE_LAMBDA {
-        sums[p] = Pack::multiply_add(weight, Pack::load(values + p * Pack::width), sums[p]);
+      Pack values[packs];
+      unroll<packs>([&](auto p) PINNQUAD_INLINE_LAMBDA { values[p] = Pack::load(x[column].data() + p * Pack::width); });
+      unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA {
+        const Pack weight = Pack::broadcast(static_cast<Number>(weights[r * columns + column]));
+        unroll<packs>([&](auto p)
+                          PINNQUAD_INLINE_LAMBDA { sums[r][p] = Pack::multiply_add(weight, values[p], sums[r][p]); });
       });
     }
-    unroll<packs>([&](auto p) PINNQUAD_INLINE_LAMBDA { sums[p].store(sum.data() + p * Pack::width); });
+    each([&](auto r, auto p) PINNQUAD_INLINE_LAMBDA { sums[r][p].store(sum[r].data() + p * Pack::width); });
   } else {
+    std::array<Number, Lanes> sums[static_cast<std::size_t>(Rows)];
+    unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA { sums[r] = sum[r]; });
     for (int column = 0; column < columns; ++column) {
-      for (std::size_t lane = 0; lane < Lanes; ++lane) {
-        sum[lane] = multiply_add(weights[column], x[column][lane], sum[lane]);
-      }
+      unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA {
+        const auto weight = static_cast<Number>(weights[r * columns + column]);
+        for (std::size_t lane = 0; lane < Lanes; ++lane) {
+          sums[r][lane] = multiply_add(weight, x[column][lane], sums[r][lane]);
+        }
+      });
     }
+    unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA { sum[r] = sums[r]; });
   }
+}
+
+/// The same for any number of rows.
+template <class Scalar, class Number, std::size_t Lanes>
+PINNQUAD_ALWAYS_INLINE void add_lane_rows(const Scalar* weights, int rows, int columns,
+                                          const std::array<Number, Lanes>* x, std::array<Number, Lanes>* sum) noexcept {
+  constexpr int together = rows_together<Number, Lanes>();
+  int row = 0;
+  for (; row + together <= rows; row += together) {
+    add_rows_together<together>(weights + row * columns, columns, x, sum + row);
+  }
+  for (; row < rows; ++row) add_rows_together<1>(weights + row * columns, columns, x, sum + row);
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
