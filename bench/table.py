@@ -9,7 +9,8 @@ import json
 import pathlib
 import sys
 
-PROGRAMS = ["bench_inference", "bench_rollout", "bench_model", "bench_training", "bench_fit", "bench_simulation", "bench_peers", "bench_torch"]
+PROGRAMS = ["bench_inference", "bench_rollout", "bench_model", "bench_training", "bench_fit", "bench_simulation",
+            "bench_peers", "bench_torch"]
 OURS = {"Predict": "Predict/paper_network", "TrainEpoch": "TrainEpoch/vanilla"}  # in bench_peers, beside the peers
 # (what, numerator, denominator, program): a ratio of two medians of one run; "fastest:a|b" takes the smaller
 RATIOS = [
