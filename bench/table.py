@@ -21,7 +21,8 @@ RATIOS = [
      "Predict/paper_network", "bench_inference"),
     *((f"prediction of {shape}, over its peak", f"Shape/{name}", f"Peak/{name}", "bench_inference")
       for shape, name in (("2 layers of 32", "2x32"), ("3 of 25", "3x25"), ("3 of 64", "3x64"), ("2 of 128", "2x128"),
-                          ("2 of 32, 60 inputs", "2x32_windowed"))),
+                          ("2 of 32, 60 inputs", "2x32_windowed"),
+                          ("a structured model with 2 of 32", "2x32_structured"))),
     ("batch of 256, per sample, over the peak", "Batched/paper_network/256", "Peak/fma", "bench_rollout"),
     ("batch of 256, Eigen over ours", "Batched/naive_eigen/256", "Batched/paper_network/256", "bench_rollout"),
     ("value and Jacobian, over one prediction", "Jacobian/paper_network", "Predict/paper_network", "bench_rollout"),

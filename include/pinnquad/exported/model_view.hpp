@@ -10,7 +10,7 @@
 #include "pinnquad/exported/block_records.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_block.hpp"
-#include "pinnquad/nn/packed_network.hpp"
+#include "pinnquad/model/predictor.hpp"
 
 namespace pinnquad {
 
@@ -46,12 +46,12 @@ struct ModelScales {
   ModelRecords<Scalar> records{};
 };
 
-/// Weights as the vector unit's kernel reads them, and where a view finds them; nothing without a vector unit, and for
-/// what is more than a network.
-template <class Answer, bool Packs = has_vector_unit<typename Answer::Scalar>&& is_network<Answer>>
+/// A network's weights as the vector unit's kernel reads them, and where a view finds them; nothing without a vector
+/// unit, and for a predictor without a network.
+template <class Answer, bool Packs = has_vector_unit<typename Answer::Scalar>&& InnerNetwork<Answer>::exists>
 struct PackedWeights {
   static constexpr bool exist = true;
-  using type = PackedNetwork<Answer>;
+  using type = PackedInner<Answer>;
   const type* packed = nullptr;
 };
 template <class Answer>
@@ -81,7 +81,7 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
   using typename Scales::Network;
   using typename Scales::Scalar;
   /// Memory for the weights as the vector unit wants them: a PackedNetwork, about as large as they are and aligned to
-  /// 64 bytes; empty where there is no vector unit, and for what is more than a network.
+  /// 64 bytes; empty where there is no vector unit, and for a predictor without a network.
   using Packed = typename Place::type;
 
   /// Rows of scalars in the block. As made, one row of zeros.
@@ -155,7 +155,7 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
     const Status status = open(block, length, view);
     if constexpr (Place::exist) {
       if (status == Status::ok) {
-        memory.assign(view.parameters_);
+        memory.assign(view.parameters_ + detail::InnerNetwork<Network>::first);
         view.Place::packed = &memory;
       }
     }
@@ -171,7 +171,9 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
       return;
     }
     if constexpr (Place::exist) {
-      if (Place::packed != nullptr) return Place::packed->forward(standardised, outputs);
+      if (Place::packed != nullptr) {
+        return detail::forward_packed<Network>(parameters_, *Place::packed, standardised, outputs);
+      }
     }
     Network::forward(parameters_, standardised, outputs);
   }

@@ -35,7 +35,7 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
   Scalar result[rotor_count], by_features[rotor_count * size];
   const Scalar* weights = detail::row_major_weights(inverse.model());
   Pipeline::run(scales, x, outputs, result, [&](const Scalar* standardised, Scalar* made) PINNQUAD_INLINE_LAMBDA {
-    if constexpr (detail::may_be_packed<Model>) {
+    if constexpr (detail::may_be_packed<Model> && is_network<Network>) {
       if (const auto* const packed = detail::packed_weights(inverse.model())) {
         JacobianPass<Network>::run(*packed, weights, standardised, made, slopes);
         return;

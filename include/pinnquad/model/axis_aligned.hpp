@@ -93,6 +93,13 @@ struct Masked : detail::PredictorBase<Masked<Inner, FeatureCount, First...>, typ
       Inner::forward(parameters, static_cast<const Scalar*>(seen), y);
     }
   }
+  template <class Run>
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, Scalar* y,
+                                         const Run& run) noexcept {
+    Scalar seen[Threes::others];
+    Threes::copy_others(x, static_cast<Scalar*>(seen));
+    detail::run_predictor<Inner>(parameters, static_cast<const Scalar*>(seen), y, run);
+  }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     Scalar seen[Threes::others], by_seen[Inner::outputs * Threes::others];
     Threes::copy_others(x, static_cast<Scalar*>(seen));
@@ -154,6 +161,13 @@ struct AxisAligned
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
+
+namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+template <class Inner, int FeatureCount, int... First>
+struct InnerNetwork<Masked<Inner, FeatureCount, First...>, false> : InnerNetworkOf<Inner, 0> {};
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
 
 namespace detail {
 

@@ -5,7 +5,9 @@
 //   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept
 //   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept
 // by_x: outputs x inputs, row-major. A Network's Jacobian is JacobianPass (nn/jacobian.hpp). A Network runs on the
-// vector unit, any other predictor as it is written.
+// vector unit, any other predictor as it is written, unless it says what of it is one (detail::InnerNetwork) and has
+//   template <class Run> static void run(const Scalar* parameters, const Scalar* x, Scalar* y, const Run& run) noexcept
+// which is forward() with run(x, y) for that network.
 #pragma once
 
 #include <array>
@@ -60,6 +62,52 @@ struct Scales {
   const Scalar* upper;
 };
 
+/// The network inside a predictor, and where its parameters begin among all; none, unless specialised.
+template <class Predictor, bool IsNetwork = is_network<Predictor>>
+struct InnerNetwork {
+  static constexpr bool exists = false;
+};
+template <class Predictor>
+struct InnerNetwork<Predictor, true> {
+  static constexpr bool exists = true;
+  using type = Predictor;
+  static constexpr int first = 0;
+};
+/// Of a predictor around another one, whose parameters stand behind `Before` of its own.
+template <class Predictor, int Before, bool Exists = InnerNetwork<Predictor>::exists>
+struct InnerNetworkOf : InnerNetwork<Predictor> {
+  static constexpr int first = Before + InnerNetwork<Predictor>::first;
+};
+template <class Predictor, int Before>
+struct InnerNetworkOf<Predictor, Before, false> : InnerNetwork<Predictor> {};
+
+/// A predictor with run(x, y) for its inner network.
+template <class Predictor, class Scalar, class Run>
+PINNQUAD_ALWAYS_INLINE void run_predictor(const Scalar* parameters, const Scalar* x, Scalar* y,
+                                          const Run& run) noexcept {
+  if constexpr (is_network<Predictor>) {
+    run(x, y);
+  } else {
+    Predictor::run(parameters, x, y, run);
+  }
+}
+
+/// The inner network as the vector unit wants it, of all parameters.
+template <class Predictor>
+using PackedInner = PackedNetwork<typename InnerNetwork<Predictor>::type>;
+template <class Predictor, class Scalar>
+constexpr PackedInner<Predictor> packed_inner(const Scalar* parameters) noexcept {
+  return PackedInner<Predictor>(parameters + InnerNetwork<Predictor>::first);
+}
+/// y = predictor(x), its network on the vector unit.
+template <class Predictor, class Scalar>
+PINNQUAD_ALWAYS_INLINE void forward_packed(const Scalar* parameters, const PackedInner<Predictor>& packed,
+                                           const Scalar* x, Scalar* y) noexcept {
+  run_predictor<Predictor>(parameters, x, y, [&packed](const Scalar* seen, Scalar* made) PINNQUAD_INLINE_LAMBDA {
+    packed.forward(seen, made);
+  });
+}
+
 /// A standardised input no further out than its range of the training rows.
 template <class Scalar>
 constexpr Scalar saturated(const Scales<Scalar>& scales, int input, Scalar standardised) noexcept {
@@ -110,6 +158,14 @@ struct Sum : detail::PredictorBase<Sum<First, Second>, typename First::Scalar, F
     Second::forward(parameters + First::parameter_count, x, y);
     add_first(parameters, x, y);
   }
+  template <class Run>
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, Scalar* y,
+                                         const Run& run) noexcept {
+    Scalar one[First::outputs];  // first: its chains fill what the network's leave idle
+    First::forward(parameters, x, static_cast<Scalar*>(one));
+    detail::run_predictor<Second>(parameters + First::parameter_count, x, y, run);
+    for (int i = 0; i < First::outputs; ++i) y[i] += one[i];
+  }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     Scalar other[Second::outputs], slopes[Second::outputs * Second::inputs];
     predictor_jacobian<First>(parameters, x, y, by_x);
@@ -145,6 +201,12 @@ struct Saturated : detail::PredictorBase<Saturated<Inner>, typename Inner::Scala
     Inner::forward(parameters + own, x, y);
     clip(parameters, y);
   }
+  template <class Run>
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, Scalar* y,
+                                         const Run& run) noexcept {
+    detail::run_predictor<Inner>(parameters + own, x, y, run);
+    clip(parameters, y);
+  }
   /// The derivative of an output that is clipped, or on its bound, is 0.
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     predictor_jacobian<Inner>(parameters + own, x, y, by_x);
@@ -165,5 +227,14 @@ struct Saturated : detail::PredictorBase<Saturated<Inner>, typename Inner::Scala
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
+
+namespace detail {
+inline namespace PINNQUAD_INSTRUCTION_SET {
+template <class First, class Second>
+struct InnerNetwork<Sum<First, Second>, false> : InnerNetworkOf<Second, First::parameter_count> {};
+template <class Inner>
+struct InnerNetwork<Saturated<Inner>, false> : InnerNetworkOf<Inner, Saturated<Inner>::own> {};
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
 
 }  // namespace pinnquad
