@@ -89,9 +89,9 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
       pinnquad::autopilot::NeuralController<Model, pinnquad::ModelView<Model>, FlownVehicle, FlownLimits>>;
   using Core = pinnquad_px4::NeuralControl<Model, Controller>;
 
-  /// Room for one block of this model, golden vectors included.
-  static constexpr size_t block_bytes = pinnquad::ModelBlockLayout<Model>::length(pinnquad::loaded_golden_vectors) +
-                                        pinnquad::ModelBlockLayout<Model>::most_record_bytes();
+  /// Room for one block of this model with the eight golden vectors that `pinnquad train` writes.
+  static constexpr size_t block_bytes =
+      pinnquad::ModelBlockLayout<Model>::length(8) + pinnquad::ModelBlockLayout<Model>::most_record_bytes();
 
   void Run() override;
   pinnquad::autopilot::CoreSettings controller_settings() const;
