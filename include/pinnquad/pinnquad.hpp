@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pinnquad/control/autopilot/recorded_controller.hpp"
+#include "pinnquad/control/mppi.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/dataset.hpp"
