@@ -15,6 +15,7 @@
 #include "loop/any_policy.hpp"
 #include "loop/wrench_block.hpp"
 #include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/filtered_motion.hpp"
 #include "pinnquad/control/known_drag.hpp"
 #include "pinnquad/control/l1_adaptive.hpp"

@@ -108,7 +108,7 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
     static_cast<void>(effects);
   }
 
-  /// What the plan adds to the trajectory's own: thrust over mass, m/s^2, and body rates, rad/s.
+  /// Additions of the plan to the trajectory: thrust over mass, m/s^2, and body rates, rad/s.
   template <class Number>
   using Change = std::array<Number, 4>;
 
