@@ -14,6 +14,7 @@
 #include "pinnquad/aero/inflow.hpp"
 #include "pinnquad/aero/wake.hpp"
 #include "pinnquad/aero/wind.hpp"
+#include "pinnquad/control/mppi.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/harder_quadrotor.hpp"
 #include "pinnquad/vehicle/lanes_of_vehicles.hpp"
@@ -110,6 +111,29 @@ void harder_step(benchmark::State& state) {
   steps_of(state, harder_vehicle(engine));
 }
 
+/// Improvements of the plan on the way along the figure-eight: 512 flights of 40 steps each.
+void mppi(benchmark::State& state) {
+  Mppi<Quadrotor<float, StandardAtmosphere, QuadraticDrag>> controller(airframe_value<PaperQuadrotor, float>(),
+                                                                       paper_site<float>());
+  const FigureEight<float> eight;
+  const auto sample = [&eight](double time_s) { return eight.sample(static_cast<float>(time_s)); };
+  VehicleState<float> vehicle;
+  vehicle.rotors = {0.5f, 0.5f, 0.5f, 0.5f};
+  Commands<float> commands{};
+  for (auto _ : state) {
+    vehicle.time_s = vehicle.time_s < 60 ? vehicle.time_s + 0.02 : 0.0;
+    const TrajectoryPoint<float> point = sample(vehicle.time_s);
+    FlatMotion<float> flat;
+    if (flat_motion(point, standard_gravity_m_s2<float>, flat) != Status::ok) state.SkipWithError("no such motion");
+    vehicle.body = {point.position_m, point.velocity_m_s, flat.attitude, flat.body_rates_rad_s};
+    if (controller(vehicle, sample, commands) != Status::ok) {
+      state.SkipWithError("MPPI has no answer");
+      break;
+    }
+    benchmark::DoNotOptimize(commands.data());
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -133,5 +157,6 @@ int main(int argc, char** argv) {
       lanes_step<double, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
   benchmark::RegisterBenchmark("SimulationStep/lanes_full_float",
                                lanes_step<float, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
+  benchmark::RegisterBenchmark("Mppi/512x40", mppi);
   return run_benchmarks(argc, argv);
 }

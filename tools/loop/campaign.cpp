@@ -108,6 +108,13 @@ const LoopCondition& condition_of(const std::string& name) {
   throw std::out_of_range(name);
 }
 
+const LoopController& controller_of(const std::string& name) {
+  for (const LoopController& each : loop_controllers) {
+    if (each.name == name) return each;
+  }
+  throw std::out_of_range(name);
+}
+
 /// The effects of a vehicle as they are by default.
 template <class Vehicle>
 struct EffectsOf;
@@ -171,7 +178,8 @@ class Loop {
     auto bias = plan_.model.with([](const auto& model) { return bias_settings<double>(model.records()); });
     bias.across_time_constant_s = 0.1;  // the delay is told
     bias.most_across_m_s2 = 6;
-    const LoopKnowledge<Told> known{plan_.model, plan_.columns, told_, bias, plan_.sensors.delay_s, plan_.wrench};
+    const LoopKnowledge<Told> known{plan_.model,           plan_.columns, told_, bias,
+                                    plan_.sensors.delay_s, plan_.wrench,  &path};
     const AnyPolicy policy = loop_policy(cell.controller, known, gains);
     Errors errors;
     errors.period_s = period_s;
@@ -187,8 +195,9 @@ class Loop {
       }
       before = commands;
     };
-    const TrackingResult<double> flown =
-        track(told_, world, path, FlightController<double>(feedback, limits), policy, how, observer);
+    const bool alone = controller_of(cell.controller).feeds_back;
+    const FlightController<double> outer(alone ? FlightGains<double>{0, 0, 0, 0, 0, 0} : feedback, limits);
+    const TrackingResult<double> flown = track(told_, world, path, outer, policy, how, observer);
     const double onset_s = condition.at_half ? half_s : 0;
     const double usual_m =
         condition.at_half ? errors.worst_second_m(settled_s, half_s) : errors.worst_second_m(half_s, how.duration_s);

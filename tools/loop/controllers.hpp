@@ -11,12 +11,15 @@
 #include <vector>
 
 #include "flight/block_feed_forward.hpp"
+#include "flight/loop_trajectories.hpp"
 #include "loop/any_policy.hpp"
 #include "loop/wrench_block.hpp"
 #include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/filtered_motion.hpp"
 #include "pinnquad/control/known_drag.hpp"
 #include "pinnquad/control/l1_adaptive.hpp"
+#include "pinnquad/control/mppi.hpp"
 #include "pinnquad/control/wind_filter.hpp"
 
 namespace programs {
@@ -27,9 +30,10 @@ struct LoopController {
   bool asks_model = false;  ///< of the block
   bool learns = false;
   bool asks_wrench = false;  ///< of --wrench
+  bool feeds_back = false;   ///< itself: the outer loop adds nothing
 };
 
-inline constexpr std::array<LoopController, 17> loop_controllers = {{
+inline constexpr std::array<LoopController, 18> loop_controllers = {{
     {"pid", "cascaded PID: the rigid body's allocation, integral of the feedback", false, true},
     {"formula", "the analytic inverse with nominal drag"},
     {"geometric", "the same, and the attitude leans against nominal drag"},
@@ -42,6 +46,8 @@ inline constexpr std::array<LoopController, 17> loop_controllers = {{
     {"full", "the same, and wind, thrust and force by a Kalman filter through the network", false, true, true},
     {"full_nominal", "full, with nominal drag in place of the learnt residual wrench", false, true},
     {"full_bias", "full, without a residual wrench", false, true},
+    {"mppi", "model predictive path integral: nominal drag, 512 flights of 0.8 s, fifty times a second", false, false,
+     false, true},
     {"structured", "the model of the block", true},
     {"structured_drag", "the same, and the attitude leans against nominal drag", true},
     {"adaptive", "the model, with a bias learnt in flight; beyond its bound formula_adaptive", true, true},
@@ -76,6 +82,83 @@ struct LoopKnowledge {
   pinnquad::BiasSettings<double> bias{};
   double delay_s = 0;                            ///< by which states come late
   const pinnquad::BlockModel* wrench = nullptr;  ///< a residual wrench (loop/wrench_block.hpp), where one is given
+  const AnyTrajectory* path = nullptr;           ///< for one that plans ahead
+};
+
+/// MPPI as a policy: it looks along the trajectory in place of the motion wanted. It is told the airframe and the drag,
+/// and takes the rotors for those that its last commands have settled.
+class MppiPolicy {
+  using State = pinnquad::State<double>;
+  using Planner = pinnquad::Mppi<pinnquad::Quadrotor<float, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag>>;
+
+ public:
+  MppiPolicy(const pinnquad::Airframe<double>& airframe, const pinnquad::Site<double>& site, AnyTrajectory path,
+             const LoopGains& gains)
+      : planner_(in_float(airframe),
+                 {static_cast<float>(site.elevation_m), static_cast<float>(site.ground_z_m),
+                  static_cast<float>(site.gravity_m_s2)},
+                 settings(gains)),
+        path_(std::move(path)) {}
+
+  pinnquad::Status operator()(const State& state, const pinnquad::Accelerations<double>&, std::uint64_t time_us,
+                              pinnquad::Commands<double>& commands) noexcept {
+    pinnquad::VehicleState<float> vehicle;
+    vehicle.body.position_m = state.position_m.cast<float>();
+    vehicle.body.velocity_m_s = state.velocity_m_s.cast<float>();
+    const pinnquad::Quaternion<double>& q = state.attitude;
+    vehicle.body.attitude = {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
+                             static_cast<float>(q.z)};
+    vehicle.body.body_rates_rad_s = state.body_rates_rad_s.cast<float>();
+    vehicle.rotors = last_;
+    vehicle.time_s = 1e-6 * static_cast<double>(time_us);
+    const pinnquad::Status status = planner_(
+        vehicle, [this](double time_s) noexcept { return point(time_s); }, last_);
+    if (status != pinnquad::Status::ok) return status;
+    for (std::size_t i = 0; i < last_.size(); ++i) commands[i] = static_cast<double>(last_[i]);
+    return status;
+  }
+
+ private:
+  static pinnquad::Airframe<float> in_float(const pinnquad::Airframe<double>& airframe) {
+    std::vector<double> numbers;
+    pinnquad::Airframe<float> result;
+    pinnquad::each_number(airframe, [&](const auto& number) { numbers.push_back(static_cast<double>(number)); });
+    std::size_t k = 0;
+    pinnquad::each_number(result, [&](auto& number) {
+      using Number = std::decay_t<decltype(number)>;
+      if constexpr (std::is_enum_v<Number>) {
+        number = static_cast<Number>(static_cast<int>(numbers[k++]));
+      } else {
+        number = static_cast<float>(numbers[k++]);
+      }
+    });
+    return result;
+  }
+  static pinnquad::MppiSettings settings(const LoopGains& gains) {
+    pinnquad::MppiSettings result;
+    result.position_cost_1_m2 *= static_cast<float>(gains.outer);
+    result.velocity_cost_s2_m2 *= static_cast<float>(gains.outer);
+    result.rate_gain_1_s *= static_cast<float>(gains.inner);
+    result.yaw_rate_gain_1_s *= static_cast<float>(gains.inner);
+    return result;
+  }
+  pinnquad::TrajectoryPoint<float> point(double time_s) const noexcept {
+    const pinnquad::TrajectoryPoint<double> p = path_.sample(time_s);
+    pinnquad::TrajectoryPoint<float> result;
+    result.position_m = p.position_m.cast<float>();
+    result.velocity_m_s = p.velocity_m_s.cast<float>();
+    result.acceleration_m_s2 = p.acceleration_m_s2.cast<float>();
+    result.jerk_m_s3 = p.jerk_m_s3.cast<float>();
+    result.snap_m_s4 = p.snap_m_s4.cast<float>();
+    result.yaw_rad = static_cast<float>(p.yaw_rad);
+    result.yaw_rate_rad_s = static_cast<float>(p.yaw_rate_rad_s);
+    result.yaw_acceleration_rad_s2 = static_cast<float>(p.yaw_acceleration_rad_s2);
+    return result;
+  }
+
+  Planner planner_;
+  AnyTrajectory path_;
+  pinnquad::Commands<float> last_{0.5f, 0.5f, 0.5f, 0.5f};
 };
 
 /// Throws std::out_of_range for a name that is none.
@@ -123,6 +206,8 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& kno
   if (name == "formula_adaptive") return AnyPolicy(adaptive(formula));
   if (name == "indi") return AnyPolicy(incremental(rigid_body, at_once));
   if (name == "observer") return AnyPolicy(incremental(leaning(formula), slower));
+
+  if (name == "mppi") return AnyPolicy(MppiPolicy(airframe, known.vehicle.site(), *known.path, gains));
 
   if (name == "l1") {
     L1Settings<double> l1;

@@ -118,6 +118,14 @@ struct Lanes {
   typename Types::Register part[registers];
 
   Lanes() = default;
+  // register by register: gcc copies an array of vectors by halves, through integers
+  PINNQUAD_ALWAYS_INLINE constexpr Lanes(const Lanes& other) noexcept : part{} {
+    for (int i = 0; i < registers; ++i) part[i] = other.part[i];
+  }
+  PINNQUAD_ALWAYS_INLINE constexpr Lanes& operator=(const Lanes& other) noexcept {
+    for (int i = 0; i < registers; ++i) part[i] = other.part[i];
+    return *this;
+  }
   /// The same number in every lane.
   template <class Number, class = std::enable_if_t<std::is_arithmetic_v<Number>>>
   PINNQUAD_ALWAYS_INLINE constexpr explicit Lanes(Number number) noexcept : part{} {

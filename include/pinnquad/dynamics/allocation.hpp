@@ -106,7 +106,7 @@ constexpr Outcome<Scalar> invert_allocation(const AllocationMatrix<Scalar>& matr
   Mask<Scalar> regular(true);
   for (std::size_t row = 0; row < 4; ++row) {
     Scalar largest(0);
-    for (const Scalar entry : matrix[row]) largest = select(magnitude(entry) > largest, magnitude(entry), largest);
+    for (const Scalar& entry : matrix[row]) largest = select(magnitude(entry) > largest, magnitude(entry), largest);
     regular = regular && largest > Scalar(0);
     if (!any_of(regular)) return Status::no_solution;
     for (std::size_t k = 0; k < 4; ++k) rows[row][k] = matrix[row][k] / largest;

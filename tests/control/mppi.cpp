@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "pinnquad/control/mppi.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/aero/drag.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "support/tolerances.hpp"
+
+namespace {
+
+using namespace pinnquad;
+using Vehicle = Quadrotor<float, StandardAtmosphere, QuadraticDrag>;
+using Small = Mppi<Vehicle, 64, 20>;  // an unoptimised build flies a tenth of the flights of 512 x 40
+
+const Airframe<float> airframe = PaperQuadrotor::value<float>();
+
+MppiSettings with_seed(std::uint32_t seed) {
+  MppiSettings settings;
+  settings.seed = seed;
+  return settings;
+}
+
+VehicleState<float> start_of(const FigureEight<float>& eight) {
+  VehicleState<float> state;
+  state.body.position_m = eight.sample(0).position_m;
+  state.rotors = {0.5f, 0.5f, 0.5f, 0.5f};
+  return state;
+}
+
+/// Flies the figure-eight from a state; the worst distance from it over the last half, or infinity for a Status that is
+/// not ok.
+template <class Controller>
+float flown(Controller& controller, VehicleState<float>& state, float seconds) {
+  const FigureEight<float> eight;
+  const auto sample = [&eight](double time_s) { return eight.sample(static_cast<float>(time_s)); };
+  const Vehicle world(airframe, paper_site<float>());
+  const auto step = world.time_step(0.002f);
+  float worst_m = 0;
+  const int ticks = static_cast<int>(seconds / 0.002f);
+  Commands<float> commands{};
+  for (int tick = 0; tick < ticks; ++tick) {
+    state.time_s = 0.002 * tick;
+    if (controller(state, sample, commands) != Status::ok) return std::numeric_limits<float>::infinity();
+    if (tick > ticks / 2)
+      worst_m = std::fmax(worst_m, (sample(state.time_s).position_m - state.body.position_m).norm());
+    if (world.step(state, commands, step) != Status::ok) return std::numeric_limits<float>::infinity();
+  }
+  return worst_m;
+}
+
+}  // namespace
+
+TEST_CASE("MPPI flies the figure-eight, also from a metre beside it") {
+  Small controller(airframe, paper_site<float>());
+  REQUIRE(controller.status() == Status::ok);
+  VehicleState<float> state = start_of({});
+  CHECK(flown(controller, state, 6) <= 0.1f);
+
+  Small brought_back(airframe, paper_site<float>());
+  VehicleState<float> beside = start_of({});
+  beside.body.position_m += Vector3<float>(0.6f, -0.6f, 0.5f);
+  CHECK(flown(brought_back, beside, 6) <= 0.2f);
+
+  // without anything tried the plan is the trajectory's own, which knows neither drag nor where the vehicle is
+  MppiSettings timid;
+  timid.thrust_deviation_m_s2 = timid.rate_deviation_rad_s = 1e-6f;
+  Small blind(airframe, paper_site<float>(), timid);
+  VehicleState<float> astray = start_of({});
+  astray.body.position_m += Vector3<float>(0.6f, -0.6f, 0.5f);
+  CHECK(flown(blind, astray, 6) > 0.5f);
+}
+
+TEST_CASE("the same seed gives the same flight, another seed another one") {
+  VehicleState<float> end[3];
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    Small controller(airframe, paper_site<float>(), with_seed(i < 2 ? 1 : 2));
+    end[i] = start_of({});
+    flown(controller, end[i], 0.5f);
+  }
+  CHECK(end[0].body.position_m == end[1].body.position_m);
+  CHECK(end[0].rotors == end[1].rotors);
+  CHECK(end[0].rotors != end[2].rotors);
+}
+
+TEST_CASE("what MPPI can't answer has a Status, and the commands stay") {
+  const Commands<float> before{9, 9, 9, 9};
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const FigureEight<float> eight;
+  const auto sample = [&eight](double time_s) { return eight.sample(static_cast<float>(time_s)); };
+  const auto status_of = [&](Small controller, const VehicleState<float>& state, const auto& path) {
+    Commands<float> commands = before;
+    const Status status = controller(state, path, commands);
+    CHECK((status == Status::ok) == (commands != before));
+    return std::string(to_string(status));
+  };
+  const Small good(airframe, paper_site<float>());
+  VehicleState<float> state = start_of(eight);
+  CHECK(status_of(good, state, sample) == "ok");
+  state.body.velocity_m_s[1] = nan;
+  CHECK(status_of(good, state, sample) == "not_finite");
+  state = start_of(eight);
+  state.rotors[2] = nan;
+  CHECK(status_of(good, state, sample) == "not_finite");
+  state = start_of(eight);
+  state.body.attitude.w = 2;
+  CHECK(status_of(good, state, sample) == "not_unit_quaternion");
+  state = start_of(eight);
+  state.body.position_m[2] = -20000;  // above the standard atmosphere: each flight is refused
+  CHECK(status_of(good, state, sample) == "no_solution");
+  state = start_of(eight);
+  CHECK(status_of(good, state, [&](double time_s) {
+          TrajectoryPoint<float> point = sample(time_s);
+          point.acceleration_m_s2[0] = nan;
+          return point;
+        }) == "not_finite");
+  CHECK(status_of(good, state, [&](double time_s) {
+          TrajectoryPoint<float> point = sample(time_s);
+          point.position_m[0] = nan;
+          return point;
+        }) == "no_solution");
+
+  MppiSettings wrong;
+  wrong.step_s = 0;
+  CHECK(status_of(Small(airframe, paper_site<float>(), wrong), state, sample) == "out_of_range");
+  wrong = {};
+  wrong.position_cost_1_m2 = -1;
+  CHECK(status_of(Small(airframe, paper_site<float>(), wrong), state, sample) == "out_of_range");
+  Airframe<float> heavy = airframe;
+  heavy.mass_kg = 9;
+  CHECK(status_of(Small(heavy, paper_site<float>()), state, sample) == "invalid_airframe");
+}
