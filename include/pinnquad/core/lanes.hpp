@@ -300,6 +300,11 @@ class [[nodiscard]] LaneStatus {
   typename Types::Truths part_[Mask::registers];
 };
 
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
+// Outside of the namespace of the instruction set, where they would hide those of scalars; their arguments are named by
+// it.
+
 /// One Status or the other in each lane.
 template <class Scalar, int Count>
 PINNQUAD_ALWAYS_INLINE LaneStatus<Scalar, Count> select(const LaneMask<Scalar, Count>& mask, Status yes,
@@ -337,8 +342,6 @@ PINNQUAD_ALWAYS_INLINE LaneMask<Scalar, Count> is_finite(const Lanes<Scalar, Cou
   }
   return mask;
 }
-
-}  // namespace PINNQUAD_INSTRUCTION_SET
 
 template <class Scalar, int Count>
 struct LaneTypes<Lanes<Scalar, Count>> {
