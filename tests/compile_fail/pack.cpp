@@ -21,21 +21,35 @@ struct TwoFloats {
 #ifndef PACK_WITHOUT_TILE
   static constexpr int tile_rows = 2, tile_vectors = 1;
 #endif
-  float a, b;
+  struct {
+    float a, b;
+  } value;
 
-  static TwoFloats load(const float* p) noexcept { return {p[0], p[1]}; }
-  static TwoFloats broadcast(float v) noexcept { return {v, v}; }
-  void store(float* p) const noexcept { p[0] = a, p[1] = b; }
+  static TwoFloats load(const float* p) noexcept { return {{p[0], p[1]}}; }
+  static TwoFloats broadcast(float v) noexcept { return {{v, v}}; }
+  void store(float* p) const noexcept { p[0] = value.a, p[1] = value.b; }
 #ifndef PACK_WITHOUT_MULTIPLY_ADD
   static TwoFloats multiply_add(TwoFloats x, TwoFloats y, TwoFloats z) noexcept { return x * y + z; }
 #endif
-  friend TwoFloats operator+(TwoFloats x, TwoFloats y) noexcept { return {x.a + y.a, x.b + y.b}; }
-  friend TwoFloats operator-(TwoFloats x, TwoFloats y) noexcept { return {x.a - y.a, x.b - y.b}; }
-  friend TwoFloats operator*(TwoFloats x, TwoFloats y) noexcept { return {x.a * y.a, x.b * y.b}; }
-  friend TwoFloats operator/(TwoFloats x, TwoFloats y) noexcept { return {x.a / y.a, x.b / y.b}; }
-  static TwoFloats square_root(TwoFloats v) noexcept { return {std::sqrt(v.a), std::sqrt(v.b)}; }
-  static TwoFloats positive_part(TwoFloats v) noexcept { return {v.a < 0 ? 0 : v.a, v.b < 0 ? 0 : v.b}; }
-  static TwoFloats where_positive(TwoFloats g, TwoFloats v) noexcept { return {g.a > 0 ? v.a : 0, g.b > 0 ? v.b : 0}; }
+  friend TwoFloats operator+(TwoFloats x, TwoFloats y) noexcept {
+    return {{x.value.a + y.value.a, x.value.b + y.value.b}};
+  }
+  friend TwoFloats operator-(TwoFloats x, TwoFloats y) noexcept {
+    return {{x.value.a - y.value.a, x.value.b - y.value.b}};
+  }
+  friend TwoFloats operator*(TwoFloats x, TwoFloats y) noexcept {
+    return {{x.value.a * y.value.a, x.value.b * y.value.b}};
+  }
+  friend TwoFloats operator/(TwoFloats x, TwoFloats y) noexcept {
+    return {{x.value.a / y.value.a, x.value.b / y.value.b}};
+  }
+  static TwoFloats square_root(TwoFloats v) noexcept { return {{std::sqrt(v.value.a), std::sqrt(v.value.b)}}; }
+  static TwoFloats positive_part(TwoFloats v) noexcept {
+    return {{v.value.a < 0 ? 0 : v.value.a, v.value.b < 0 ? 0 : v.value.b}};
+  }
+  static TwoFloats where_positive(TwoFloats g, TwoFloats v) noexcept {
+    return {{g.value.a > 0 ? v.value.a : 0, g.value.b > 0 ? v.value.b : 0}};
+  }
 #ifndef PACK_WITHOUT_SETTLE
   void settle() noexcept {}
 #endif
@@ -55,24 +69,24 @@ struct TwoFloats {
   static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
   template <int First>
   TwoFloats repeat() const noexcept {
-    return broadcast(First == 0 ? a : b);
+    return broadcast(First == 0 ? value.a : value.b);
   }
   static TwoFloats repeat(const float* x) noexcept { return broadcast(*x); }
-  static TwoFloats repeat_last(TwoFloats v) noexcept { return broadcast(v.a); }
+  static TwoFloats repeat_last(TwoFloats v) noexcept { return broadcast(v.value.a); }
   static TwoFloats from_scalar(float v) noexcept { return broadcast(v); }
 #ifndef LAYOUT_WITHOUT_COLLECT
   static TwoFloats collect(const TwoFloats* sum) noexcept { return *sum; }
 #endif
   template <int Count>
   TwoFloats head() const noexcept {
-    return {a, Count > 1 ? b : 0};
+    return {{value.a, Count > 1 ? value.b : 0}};
   }
-  TwoFloats sum_of_values() const noexcept { return broadcast(a + b); }
-  float first_value() const noexcept { return a; }
+  TwoFloats sum_of_values() const noexcept { return broadcast(value.a + value.b); }
+  float first_value() const noexcept { return value.a; }
   template <int Count>
   void store_values(float* y) const noexcept {
-    y[0] = a;
-    if (Count > 1) y[1] = b;
+    y[0] = value.a;
+    if (Count > 1) y[1] = value.b;
   }
 };
 
