@@ -38,6 +38,7 @@ struct MppiSettings {
 /// rotors, 0 to 1. The same seed gives the same bits whatever the number of lanes.
 template <class Vehicle, int Rollouts = 512, int Steps = 40>
 class Mppi;
+/// With the effects that the rollouts have.
 template <class... Effects, int Rollouts, int Steps>
 class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
   using Wide = Lanes<float, native_lanes<float>>;

@@ -321,6 +321,7 @@ PINNQUAD_ALWAYS_INLINE Eigen::Matrix<Lanes<Scalar, Count>, Rows, Columns, Option
   for (int i = 0; i < Rows * Columns; ++i) result.data()[i] = select(mask, yes.data()[i], no.data()[i]);
   return result;
 }
+/// The same of numbers of each rotor.
 template <class Scalar, int Count, std::size_t Size>
 PINNQUAD_ALWAYS_INLINE std::array<Lanes<Scalar, Count>, Size> select(
     const LaneMask<Scalar, Count>& mask, const std::array<Lanes<Scalar, Count>, Size>& yes,
@@ -343,6 +344,7 @@ PINNQUAD_ALWAYS_INLINE LaneMask<Scalar, Count> is_finite(const Lanes<Scalar, Cou
   return mask;
 }
 
+/// Those of lanes.
 template <class Scalar, int Count>
 struct LaneTypes<Lanes<Scalar, Count>> {
   using Mask = LaneMask<Scalar, Count>;

@@ -167,11 +167,12 @@ constexpr std::array<Scalar, rotor_count> by_direction(const ThrustFractions<Sca
   return result;
 }
 
-/// Each rotor's time constant of growing thrust, and of falling thrust.
+/// Each rotor's time constant of growing thrust.
 template <class Scalar>
 constexpr std::array<Scalar, rotor_count> rise_time_constants_s(const Airframe<Scalar>& a) noexcept {
   return {a.rise_time_constant_s(0), a.rise_time_constant_s(1), a.rise_time_constant_s(2), a.rise_time_constant_s(3)};
 }
+/// And of falling thrust.
 template <class Scalar>
 constexpr std::array<Scalar, rotor_count> fall_time_constants_s(const Airframe<Scalar>& a) noexcept {
   return {a.fall_time_constant_s(0), a.fall_time_constant_s(1), a.fall_time_constant_s(2), a.fall_time_constant_s(3)};

@@ -32,7 +32,7 @@ inline constexpr std::size_t state_number_count = 18;
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// One vehicle's state, commands or airframe into a lane.
+/// One vehicle's state into a lane.
 template <class Scalar, int Count>
 PINNQUAD_ALWAYS_INLINE void set_lane(VehicleState<Lanes<Scalar, Count>>& states, int lane,
                                      const VehicleState<Scalar>& state) noexcept {
@@ -44,6 +44,7 @@ PINNQUAD_ALWAYS_INLINE void set_lane(VehicleState<Lanes<Scalar, Count>>& states,
     number.set_lane(lane, static_cast<decltype(number.lane(0))>(numbers[k++]));
   });
 }
+/// And its commands.
 template <class Scalar, int Count>
 PINNQUAD_ALWAYS_INLINE void set_lane(Commands<Lanes<Scalar, Count>>& all, int lane,
                                      const Commands<Scalar>& commands) noexcept {
