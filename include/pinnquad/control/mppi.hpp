@@ -78,7 +78,8 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
   /// point; `no_solution` where no flight that was looked at stays a flight; `commands` is untouched unless ok.
   template <class Sample>
   Status operator()(const VehicleState<float>& state, const Sample& sample, Commands<float>& commands) noexcept {
-    if (status() != Status::ok) return status();
+    const Status sound = status();
+    if (sound != Status::ok) return sound;
     if (!(all_finite(state.body) && all_finite(state.rotors) && is_finite(state.time_s))) return Status::not_finite;
     if (!is_unit(state.body.attitude)) return Status::not_unit_quaternion;
     const float scale = vehicle_.rotor_scale(vehicle_.surroundings(state.body, static_cast<float>(state.time_s)));
