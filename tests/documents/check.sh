@@ -102,7 +102,7 @@ check_simple_command() {
         ;;
       ctest:-L)
         next=${2#*-L } next=${next%% -*} next=${next//\"/}
-        ctest --test-dir "$build" -N -L "$next" 2>/dev/null | grep -q '^Total Tests: [1-9]' ||
+        grep -rqE --include=CMakeLists.txt --include='*.cmake' "LABELS [^)]*$next" "$root/tests" ||
           fault "$line" "no test has a label $next"
         ;;
     esac

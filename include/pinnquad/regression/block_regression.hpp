@@ -167,8 +167,8 @@ class BlockRegression {
       zz.triangularView<Eigen::StrictlyUpper>() = sums.zz.transpose();
       zz = (roots.asDiagonal() * zz * roots.asDiagonal()).eval();
       const Eigen::MatrixXd weights = roots.asDiagonal() * detail::solve_symmetric(zz, roots.asDiagonal() * sums.zx);
-      normal.a = weights.transpose() * sums.zx;
-      normal.b = weights.transpose() * sums.zy;
+      normal.a = detail::matrix_product(weights.transpose(), sums.zx);
+      normal.b = detail::matrix_product(weights.transpose(), sums.zy);
     } else {
       normal.a = sums.zx;
       normal.b = sums.zy;

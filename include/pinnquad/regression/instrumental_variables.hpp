@@ -51,7 +51,7 @@ inline Eigen::MatrixXd left_by(const Eigen::MatrixXd& sums, const std::vector<in
   for (Eigen::Index i = 0; i < count; ++i) rows.row(1 + i) = sums.row(1 + by[static_cast<std::size_t>(i)]);
   own.col(0) = rows.col(0);
   for (Eigen::Index i = 0; i < count; ++i) own.col(1 + i) = rows.col(1 + by[static_cast<std::size_t>(i)]);
-  return sums - rows.transpose() * solve_symmetric(own, rows);
+  return sums - matrix_product(rows.transpose(), solve_symmetric(own, rows));
 }
 
 inline std::vector<int> joined(std::vector<int> first, const std::vector<int>& second) {
@@ -104,7 +104,8 @@ inline double fuller_k(const RegressionSums& sums, const InstrumentedProducts& p
   const Eigen::MatrixXd inner = part_of(products.left, roles.noisy).bottomRightCorner(count, count) / sums.rows();
   const auto whitening = whitening_of(inner);
   if (!whitening) return 1;
-  return eigen_pairs(*whitening * outer * whitening->transpose()).values.minCoeff() - 1 / freedom;
+  return eigen_pairs(matrix_product(matrix_product(*whitening, outer), whitening->transpose())).values.minCoeff() -
+         1 / freedom;
 }
 
 }  // namespace detail
