@@ -45,10 +45,13 @@ def predict():
     return min(theirs), min(ours), 1e9 * one
 
 
-def steps(effects):
+SPREADS = {"mass_kg": 0.2, "inertia_kg_m2": 0.1, "thrust_coefficient": 0.1, "thrust_scale": 0.05}
+
+
+def steps(effects, airframe="paper_quadrotor"):
     """1 ms steps of a vehicle a second, a thousand vehicles a call."""
-    vehicles = pinnquad.Vehicles(1000, effects=effects)
-    commands = np.tile(vehicles.hover_commands(), (1000, 1))
+    vehicles = pinnquad.Vehicles(1000, airframe, effects=effects)
+    commands = np.broadcast_to(vehicles.hover_commands(), (1000, 4)).copy()
     return 1e5 / min(processor_s(lambda: vehicles.step(commands, 0.1)) for _ in range(ROUNDS))
 
 
@@ -66,15 +69,21 @@ def main():
     cpp, python, one = predict()
     print(f"predict, 10 x 25 ReLU, {ROWS} rows: C++ row by row {cpp:.0f} ns, Python {python:.0f} ns a row, "
           f"{python / cpp:.2f} times; one row a call {one:.0f} ns")
+    each = pinnquad.Airframe("paper_quadrotor").randomised(1000, SPREADS)
     for name, effects in (("drag", pinnquad.Effects()),
+                          ("payload and battery", pinnquad.Effects(payload_kg=0.2, battery_endurance_s=900)),
                           ("all effects of rotors", pinnquad.Effects(rotor_drag=True, inflow=True, flapping=True,
                                                                      wake=True))):
-        print(f"1,000 vehicles, 1 ms steps, {name}: {steps(effects):,.0f} a second")
+        print(f"1,000 vehicles, 1 ms steps, {name}: {steps(effects):,.0f} a second, "
+              f"with an airframe each {steps(effects, each):,.0f}")
     alone = pinnquad.HoverEnv(step_s=0.01)
     many = pinnquad.VectorHoverEnv(1000, step_s=0.01)
+    drawn = pinnquad.VectorHoverEnv(1000, step_s=0.01, randomise=SPREADS)
     hover = alone.vehicles.hover_commands()
+    all_hover = np.tile(hover, (1000, 1))
     print(f"environment, steps of 10 ms: {environment_steps(alone, hover, 1000):,.0f} a second alone, "
-          f"{1000 * environment_steps(many, np.tile(hover, (1000, 1)), 20):,.0f} of 1,000 at once")
+          f"{1000 * environment_steps(many, all_hover, 20):,.0f} of 1,000 at once, with airframes drawn "
+          f"{1000 * environment_steps(drawn, all_hover, 20):,.0f}")
     sys.exit(python > MOST * cpp)
 
 

@@ -7,19 +7,54 @@ import numpy as np
 import pytest
 
 import pinnquad
-from pinnquad import Effects, HoverEnv, Simulator, Status, VectorHoverEnv, Vehicles
+from pinnquad import Airframe, Effects, HoverEnv, Simulator, Spin, Status, VectorHoverEnv, Vehicles
+
+SPREADS = {"mass_kg": 0.2, "inertia_kg_m2": 0.2, "thrust_coefficient": 0.1, "rotor_time_constant_s": 0.5,
+           "drag_area_m2": 0.5, "thrust_scale": 0.05, "x_m": 0.03}
 
 
+def uneven(airframe):
+    """Without what plain airframes leave out: a product of inertia, a curve, a lag for each direction."""
+    airframe.inertia_products_kg_m2 = (0.0003, 0, 0)
+    airframe.rotors[1].thrust_curve = 0.3
+    airframe.rotors[2].rise_time_constant_s, airframe.rotors[2].fall_time_constant_s = 0.02, 0.04
+    return airframe
+
+
+def one_airframe():
+    return "paper_quadrotor"
+
+
+def an_airframe_each():
+    airframes = Airframe("paper_quadrotor").randomised(11, SPREADS)
+    return airframes[:2] + [uneven(airframes[2])] + airframes[3:10] + ["racer_5_inch"]
+
+
+def each_turns_otherwise():
+    airframes = Airframe("paper_quadrotor").randomised(11, SPREADS)
+    for rotor in airframes[4].rotors:
+        rotor.spin = Spin.clockwise if rotor.spin == Spin.counter_clockwise else Spin.counter_clockwise
+    return airframes
+
+
+@pytest.mark.parametrize("airframes", [one_airframe, an_airframe_each, each_turns_otherwise])
 @pytest.mark.parametrize("effects", [
     Effects(), Effects(wind_m_s=(3, 1, 0), wake=True), Effects(wind_m_s=(3, 1, 0), gust_m_s=(0, 2, 0)),
-    Effects(ground_effect="conyers"), Effects(ground_effect="cheeseman_bennett")])
-def test_they_fly_as_the_simulator_does(effects):
+    Effects(ground_effect="conyers"), Effects(ground_effect="cheeseman_bennett"),
+    Effects(ground_effect="conyers", drag=False, payload_kg=0.2, payload_from_s=0.1, battery_endurance_s=60),
+    Effects(ground_effect="rotors", turbulence_m_s=5, rotor_drag=True, inflow=True, flapping=True, fault_share=0.9,
+            fault_rotor=2, rate_damping_N_m_s=0.01, linear_drag_N_s_m=0.1, ground_contact=True)])
+def test_they_fly_as_the_simulator_does(effects, airframes):
     """To the bit, in lanes or one by one; eleven leave lanes over."""
     start_m = (0, 0, 0)
-    alone = [Simulator(pilot="hover", effects=effects, start_m=start_m) for _ in range(11)]
-    many = Vehicles(11, effects=effects)
+    given = airframes()
+    each = given if isinstance(given, list) else [given] * 11
+    alone = [Simulator(one, pilot="hover", effects=effects, start_m=start_m) for one in each]
+    many = Vehicles(11, given, effects=effects)
     many.reset(position_m=start_m)
     random = np.random.default_rng(1)
+    np.testing.assert_array_equal(np.broadcast_to(many.hover_commands(start_m), (11, 4)),
+                                  [one.hover_commands() for one in alone])
     for _ in range(50):
         commands = many.hover_commands(start_m) + random.uniform(-0.02, 0.03, (11, 4))
         for one, its in zip(alone, commands):
@@ -32,6 +67,71 @@ def test_they_fly_as_the_simulator_does(effects):
         np.testing.assert_array_equal(many.attitude[i], one.state["attitude"])
         np.testing.assert_array_equal(many.body_rates_rad_s[i], one.state["body_rates_rad_s"])
         np.testing.assert_array_equal(many.rotor_commands[i], one.state["rotor_commands"])
+
+
+def test_other_airframes_in_flight():
+    """Those of a mask fly on as what they have become, the others as before."""
+    commands = np.tile(Vehicles(1).hover_commands(), (19, 1))
+    light, heavy = Airframe("paper_quadrotor"), Airframe("paper_quadrotor")
+    heavy.mass_kg *= 1.1
+    for which in (np.arange(19) == 10, np.arange(19) % 3 == 0, None):
+        expected, changed = Vehicles(19, light), Vehicles(19, light)
+        expected.step(commands, 0.01), changed.step(commands, 0.01)
+        became = Vehicles(19, heavy)
+        became.state[:] = expected.state
+        changed.set_airframe(heavy, which)
+        for vehicles in (expected, changed, became):
+            assert (vehicles.step(commands, 0.01) == 0).all()
+        chosen = np.ones(19, bool) if which is None else which
+        np.testing.assert_array_equal(changed.state, np.where(chosen[:, None], became.state, expected.state))
+        assert chosen.any() and not np.array_equal(became.state, expected.state)
+        changed.set_airframe([light] * int(chosen.sum()), which)  # and back, one given for each
+        changed.state[:] = expected.state
+        for vehicles in (expected, changed):
+            vehicles.step(commands, 0.01)
+        np.testing.assert_array_equal(changed.state, expected.state)
+
+
+def test_what_can_not_fly_changes_nothing():
+    broken = Airframe("paper_quadrotor")
+    broken.mass_kg = 50
+    with pytest.raises(pinnquad.Error, match="vehicle 2: airframe paper_quadrotor.*invalid_airframe"):
+        Vehicles(3, ["paper_quadrotor", "racer_5_inch", broken])
+    vehicles = Vehicles(3)
+    with pytest.raises(pinnquad.Error, match="vehicle 2: airframe paper_quadrotor.*invalid_airframe"):
+        vehicles.set_airframe(["racer_5_inch", broken], [False, True, True])
+    assert vehicles.airframe == Airframe("paper_quadrotor")
+    for given in (["paper_quadrotor"] * 2, [], ["paper_quadrotor"] * 4):
+        with pytest.raises(ValueError, match="airframe must be one, or 3, one per vehicle; found"):
+            Vehicles(3, given)
+    for given in (3, None, b"paper_quadrotor", [1, 2, 3]):
+        with pytest.raises(TypeError, match="expected an Airframe"):
+            Vehicles(3, given)
+    with pytest.raises(ValueError, match="3 truth values"):
+        vehicles.set_airframe("racer_5_inch", [True])
+
+
+def test_airframes_are_drawn_within_their_spreads():
+    middle = Airframe("racer_5_inch")
+    drawn = middle.randomised(400, {"mass_kg": 0.2, "thrust_scale": 0.05}, seed=3)
+    mass = np.array([one.mass_kg for one in drawn]) / middle.mass_kg
+    scale = np.array([[rotor.thrust_scale for rotor in one.rotors] for one in drawn])
+    assert 0.8 <= mass.min() < 0.81 and 1.19 < mass.max() <= 1.2 and abs(mass.mean() - 1) < 0.02
+    assert scale.min() >= 0.95 and scale.max() <= 1.05 and abs(np.corrcoef(scale.T)[0, 1]) < 0.15
+    assert all(one.thrust_coefficient == middle.thrust_coefficient for one in drawn)
+    again = middle.randomised(400, {"mass_kg": 0.2, "thrust_coefficient": 0.1}, seed=3)
+    assert [one.mass_kg for one in again] == [one.mass_kg for one in drawn]  # whatever else is drawn
+    assert middle.randomised(1, {"mass_kg": 0.2}, seed=4)[0].mass_kg != drawn[0].mass_kg
+    for one in Airframe("paper_quadrotor").randomised(200, {"inertia_kg_m2": 0.5}):
+        one.check()
+    for spreads, words in (({"mass": 0.1}, "no spread named 'mass'; known: "), ({"mass_kg": 1}, "from 0 to less"),
+                           ({"mass_kg": -0.1}, "from 0 to less"), ({"mass_kg": np.nan}, "from 0 to less")):
+        with pytest.raises(ValueError, match=words):
+            middle.randomised(1, spreads)
+    none = Airframe("paper_quadrotor")
+    none.mass_kg = 50
+    with pytest.raises(pinnquad.Error, match="paper_quadrotor: of 1000 .* none can hover"):
+        none.randomised(1, {"mass_kg": 0.1})
 
 
 def test_what_is_refused_on_the_way_stays_there():
@@ -112,6 +212,8 @@ def test_pickle():
     again = pickle.loads(pickle.dumps(vehicles))
     np.testing.assert_array_equal(again.state, vehicles.state)
     assert again.effects == vehicles.effects and again.airframe == vehicles.airframe
+    each = Vehicles(3, Airframe("paper_quadrotor").randomised(3, SPREADS))
+    assert pickle.loads(pickle.dumps(each)).airframe == each.airframe and len(each.airframe) == 3
 
 
 def test_a_second_thread_is_refused():
@@ -184,3 +286,27 @@ def test_what_ends_begins_anew():
     with pytest.raises(ValueError, match=r"\(50, 4\)"):
         environment.step(actions[:10])
     assert environment.action_space.shape == (50, 4)
+
+
+def test_each_episode_has_an_airframe_of_its_own():
+    environment = VectorHoverEnv(20, episode_s=0.05, randomise={"mass_kg": 0.2})
+    environment.reset(seed=1)
+    masses = [one.mass_kg for one in environment.vehicles.airframe]
+    assert len(set(masses)) == 20
+    actions = environment.vehicles.hover_commands()
+    environment.vehicles.position_m[3] = (0, 0, 100)  # this one ends first
+    ended = environment.step(actions)[4]["ended"]
+    assert ended[3] and ended.sum() == 1
+    after = [one.mass_kg for one in environment.vehicles.airframe]
+    assert after[3] != masses[3] and after[:3] + after[4:] == masses[:3] + masses[4:]
+    np.testing.assert_array_equal(environment.vehicles.rotor_commands[3], environment.vehicles.hover_commands()[3])
+    alone, one = HoverEnv(randomise=SPREADS), VectorHoverEnv(1, randomise=SPREADS)
+    np.testing.assert_array_equal(alone.reset(seed=5)[0], one.reset(seed=5)[0][0])
+    assert alone.vehicles.airframe == one.vehicles.airframe != Airframe("paper_quadrotor")
+    action = np.full(4, 0.55)
+    assert alone.step(action)[1] == one.step(action[None])[1][0]
+    again = VectorHoverEnv(20, randomise={"mass_kg": 0.2})
+    again.reset(seed=1)
+    assert [each.mass_kg for each in again.vehicles.airframe] == masses
+    with pytest.raises(ValueError, match="no spread named"):
+        VectorHoverEnv(2, randomise={"weight": 0.1})

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Airframes: by name, from TOML files, edited, pickled.
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
+#include <random>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "airframe/toml_writer.hpp"
+#include "pinnquad/core/random.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "python/bindings.hpp"
 
@@ -28,13 +34,91 @@ std::vector<std::string> names() {
   return all;
 }
 
+pinnquad::Status status_of(const Airframe<double>& airframe) {
+  const pinnquad::Status status = check_airframe(airframe);
+  return status == pinnquad::Status::ok ? pinnquad::Rotors<double>(airframe).status() : status;
+}
+
 void check(const NamedAirframe& airframe) {
-  pinnquad::Status status = check_airframe(airframe.value);
-  if (status == pinnquad::Status::ok) status = pinnquad::Rotors<double>(airframe.value).status();
+  const pinnquad::Status status = status_of(airframe.value);
   if (status != pinnquad::Status::ok) {
     refuse("airframe " + pinnquad::printable(airframe.name) + ": " + to_string(status) +
            ", its values are no quadrotor's that can hover");
   }
+}
+
+/// Calls `visit(name, number)` for every number that has a spread: of a rotor by the rotor's name for it.
+template <class Visit>
+void each_spread(Airframe<double>& a, const Visit& visit) {
+  const auto three = [&visit](const char* name, Triple& numbers) {
+    for (double& number : numbers) visit(name, number);
+  };
+  visit("mass_kg", a.mass_kg);
+  three("inertia_kg_m2", a.inertia_kg_m2);
+  three("inertia_products_kg_m2", a.inertia_products_kg_m2);
+  visit("thrust_coefficient", a.thrust_coefficient);
+  visit("power_coefficient", a.power_coefficient);
+  visit("propeller_diameter_m", a.propeller_diameter_m);
+  visit("max_rotor_speed_rev_s", a.max_rotor_speed_rev_s);
+  visit("rotor_time_constant_s", a.rotor_time_constant_s);
+  three("drag_area_m2", a.drag_area_m2);
+  for (Rotor& rotor : a.rotors) {
+    visit("x_m", rotor.x_m);
+    visit("y_m", rotor.y_m);
+    visit("z_m", rotor.z_m);
+    visit("thrust_scale", rotor.thrust_scale);
+    visit("thrust_curve", rotor.thrust_curve);
+    visit("rise_time_constant_s", rotor.rise_time_constant_s);
+    visit("fall_time_constant_s", rotor.fall_time_constant_s);
+  }
+}
+
+using Spreads = std::map<std::string, double>;
+
+void check(const Spreads& spreads) {
+  std::vector<std::string> known;
+  Airframe<double> any{};
+  each_spread(any, [&known](const char* name, double) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) known.emplace_back(name);
+  });
+  for (const auto& [name, spread] : spreads) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) refuse_name("spread", name, known);
+    if (!(spread >= 0 && spread < 1)) {
+      throw py::value_error("the spread of " + name + " must be a number from 0 to less than 1");
+    }
+  }
+}
+
+/// Every number draws, so that a spread more or less leaves the others' draws as they are.
+Airframe<double> drawn(const Airframe<double>& middle, const Spreads& spreads, std::mt19937_64& engine) {
+  Airframe<double> airframe = middle;
+  each_spread(airframe, [&](const char* name, double& number) {
+    const double off = pinnquad::uniform(engine, -1, 1);
+    const auto spread = spreads.find(name);
+    const bool of_the_airframe = number < 0 && std::string(name).find("_time_constant_s") != std::string::npos;
+    if (spread != spreads.end() && !of_the_airframe) number *= 1 + spread->second * off;
+  });
+  return airframe;
+}
+
+py::list randomised(const NamedAirframe& middle, std::size_t count, const Spreads& spreads, std::uint64_t seed) {
+  check(spreads);
+  constexpr int tries = 1000;
+  std::mt19937_64 engine(seed);
+  py::list airframes;
+  for (std::size_t i = 0; i < count; ++i) {
+    NamedAirframe one = middle;
+    int left = tries;
+    do {
+      if (left-- == 0) {
+        refuse("airframe " + pinnquad::printable(middle.name) + ": of " + std::to_string(tries) +
+               " drawn with these spreads none can hover");
+      }
+      one.value = drawn(middle.value, spreads, engine);
+    } while (status_of(one.value) != pinnquad::Status::ok);
+    airframes.append(std::move(one));
+  }
+  return airframes;
 }
 
 py::tuple state_of(NamedAirframe airframe) {
@@ -150,7 +234,12 @@ void bind_airframes(py::module_& module) {
       .def_property_readonly(
           "thrust_to_weight", [](const NamedAirframe& self) { return self.value.thrust_to_weight(); },
           "Thrust of all rotors at command 1 over the weight, at sea level.")
-      .def("check", &check, "Raises pinnquad.Error for values that no quadrotor has that can hover.")
+      .def("check", py::overload_cast<const NamedAirframe&>(&check),
+           "Raises pinnquad.Error for values that no quadrotor has that can hover.")
+      .def("randomised", &randomised, py::arg("count"), py::arg("spreads"), py::arg("seed") = 1,
+           "A list of `count` airframes around this one: each number that `spreads` names, {\"mass_kg\": 0.2,\n"
+           "\"thrust_scale\": 0.05}, times a factor drawn for it, uniform between 1 - spread and 1 + spread; of the\n"
+           "airframe's attributes or its rotors'. What can't hover is drawn again. The same seed gives the same bits.")
       .def(
           "copy", [](const NamedAirframe& self) { return self; }, "Another one, to edit.")
       .def("__copy__", [](const NamedAirframe& self) { return self; })

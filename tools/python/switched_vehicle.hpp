@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -24,7 +25,6 @@
 #include "pinnquad/aero/wake.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/simulation/switchable_quadrotor.hpp"
-#include "python/vehicle_steps.hpp"
 
 namespace python {
 
@@ -56,8 +56,8 @@ struct SwitchedEffect {
   bool on = false;
 
   template <class Scalar>
-  pinnquad::Status status(const pinnquad::Airframe<Scalar>& airframe) const noexcept {
-    return on ? pinnquad::effect_status(effect, airframe) : pinnquad::Status::ok;
+  pinnquad::Outcome<Scalar> status(const pinnquad::Airframe<Scalar>& airframe) const noexcept {
+    return on ? pinnquad::effect_status(effect, airframe) : pinnquad::Outcome<Scalar>(pinnquad::Status::ok);
   }
 };
 
@@ -108,6 +108,21 @@ struct SwitchedLift : SwitchedEffect<Effect> {
   }
 };
 
+/// The effects of the paper's flights, before the ground effect.
+using PaperEffects =
+    std::tuple<pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind, pinnquad::QuadraticDrag>;
+
+/// All, in the order of the contract: the air first, then forces; the payload last, as it scales those before it.
+using AllEffects = std::tuple<SwitchedAir<pinnquad::StandardAtmosphere>, pinnquad::ConstantWind, pinnquad::PeriodicWind,
+                              SwitchedAir<pinnquad::DrydenTurbulence<>>, SwitchedAir<pinnquad::BatterySag>,
+                              SwitchedForce<pinnquad::QuadraticDrag>, SwitchedForce<pinnquad::LinearDamping>,
+                              SwitchedRotorForce<pinnquad::RotorDrag>, SwitchedRotorForce<pinnquad::Inflow>,
+                              SwitchedRotorForce<pinnquad::BladeFlapping>, SwitchedRotorForce<pinnquad::Wake>,
+                              SwitchedRotorForce<pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>>,
+                              SwitchedLift<pinnquad::CheesemanBennettGroundEffect>,
+                              SwitchedLift<pinnquad::ConyersGroundEffect>, SwitchedRotorForce<pinnquad::RotorFault>,
+                              SwitchedForce<pinnquad::GroundContact>, SwitchedRotorForce<pinnquad::Payload>>;
+
 /// A vehicle (simulation/simulator.hpp) by the choices of Effects.
 class SwitchedQuadrotor {
  public:
@@ -118,13 +133,25 @@ class SwitchedQuadrotor {
   const pinnquad::Airframe<double>& airframe() const noexcept { return airframe_; }
   const pinnquad::Site<double>& site() const noexcept { return site_; }
   const Effects& effects() const noexcept { return effects_; }
-  /// Null where it has other effects than the vehicle of the paper's flights.
-  const PaperEffects* paper_effects() const noexcept {
+
+  /// `function(effects, ground_effect)` for the vehicle of the paper's flights, `function(effects)` for that with all
+  /// effects: their values, not bound to the airframe.
+  template <class Function>
+  auto with_effects(const Function& function) const {
     const Plain* const plain = std::get_if<Plain>(&chosen_);
-    return plain == nullptr ? nullptr : &plain->effects();
+    return plain != nullptr ? function(plain->effects(), plain->ground_effect())
+                            : function(std::get<Full>(chosen_).effects);
   }
-  /// Of that vehicle.
-  pinnquad::GroundEffectModel ground_effect() const noexcept { return std::get<Plain>(chosen_).ground_effect(); }
+
+  /// Another airframe under the same effects.
+  SwitchedQuadrotor with(const pinnquad::Airframe<double>& airframe) const {
+    SwitchedQuadrotor other = *this;
+    other.airframe_ = airframe;
+    other.chosen_ = with_effects([&](const auto& effects, auto... ground_effect) -> Chosen {
+      return made(airframe, site_, effects, ground_effect...);
+    });
+    return other;
+  }
 
   template <class Function>
   decltype(auto) visit(Function&& function) const {
@@ -136,21 +163,37 @@ class SwitchedQuadrotor {
   }
 
  private:
-  template <class... More>
-  using QuadrotorWith = pinnquad::Quadrotor<double, More...>;
-  using Plain = pinnquad::SwitchableQuadrotor<pinnquad::StandardAtmosphere, pinnquad::ConstantWind,
-                                              pinnquad::PeriodicWind, pinnquad::QuadraticDrag>;
-  /// In the order of the contract: the air first, then forces; the payload last, as it scales those before it.
-  using Full = QuadrotorWith<SwitchedAir<pinnquad::StandardAtmosphere>, pinnquad::ConstantWind, pinnquad::PeriodicWind,
-                             SwitchedAir<pinnquad::DrydenTurbulence<>>, SwitchedAir<pinnquad::BatterySag>,
-                             SwitchedForce<pinnquad::QuadraticDrag>, SwitchedForce<pinnquad::LinearDamping>,
-                             SwitchedRotorForce<pinnquad::RotorDrag>, SwitchedRotorForce<pinnquad::Inflow>,
-                             SwitchedRotorForce<pinnquad::BladeFlapping>, SwitchedRotorForce<pinnquad::Wake>,
-                             SwitchedRotorForce<pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>>,
-                             SwitchedLift<pinnquad::CheesemanBennettGroundEffect>,
-                             SwitchedLift<pinnquad::ConyersGroundEffect>, SwitchedRotorForce<pinnquad::RotorFault>,
-                             SwitchedForce<pinnquad::GroundContact>, SwitchedRotorForce<pinnquad::Payload>>;
+  template <class Values>
+  struct QuadrotorWith;
+  template <class... Effect>
+  struct QuadrotorWith<std::tuple<Effect...>> {
+    using Switchable = pinnquad::SwitchableQuadrotor<Effect...>;
+    using Alone = pinnquad::Quadrotor<double, Effect...>;
+  };
+  using Plain = QuadrotorWith<PaperEffects>::Switchable;
+  struct Full {
+    AllEffects effects;
+    QuadrotorWith<AllEffects>::Alone quadrotor;
+  };
   using Chosen = std::variant<Plain, Full>;
+
+  template <class Function>
+  friend decltype(auto) with_quadrotor(const Full& full, Function&& function) {
+    return std::forward<Function>(function)(full.quadrotor);
+  }
+
+  static Plain made(const pinnquad::Airframe<double>& airframe, const pinnquad::Site<double>& site,
+                    const PaperEffects& effects, pinnquad::GroundEffectModel ground_effect) {
+    Plain plain = std::apply([&](const auto&... each) { return Plain(airframe, site, each...); }, effects);
+    plain.set_ground_effect(ground_effect);
+    return plain;
+  }
+  static Full made(const pinnquad::Airframe<double>& airframe, const pinnquad::Site<double>& site,
+                   const AllEffects& effects) {
+    return {effects,
+            std::apply([&](const auto&... each) { return QuadrotorWith<AllEffects>::Alone(airframe, site, each...); },
+                       effects)};
+  }
 
   static bool is_plain(const Effects& e) {
     return e.standard_atmosphere && e.drag && !(e.turbulence_m_s > 0) && !(e.battery_endurance_s > 0) &&
@@ -170,10 +213,11 @@ class SwitchedQuadrotor {
       gust.direction[i] = e.gust_m_s[i] / gust.amplitude_m_s;
     }
     if (is_plain(e)) {
-      Plain plain(airframe, site, {}, wind, gust, {});
-      if (e.ground_effect == "cheeseman_bennett") plain.set_ground_effect(GroundEffectModel::cheeseman_bennett);
-      if (e.ground_effect == "conyers") plain.set_ground_effect(GroundEffectModel::conyers);
-      return plain;
+      const GroundEffectModel ground_effect =
+          e.ground_effect == "conyers" ? GroundEffectModel::conyers
+                                       : (e.ground_effect == "cheeseman_bennett" ? GroundEffectModel::cheeseman_bennett
+                                                                                 : GroundEffectModel::none);
+      return made(airframe, site, PaperEffects({}, wind, gust, {}), ground_effect);
     }
     std::mt19937_64 engine(e.turbulence_seed);
     const double along_m_s = std::hypot(e.wind_m_s[0], e.wind_m_s[1]);
@@ -187,13 +231,14 @@ class SwitchedQuadrotor {
     const pinnquad::RotorFault fault{e.fault_rotor, e.fault_share, e.fault_from_s};
     pinnquad::GroundContact legs;
     legs.leg_length_m = e.leg_length_m;
-    return Full(airframe, site, {{{}, e.standard_atmosphere}}, wind, gust, {{turbulence, e.turbulence_m_s > 0}},
-                {{battery, e.battery_endurance_s > 0}}, {{{}, e.drag}},
-                {{damping, e.linear_drag_N_s_m > 0 || e.rate_damping_N_m_s > 0}}, {{{}, e.rotor_drag}},
-                {{{}, e.inflow}}, {{{}, e.flapping}}, {{{}, e.wake}}, {{{}, e.ground_effect == "rotors"}},
-                {{{}, e.ground_effect == "cheeseman_bennett"}}, {{{}, e.ground_effect == "conyers"}},
-                {{fault, e.fault_share < 1}}, {{legs, e.ground_contact}},
-                {{{e.payload_kg, e.payload_from_s}, e.payload_kg > 0}});
+    AllEffects all({{{}, e.standard_atmosphere}}, wind, gust, {{turbulence, e.turbulence_m_s > 0}},
+                   {{battery, e.battery_endurance_s > 0}}, {{{}, e.drag}},
+                   {{damping, e.linear_drag_N_s_m > 0 || e.rate_damping_N_m_s > 0}}, {{{}, e.rotor_drag}},
+                   {{{}, e.inflow}}, {{{}, e.flapping}}, {{{}, e.wake}}, {{{}, e.ground_effect == "rotors"}},
+                   {{{}, e.ground_effect == "cheeseman_bennett"}}, {{{}, e.ground_effect == "conyers"}},
+                   {{fault, e.fault_share < 1}}, {{legs, e.ground_contact}},
+                   {{{e.payload_kg, e.payload_from_s}, e.payload_kg > 0}});
+    return made(airframe, site, all);
   }
 
   pinnquad::Airframe<double> airframe_;

@@ -4,6 +4,8 @@
 #include "python/vehicle_steps.hpp"
 
 #include <cstring>
+#include <tuple>
+#include <vector>
 
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/vehicle/lanes_of_vehicles.hpp"
@@ -39,16 +41,35 @@ void from_lanes(const void* lanes, std::size_t count, double* rows) noexcept {
 template <class... Effects>
 class StepsOf final : public VehicleSteps {
  public:
-  StepsOf(const Airframe<double>& airframe, const Site<double>& site, double step_s, const Effects&... effects)
-      : vehicles_(in_every_lane<Wide>(airframe),
-                  Site<Wide>{Wide(site.elevation_m), Wide(site.ground_z_m), Wide(site.gravity_m_s2)}, effects...),
-        step_(vehicles_.time_step(Wide(step_s))) {}
+  StepsOf(const Site<double>& site, double step_s, const Effects&... effects)
+      : site_{Wide(site.elevation_m), Wide(site.ground_z_m), Wide(site.gravity_m_s2)},
+        step_s_(step_s),
+        effects_(effects...) {}
 
   std::size_t lanes() const noexcept override { return lane_count; }
+
+  void set_airframe(const Airframe<double>& airframe) override {
+    groups_.clear();
+    groups_.push_back(group_of(in_every_lane<Wide>(airframe)));
+  }
+
+  bool set_airframes(std::size_t group, const Airframe<double>* airframes, std::size_t count) override {
+    Airframe<Wide> all = in_every_lane<Wide>(airframes[0]);
+    for (std::size_t lane = 1; lane < count; ++lane) {
+      if (!set_lane(all, static_cast<int>(lane), airframes[lane])) return false;
+    }
+    if (group < groups_.size()) {
+      groups_[group] = group_of(all);
+    } else {
+      groups_.push_back(group_of(all));
+    }
+    return true;
+  }
 
   void step(double* states, const double* commands, std::size_t first, std::size_t last, std::uint64_t steps,
             std::uint8_t* statuses) const noexcept override {
     for (; first < last; first += lane_count) {
+      const Group& group = groups_[groups_.size() == 1 ? 0 : first / lane_count];
       const std::size_t count = last - first < lane_count ? last - first : lane_count;
       VehicleState<Wide> state;
       Commands<Wide> u;
@@ -56,7 +77,7 @@ class StepsOf final : public VehicleSteps {
       to_lanes<rotor_count>(commands + first * rotor_count, count, &u);
       Outcome<Wide> outcome(Status::ok);
       // what is refused is refused again: it has not moved
-      for (std::uint64_t done = 0; done < steps; ++done) outcome = vehicles_.step(state, u, step_);
+      for (std::uint64_t done = 0; done < steps; ++done) outcome = group.vehicles.step(state, u, group.step);
       from_lanes<state_numbers>(&state, count, states + first * state_numbers);
       for (std::size_t lane = 0; lane < count; ++lane) {
         statuses[first + lane] = static_cast<std::uint8_t>(outcome.lane(static_cast<int>(lane)));
@@ -65,32 +86,46 @@ class StepsOf final : public VehicleSteps {
   }
 
  private:
-  Quadrotor<Wide, Effects...> vehicles_;
-  typename Quadrotor<Wide, Effects...>::TimeStep step_;
+  struct Group {
+    Quadrotor<Wide, Effects...> vehicles;
+    typename Quadrotor<Wide, Effects...>::TimeStep step;
+  };
+
+  Group group_of(const Airframe<Wide>& airframes) const {
+    const auto vehicles = std::apply(
+        [&](const Effects&... effects) { return Quadrotor<Wide, Effects...>(airframes, site_, effects...); }, effects_);
+    return {vehicles, vehicles.time_step(Wide(step_s_))};
+  }
+
+  Site<Wide> site_;
+  double step_s_;
+  std::tuple<Effects...> effects_;
+  std::vector<Group> groups_;
 };
 
-template <class... Ground>
-std::unique_ptr<VehicleSteps> steps_with(const Airframe<double>& airframe, const Site<double>& site,
-                                         const PaperEffects& effects, double step_s, const Ground&... ground) {
-  const auto& [air, wind, gust, drag] = effects;
-  return std::unique_ptr<VehicleSteps>(
-      new StepsOf<StandardAtmosphere, ConstantWind, PeriodicWind, QuadraticDrag, Ground...>(
-          airframe, site, step_s, air, wind, gust, drag, ground...));
+template <class... Effects>
+std::unique_ptr<VehicleSteps> steps_of(const Site<double>& site, double step_s, const Effects&... effects) {
+  return std::unique_ptr<VehicleSteps>(new StepsOf<Effects...>(site, step_s, effects...));
 }
 
-std::unique_ptr<VehicleSteps> steps_of(const Airframe<double>& airframe, const Site<double>& site,
-                                       const PaperEffects& effects, GroundEffectModel ground_effect, double step_s) {
+std::unique_ptr<VehicleSteps> with_paper_effects(const Site<double>& site, double step_s, const PaperEffects& effects,
+                                                 GroundEffectModel ground_effect) {
+  const auto& [air, wind, gust, drag] = effects;
   switch (ground_effect) {
     case GroundEffectModel::cheeseman_bennett:
-      return steps_with(airframe, site, effects, step_s, CheesemanBennettGroundEffect{});
-    case GroundEffectModel::conyers: return steps_with(airframe, site, effects, step_s, ConyersGroundEffect{});
+      return steps_of(site, step_s, air, wind, gust, drag, CheesemanBennettGroundEffect{});
+    case GroundEffectModel::conyers: return steps_of(site, step_s, air, wind, gust, drag, ConyersGroundEffect{});
     case GroundEffectModel::none: break;
   }
-  return steps_with(airframe, site, effects, step_s);
+  return steps_of(site, step_s, air, wind, gust, drag);
+}
+
+std::unique_ptr<VehicleSteps> with_all_effects(const Site<double>& site, double step_s, const AllEffects& effects) {
+  return std::apply([&](const auto&... each) { return steps_of(site, step_s, each...); }, effects);
 }
 
 }  // namespace
 
-const CompiledSteps PINNQUAD_STEPS = {detail::instruction_set.data(), steps_of};
+const CompiledSteps PINNQUAD_STEPS = {detail::instruction_set.data(), with_paper_effects, with_all_effects};
 
 }  // namespace python

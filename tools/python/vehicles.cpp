@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Many vehicles of one airframe, stepped by one call. Their states are one array, where they lie.
+// Many vehicles stepped by one call, of one airframe or each of its own. Their states are one array, where they lie.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -49,18 +49,35 @@ constexpr std::array<RowPart, 7> parts = {
      {"rotor_commands", 13, 4, "Commands at which the present thrusts would be settled, behind the lag."},
      {"time_s", 17, 1, "Of each vehicle, s: for gusts, battery, faults."}}};
 
+/// An airframe for all, or one for each of `count`.
+std::vector<NamedAirframe> airframes_of(const py::object& given, std::size_t count) {
+  if (!PySequence_Check(given.ptr()) || py::isinstance<py::str>(given) || py::isinstance<py::bytes>(given)) {
+    return {airframe_of(given)};
+  }
+  const auto sequence = given.cast<py::sequence>();
+  if (sequence.size() != count) {
+    throw py::value_error("airframe must be one, or " + std::to_string(count) + ", one per vehicle; found " +
+                          std::to_string(sequence.size()));
+  }
+  std::vector<NamedAirframe> airframes;
+  airframes.reserve(count);
+  for (const py::handle one : sequence) airframes.push_back(airframe_of(one));
+  return airframes;
+}
+
 class Vehicles {
  public:
-  Vehicles(std::size_t count, const NamedAirframe& airframe, const py::object& effects, double physics_step_s)
-      : airframe_(airframe),
+  Vehicles(std::size_t count, const std::vector<NamedAirframe>& airframes, const py::object& effects,
+           double physics_step_s)
+      : airframes_(airframes),
         effects_(effects),
         physics_step_s_(checked("physics_step_s", physics_step_s, 1e-6)),
-        vehicle_(vehicle_of(airframe, effects_of(effects))),
+        vehicle_(vehicle_of(airframes.at(0), effects_of(effects))),
         states_(count) {
-    if (steps_in_lanes() != nullptr && vehicle_.paper_effects() != nullptr) {
-      lanes_ = steps_in_lanes()->of(vehicle_.airframe(), vehicle_.site(), *vehicle_.paper_effects(),
-                                    vehicle_.ground_effect(), physics_step_s_);
+    for (std::size_t i = 1; i < airframes_.size(); ++i) {
+      require_flying(vehicle_.with(airframes_[i].value), airframes_[i], i);
     }
+    put_in_lanes();
     reset(py::none(), triple(FlightPlan{}.start_m));
   }
 
@@ -70,13 +87,15 @@ class Vehicles {
     return part_of_rows(reinterpret_cast<double*>(states_.data()), states_.size(), sizeof(OneState), part, self);
   }
 
-  Commands<double> hover_commands(const Triple& place_m) const {
-    HoverTrim<double> hover;
-    const Status status = with_quadrotor(vehicle_, [&](const auto& quadrotor) {
-      return hover_trim(quadrotor, Vector3<double>(place_m[0], place_m[1], place_m[2]), hover);
-    });
-    if (status != Status::ok) refuse(std::string("no hover here: ") + to_string(status));
-    return hover.commands;
+  /// Of all alike, or a row for each.
+  py::array_t<double> hover_commands(const Triple& place_m) const {
+    if (airframes_.size() == 1) return array_of(hover_of(vehicle_, place_m));
+    py::array_t<double> rows({static_cast<py::ssize_t>(size()), static_cast<py::ssize_t>(rotor_count)});
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Commands<double> commands = hover_of(vehicle_.with(airframes_[i].value), place_m);
+      std::copy_n(commands.begin(), rotor_count, rows.mutable_data() + rotor_count * i);
+    }
+    return rows;
   }
 
   /// Level, at rest, the rotors in hover; those of a mask, or all.
@@ -85,18 +104,45 @@ class Vehicles {
     OneState hover;
     const Triple& place = checked("position_m", place_m);
     hover.body.position_m = Vector3<double>(place[0], place[1], place[2]);
-    hover.rotors = hover_commands(place);
-    if (which.is_none()) {
-      std::fill(states_.begin(), states_.end(), hover);
+    const std::vector<std::size_t> vehicles = chosen(which);
+    if (airframes_.size() == 1) {
+      hover.rotors = hover_of(vehicle_, place);
+      for (const std::size_t i : vehicles) states_[i] = hover;
       return;
     }
-    const auto mask = py::array_t<bool, py::array::c_style>::ensure(which);
-    if (!mask || mask.ndim() != 1 || static_cast<std::size_t>(mask.size()) != size()) {
-      PyErr_Clear();
-      throw py::value_error("which must be " + std::to_string(size()) + " truth values, one per vehicle");
+    std::vector<Commands<double>> rotors;
+    for (const std::size_t i : vehicles) rotors.push_back(hover_of(vehicle_.with(airframes_[i].value), place));
+    for (std::size_t k = 0; k < vehicles.size(); ++k) {
+      hover.rotors = rotors[k];
+      states_[vehicles[k]] = hover;
     }
-    for (std::size_t i = 0; i < size(); ++i) {
-      if (mask.data()[i]) states_[i] = hover;
+  }
+
+  /// Other airframes for those of a mask, or all; states go on.
+  void set_airframe(const py::object& airframe, const py::object& which) {
+    require_idle();
+    const std::vector<std::size_t> vehicles = chosen(which);
+    const std::vector<NamedAirframe> given = airframes_of(airframe, vehicles.size());
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      require_flying(vehicle_.with(given[k].value), given[k], given.size() > 1 ? vehicles[k] : no_vehicle);
+    }
+    if (given.size() == 1 && vehicles.size() == size()) {
+      airframes_ = given;
+      vehicle_ = vehicle_.with(given[0].value);
+      put_in_lanes();
+      return;
+    }
+    const bool alike = airframes_.size() < size();
+    if (alike) airframes_.assign(size(), NamedAirframe(airframes_[0]));
+    for (std::size_t k = 0; k < vehicles.size(); ++k) airframes_[vehicles[k]] = given[given.size() > 1 ? k : 0];
+    if (alike || !lanes_) {
+      put_in_lanes();
+      return;
+    }
+    for (std::size_t k = 0; k < vehicles.size() && lanes_; ++k) {
+      const std::size_t group = vehicles[k] / lanes_->lanes();
+      if (k > 0 && vehicles[k - 1] / lanes_->lanes() == group) continue;
+      put_in_lanes(group);
     }
   }
 
@@ -122,43 +168,117 @@ class Vehicles {
       if (lanes_) {
         run_in_lanes(u, steps, said, watch);
       } else {
-        with_quadrotor(vehicle_, [&](const auto& quadrotor) { run(quadrotor, u, steps, said, watch); });
+        run(u, steps, said, watch);
       }
     }
     return statuses;
   }
 
   py::tuple pickled(const py::object& self) {
-    return py::make_tuple(airframe_, effects_, physics_step_s_, array_of_part(self, parts[0]));
+    return py::make_tuple(airframe(), effects_, physics_step_s_, array_of_part(self, parts[0]));
   }
   static std::unique_ptr<Vehicles> of_pickle(const py::tuple& pickle) {
     const auto state = pickle[3].cast<py::array_t<double, py::array::c_style>>();
     if (state.ndim() != 2 || static_cast<std::size_t>(state.shape(1)) != state_numbers) {
       throw py::value_error("pickled vehicles have 18 numbers each");
     }
-    auto vehicles =
-        std::make_unique<Vehicles>(static_cast<std::size_t>(state.shape(0)), pickle[0].cast<NamedAirframe>(),
-                                   pickle[1].cast<py::object>(), pickle[2].cast<double>());
+    const auto count = static_cast<std::size_t>(state.shape(0));
+    auto vehicles = std::make_unique<Vehicles>(count, airframes_of(pickle[0], count), pickle[1].cast<py::object>(),
+                                               pickle[2].cast<double>());
     std::copy_n(state.data(), state.size(), reinterpret_cast<double*>(vehicles->states_.data()));
     return vehicles;
   }
 
-  const NamedAirframe& airframe() const { return airframe_; }
+  /// As it was given: one, or a tuple of as many as there are vehicles.
+  py::object airframe() const {
+    if (airframes_.size() == 1) return py::cast(airframes_[0]);
+    return py::tuple(py::cast(airframes_));
+  }
+  std::string airframe_name() const {
+    return airframes_.size() == 1 ? printable(airframes_[0].name) : "an airframe each";
+  }
   const py::object& effects() const { return effects_; }
 
  private:
+  static constexpr auto no_vehicle = static_cast<std::size_t>(-1);
+
+  static void require_flying(const SwitchedQuadrotor& vehicle, const NamedAirframe& airframe, std::size_t index) {
+    const Status status = with_quadrotor(vehicle, [](const auto& quadrotor) { return quadrotor.status(); });
+    if (status == Status::ok) return;
+    refuse((index == no_vehicle ? "" : "vehicle " + std::to_string(index) + ": ") + "airframe " +
+           printable(airframe.name) + " with these effects: " + to_string(status));
+  }
+
+  static Commands<double> hover_of(const SwitchedQuadrotor& vehicle, const Triple& place_m) {
+    HoverTrim<double> hover;
+    const Status status = with_quadrotor(vehicle, [&](const auto& quadrotor) {
+      return hover_trim(quadrotor, Vector3<double>(place_m[0], place_m[1], place_m[2]), hover);
+    });
+    if (status != Status::ok) refuse(std::string("no hover here: ") + to_string(status));
+    return hover.commands;
+  }
+
+  /// Where a mask is true; all for None.
+  std::vector<std::size_t> chosen(const py::object& which) const {
+    std::vector<std::size_t> vehicles;
+    if (which.is_none()) {
+      for (std::size_t i = 0; i < size(); ++i) vehicles.push_back(i);
+      return vehicles;
+    }
+    const auto mask = py::array_t<bool, py::array::c_style>::ensure(which);
+    if (!mask || mask.ndim() != 1 || static_cast<std::size_t>(mask.size()) != size()) {
+      PyErr_Clear();
+      throw py::value_error("which must be " + std::to_string(size()) + " truth values, one per vehicle");
+    }
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (mask.data()[i]) vehicles.push_back(i);
+    }
+    return vehicles;
+  }
+
+  /// All of them, where processor and airframes allow it.
+  void put_in_lanes() {
+    lanes_.reset();
+    const CompiledSteps* const compiled = steps_in_lanes();
+    if (compiled == nullptr) return;
+    lanes_ = vehicle_.with_effects([&](const auto& effects, auto... ground_effect) {
+      if constexpr (sizeof...(ground_effect) > 0) {
+        return compiled->with_paper_effects(vehicle_.site(), physics_step_s_, effects, ground_effect...);
+      } else {
+        return compiled->with_all_effects(vehicle_.site(), physics_step_s_, effects);
+      }
+    });
+    if (airframes_.size() == 1) {
+      lanes_->set_airframe(airframes_[0].value);
+      return;
+    }
+    for (std::size_t group = 0; lanes_ && group * lanes_->lanes() < size(); ++group) put_in_lanes(group);
+  }
+  void put_in_lanes(std::size_t group) {
+    const std::size_t first = group * lanes_->lanes(), last = std::min(first + lanes_->lanes(), size());
+    std::vector<Airframe<double>> values;
+    for (std::size_t i = first; i < last; ++i) values.push_back(airframes_[i].value);
+    if (!lanes_->set_airframes(group, values.data(), values.size())) lanes_.reset();
+  }
+
   /// A vehicle whose step is refused stays as it was before that step.
-  template <class Quadrotor>
-  void run(const Quadrotor& quadrotor, const double* u, double steps, std::uint8_t* said, SignalWatch& watch) {
-    const auto step = quadrotor.time_step(physics_step_s_);
+  void run(const double* u, double steps, std::uint8_t* said, SignalWatch& watch) {
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const Commands<double> commands = {u[4 * i], u[4 * i + 1], u[4 * i + 2], u[4 * i + 3]};
-      Status status = Status::ok;
-      for (double done = 0; done < steps && status == Status::ok; ++done) {
-        status = quadrotor.step(states_[i], commands, step);
-        if (std::fmod(done, 64) == 63) watch.look();
+      const auto fly = [&](const auto& quadrotor) {
+        const auto step = quadrotor.time_step(physics_step_s_);
+        Status status = Status::ok;
+        for (double done = 0; done < steps && status == Status::ok; ++done) {
+          status = quadrotor.step(states_[i], commands, step);
+          if (std::fmod(done, 64) == 63) watch.look();
+        }
+        said[i] = static_cast<std::uint8_t>(status);
+      };
+      if (airframes_.size() == 1) {
+        with_quadrotor(vehicle_, fly);
+      } else {
+        with_quadrotor(vehicle_.with(airframes_[i].value), fly);
       }
-      said[i] = static_cast<std::uint8_t>(status);
       if (i % 64 == 63) watch.look();
     }
   }
@@ -182,12 +302,12 @@ class Vehicles {
     if (busy_) throw std::runtime_error("these vehicles are stepped in another thread");
   }
 
-  NamedAirframe airframe_;
+  std::vector<NamedAirframe> airframes_;  ///< one for all, or one for each
   py::object effects_;
   double physics_step_s_;
-  SwitchedQuadrotor vehicle_;
+  SwitchedQuadrotor vehicle_;  ///< whose effects all have
   std::vector<OneState> states_;
-  std::unique_ptr<VehicleSteps> lanes_;  ///< null where effects or processor are not those of lanes
+  std::unique_ptr<VehicleSteps> lanes_;  ///< null where processor or rotors are not those of lanes
   bool busy_ = false;
 };
 
@@ -197,8 +317,8 @@ VehicleSteps::~VehicleSteps() = default;
 
 void bind_vehicles(py::module_& module) {
   py::class_<Vehicles> vehicles(module, "Vehicles",
-                                "Many vehicles of one airframe under the same effects, stepped by one call. Their "
-                                "arrays are the library's memory: to write to them places the vehicles.");
+                                "Many vehicles under the same effects, stepped by one call. Their arrays are the "
+                                "library's memory: to write to them places the vehicles.");
   vehicles
       .def(
           py::init([](std::size_t count, const py::object& airframe, const py::object& effects, double physics_step_s) {
@@ -206,10 +326,15 @@ void bind_vehicles(py::module_& module) {
             if (count < 1 || count > most) throw py::value_error("count must be 1 to " + std::to_string(most));
             const py::object chosen =
                 effects.is_none() ? py::module_::import("pinnquad.effects").attr("Effects")() : effects;
-            return new Vehicles(count, airframe_of(airframe), chosen, physics_step_s);
+            return new Vehicles(count, airframes_of(airframe, count), chosen, physics_step_s);
           }),
           py::arg("count"), py::arg("airframe") = PaperQuadrotor::name, py::kw_only(), py::arg("effects") = py::none(),
-          py::arg("physics_step_s") = FlightPlan{}.physics_step_s, "They begin in hover at (0, 0, -35) m, NED.")
+          py::arg("physics_step_s") = FlightPlan{}.physics_step_s,
+          "They begin in hover at (0, 0, -35) m, NED. The airframe is one for all, or a sequence of `count`, one each.")
+      .def(
+          "set_airframe", &Vehicles::set_airframe, py::arg("airframe"), py::arg("which") = py::none(),
+          "Another airframe for all, or for those where `which` (truth values) says so: one, or a sequence of one for\n"
+          "each of them. Their states go on.")
       .def("reset", &Vehicles::reset, py::arg("which") = py::none(),
            py::arg("position_m") = triple(FlightPlan{}.start_m),
            "Level, at rest, rotors in hover at a place, NED, m: all, or those where `which` (truth values) says so.")
@@ -220,14 +345,15 @@ void bind_vehicles(py::module_& module) {
       .def(
           "hover_commands",
           [](const Vehicles& self, const Triple& place_m) {
-            return array_of(self.hover_commands(checked("position_m", place_m)));
+            return self.hover_commands(checked("position_m", place_m));
           },
-          py::arg("position_m") = triple(FlightPlan{}.start_m), "The four commands of a hover at a place, NED, m.")
-      .def_property_readonly("airframe", &Vehicles::airframe, py::return_value_policy::copy, "A copy of it.")
+          py::arg("position_m") = triple(FlightPlan{}.start_m),
+          "The four commands of a hover at a place, NED, m; with an airframe each a row for each.")
+      .def_property_readonly("airframe", &Vehicles::airframe, "A copy of it; of several a tuple.")
       .def_property_readonly("effects", &Vehicles::effects)
       .def("__len__", &Vehicles::size)
       .def("__repr__", [](const Vehicles& self) {
-        return "<pinnquad.Vehicles: " + std::to_string(self.size()) + " of " + printable(self.airframe().name) + ">";
+        return "<pinnquad.Vehicles: " + std::to_string(self.size()) + " of " + self.airframe_name() + ">";
       });
   pickled(
       vehicles, [](const py::object& self) { return self.cast<Vehicles&>().pickled(self); },

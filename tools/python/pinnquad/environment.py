@@ -2,7 +2,7 @@
 """Environments as gymnasium has them: fly to a target and stay there. gymnasium itself is optional."""
 import numpy as np
 
-from ._core import Vehicles
+from ._core import Airframe, Vehicles
 from .spaces import Box, Env, batch_space
 
 GROUND_Z_M = 0.877
@@ -12,7 +12,11 @@ OBSERVED = 17  #: numbers of an observation
 class _Hover:
     """The task of both environments, for many vehicles at once."""
 
-    def __init__(self, count, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m):
+    def __init__(self, count, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m, randomise):
+        self.spreads = dict(randomise or {})
+        self.middle = Airframe(airframe) if self.spreads else None
+        if self.spreads:
+            airframe = self.middle.randomised(count, self.spreads)
         self.vehicles = Vehicles(count, airframe, effects=effects)
         self.target_m = np.asarray(target_m, float)
         if self.target_m.shape != (3,) or not np.isfinite(self.target_m).all():
@@ -21,7 +25,7 @@ class _Hover:
             raise ValueError("step_s must be 0.001 s or more, and episode_s no less")
         self.step_s, self.steps_of_episode = float(step_s), int(round(episode_s / step_s))
         self.spread_m, self.farthest_m = float(spread_m), float(farthest_m)
-        self.hover = self.vehicles.hover_commands(tuple(self.target_m))
+        self.hover = np.broadcast_to(self.vehicles.hover_commands(tuple(self.target_m)), (count, 4)).copy()
         self.steps = np.zeros(count, int)
         self.random = np.random.default_rng()
 
@@ -33,8 +37,12 @@ class _Hover:
         return self.observe()
 
     def reset(self, which):
-        self.vehicles.reset(which, tuple(self.target_m))
         count = int(np.count_nonzero(which))
+        if self.spreads:
+            seed = int(self.random.integers(2**63))
+            self.vehicles.set_airframe(self.middle.randomised(count, self.spreads, seed), which)
+        self.vehicles.reset(which, tuple(self.target_m))
+        self.hover[which] = self.vehicles.rotor_commands[which]
         self.vehicles.position_m[which] += self.random.uniform(-self.spread_m, self.spread_m, (count, 3))
         self.vehicles.velocity_m_s[which] += self.random.normal(0, 0.5, (count, 3))
         self.vehicles.body_rates_rad_s[which] += self.random.normal(0, 0.2, (count, 3))
@@ -75,11 +83,14 @@ class HoverEnv(Env):
     reward       exp(-distance / 1 m) - 0.01 s/rad of body rates - 0.1 of the commands' mean distance from hover
     terminated   at the ground, beyond farthest_m of the target, or where a step can't be calculated
     truncated    after episode_s
+
+    With randomise={"mass_kg": 0.2, "thrust_coefficient": 0.1} each episode has an airframe of its own
+    (Airframe.randomised), which is not observed: environment.vehicles.airframe tells it.
     """
 
     def __init__(self, airframe="paper_quadrotor", *, effects=None, target_m=(0.0, 0.0, -35.0), step_s=0.01,
-                 episode_s=10.0, spread_m=2.0, farthest_m=20.0):
-        self._task = _Hover(1, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m)
+                 episode_s=10.0, spread_m=2.0, farthest_m=20.0, randomise=None):
+        self._task = _Hover(1, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m, randomise)
         self._all = np.ones(1, bool)
         self.observation_space, self.action_space = _observation_space(), _action_space()
 
@@ -106,8 +117,8 @@ class VectorHoverEnv:
     last observations of the episode, `info["ended"]` which vehicles they are of."""
 
     def __init__(self, num_envs, airframe="paper_quadrotor", *, effects=None, target_m=(0.0, 0.0, -35.0), step_s=0.01,
-                 episode_s=10.0, spread_m=2.0, farthest_m=20.0):
-        self._task = _Hover(num_envs, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m)
+                 episode_s=10.0, spread_m=2.0, farthest_m=20.0, randomise=None):
+        self._task = _Hover(num_envs, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m, randomise)
         self.num_envs = num_envs
         self.single_observation_space, self.single_action_space = _observation_space(), _action_space()
         self.observation_space = batch_space(self.single_observation_space, num_envs)
