@@ -197,6 +197,7 @@ TEST_CASE_TEMPLATE("lanes compute, compare and choose each for itself", Wide, On
       CHECK((-a).lane(i) == -x);
       CHECK(equal.lane(i) == (i % 3 == 0));
       CHECK(sine_of_turns(a).lane(i) == sine_of_turns(x));
+      CHECK(cosine_of_turns(a).lane(i) == cosine_of_turns(x));
     }
     CHECK(any_of(equal));
     CHECK(!all_of(equal));

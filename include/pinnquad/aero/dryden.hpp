@@ -54,8 +54,8 @@ class DrydenTurbulence {
       for (std::size_t i = 0; i < waves; ++i) {
         const double energy_below = (static_cast<double>(i) + uniform_01(engine)) / static_cast<double>(waves);
         const double scaled = axis == 0 ? along_wave_number(energy_below) : across_wave_number(energy_below);
-        wave_number_rad_m_[axis][i] = scaled / parameters.length_m[axis];
-        phase_rad_[axis][i] = uniform(engine, 0, two_pi);
+        wave_number_1_m_[axis][i] = scaled / parameters.length_m[axis] / two_pi;
+        phase_turns_[axis][i] = uniform_01(engine);
       }
       amplitude_m_s_[axis] = parameters.intensity_m_s[axis] * std::sqrt(2.0 / static_cast<double>(waves));
     }
@@ -83,10 +83,12 @@ class DrydenTurbulence {
   /// One component at a distance along the field, m/s: 0 along the wind, 1 across (to its right), 2 down.
   template <class Real>
   Real gust(std::size_t axis, Real along_m) const noexcept {
-    Real sum(0);
+    std::array<Real, waves> wave;  // all before they are added up: so the compiler takes several at once
     for (std::size_t i = 0; i < waves; ++i) {
-      sum += detail::cosine(Real(wave_number_rad_m_[axis][i]) * along_m + Real(phase_rad_[axis][i]));
+      wave[i] = cosine_of_turns(Real(wave_number_1_m_[axis][i]) * along_m + Real(phase_turns_[axis][i]));
     }
+    Real sum(0);
+    for (const Real& one : wave) sum += one;
     return Real(amplitude_m_s_[axis]) * sum;
   }
 
@@ -112,8 +114,8 @@ class DrydenTurbulence {
   std::array<double, 2> direction_;
   double mean_wind_m_s_;
   bool holds_;
-  std::array<std::array<double, waves>, 3> wave_number_rad_m_{};
-  std::array<std::array<double, waves>, 3> phase_rad_{};
+  std::array<std::array<double, waves>, 3> wave_number_1_m_{};
+  std::array<std::array<double, waves>, 3> phase_turns_{};
   std::array<double, 3> amplitude_m_s_{};
 };
 

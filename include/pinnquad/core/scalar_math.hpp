@@ -94,6 +94,15 @@ constexpr std::array<double, 10> sine_series() noexcept {
   }
   return c;
 }
+
+/// sin(2 pi r) for r from -1/4 to 1/4.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar sine_of_quarter(const Scalar& r) noexcept {
+  constexpr std::array<double, 10> c = sine_series();
+  const Scalar x = r * r, x2 = x * x, x4 = x2 * x2;
+  const auto pair = [&](std::size_t k) noexcept { return Scalar(c[k]) + Scalar(c[k + 1]) * x; };
+  return r * ((pair(0) + pair(2) * x2) + ((pair(4) + pair(6) * x2) + pair(8) * x4) * x4);
+}
 }  // namespace detail
 
 /// sin(2 pi turns) inline and without libm: the same bits everywhere, and no call that would spill every register of a
@@ -101,13 +110,18 @@ constexpr std::array<double, 10> sine_series() noexcept {
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar sine_of_turns(Scalar turns) noexcept {
   using std::floor;
-  constexpr std::array<double, 10> c = detail::sine_series();
   const Scalar half(0.5), quarter(0.25);
   Scalar r = turns - floor(turns + half);  // -1/2 .. 1/2, exact
   r = select(r > quarter, half - r, select(r < -quarter, -half - r, r));
-  const Scalar x = r * r, x2 = x * x, x4 = x2 * x2;
-  const auto pair = [&](std::size_t k) noexcept { return Scalar(c[k]) + Scalar(c[k + 1]) * x; };
-  return r * ((pair(0) + pair(2) * x2) + ((pair(4) + pair(6) * x2) + pair(8) * x4) * x4);
+  return detail::sine_of_quarter(r);
+}
+
+/// cos(2 pi turns), likewise; exactly 0 for quarter turns.
+template <class Scalar>
+PINNQUAD_ALWAYS_INLINE Scalar cosine_of_turns(Scalar turns) noexcept {
+  using std::floor;
+  const Scalar r = turns - floor(turns + Scalar(0.5));
+  return detail::sine_of_quarter(Scalar(Scalar(0.25) - detail::absolute(r)));
 }
 
 }  // namespace pinnquad
