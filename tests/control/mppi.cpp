@@ -76,6 +76,39 @@ TEST_CASE("MPPI flies the figure-eight, also from a metre beside it") {
   CHECK(flown(blind, astray, 6) > 0.5f);
 }
 
+TEST_CASE("MPPI flies to a place far away and stays there; without a limit it rushes past") {
+  const auto place = [](double) {
+    TrajectoryPoint<float> point;
+    point.position_m = {30, 0, -35};
+    return point;
+  };
+  const Vehicle world(airframe, paper_site<float>());
+  const auto step = world.time_step(0.004f);
+  for (const float most_off_m : {2.0f, 1e6f}) {
+    MppiSettings settings;
+    settings.most_off_m = most_off_m;
+    Small controller(airframe, paper_site<float>(), settings);
+    VehicleState<float> state = start_of({});
+    state.body.position_m = {0, 0, -35};
+    Commands<float> commands{};
+    float fastest_m_s = 0;
+    bool flies = true;
+    for (int tick = 0; tick < 4500 && flies; ++tick) {
+      state.time_s = 0.004 * tick;
+      flies = controller(state, place, commands) == Status::ok && world.step(state, commands, step) == Status::ok;
+      fastest_m_s = std::fmax(fastest_m_s, state.body.velocity_m_s.norm());
+    }
+    const float off_m = (place(0).position_m - state.body.position_m).norm();
+    CAPTURE(off_m);
+    CAPTURE(fastest_m_s);
+    if (most_off_m < 50) {
+      CHECK((flies && off_m < 0.1f && fastest_m_s < 4));
+    } else {
+      CHECK((!flies || off_m > 5 || fastest_m_s > 12));
+    }
+  }
+}
+
 TEST_CASE("the same seed gives the same flight, another seed another one") {
   VehicleState<float> end[3];
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -130,6 +163,9 @@ TEST_CASE("what MPPI can't answer has a Status, and the commands stay") {
   CHECK(status_of(Small(airframe, paper_site<float>(), wrong), state, sample) == "out_of_range");
   wrong = {};
   wrong.position_cost_1_m2 = -1;
+  CHECK(status_of(Small(airframe, paper_site<float>(), wrong), state, sample) == "out_of_range");
+  wrong = {};
+  wrong.most_off_m = 0;
   CHECK(status_of(Small(airframe, paper_site<float>(), wrong), state, sample) == "out_of_range");
   Airframe<float> heavy = airframe;
   heavy.mass_kg = 9;

@@ -178,8 +178,11 @@ class Loop {
     auto bias = plan_.model.with([](const auto& model) { return bias_settings<double>(model.records()); });
     bias.across_time_constant_s = 0.1;  // the delay is told
     bias.most_across_m_s2 = 6;
+    const double speed_m_s =
+        std::min({limits.max_horizontal_speed_m_s, range_.speed_m_s(0).value_or(limits.max_horizontal_speed_m_s),
+                  range_.speed_m_s(1).value_or(limits.max_horizontal_speed_m_s)});
     const LoopKnowledge<Told> known{plan_.model,           plan_.columns, told_, bias,
-                                    plan_.sensors.delay_s, plan_.wrench,  &path};
+                                    plan_.sensors.delay_s, plan_.wrench,  &path, speed_m_s};
     const AnyPolicy policy = loop_policy(cell.controller, known, gains);
     Errors errors;
     errors.period_s = period_s;

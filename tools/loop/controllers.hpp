@@ -83,6 +83,7 @@ struct LoopKnowledge {
   double delay_s = 0;                            ///< by which states come late
   const pinnquad::BlockModel* wrench = nullptr;  ///< a residual wrench (loop/wrench_block.hpp), where one is given
   const AnyTrajectory* path = nullptr;           ///< for one that plans ahead
+  double speed_m_s = 0;                          ///< that the model's envelope holds, level: likewise
 };
 
 /// MPPI as a policy: it looks along the trajectory in place of the motion wanted. It is told the airframe and the drag,
@@ -93,11 +94,11 @@ class MppiPolicy {
 
  public:
   MppiPolicy(const pinnquad::Airframe<double>& airframe, const pinnquad::Site<double>& site, AnyTrajectory path,
-             const LoopGains& gains)
+             double speed_m_s, const LoopGains& gains)
       : planner_(in_float(airframe),
                  {static_cast<float>(site.elevation_m), static_cast<float>(site.ground_z_m),
                   static_cast<float>(site.gravity_m_s2)},
-                 settings(gains)),
+                 settings(gains, speed_m_s)),
         path_(std::move(path)) {}
 
   pinnquad::Status operator()(const State& state, const pinnquad::Accelerations<double>&, std::uint64_t time_us,
@@ -134,8 +135,9 @@ class MppiPolicy {
     });
     return result;
   }
-  static pinnquad::MppiSettings settings(const LoopGains& gains) {
+  static pinnquad::MppiSettings settings(const LoopGains& gains, double speed_m_s) {
     pinnquad::MppiSettings result;
+    result.most_off_m = static_cast<float>(speed_m_s / 1.5);
     result.position_cost_1_m2 *= static_cast<float>(gains.outer);
     result.velocity_cost_s2_m2 *= static_cast<float>(gains.outer);
     result.rate_gain_1_s *= static_cast<float>(gains.inner);
@@ -207,7 +209,7 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& kno
   if (name == "indi") return AnyPolicy(incremental(rigid_body, at_once));
   if (name == "observer") return AnyPolicy(incremental(leaning(formula), slower));
 
-  if (name == "mppi") return AnyPolicy(MppiPolicy(airframe, known.vehicle.site(), *known.path, gains));
+  if (name == "mppi") return AnyPolicy(MppiPolicy(airframe, known.vehicle.site(), *known.path, known.speed_m_s, gains));
 
   if (name == "l1") {
     L1Settings<double> l1;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -29,7 +30,8 @@ struct MppiSettings {
   float attitude_cost = 4;          ///< of 1 - (q . q_wanted)^2, a quarter of the squared angle
   float rate_cost_s2 = 0.02f;       ///< of the planned rates' distance from the trajectory's
   float thrust_cost_s4_m2 = 0.01f;  ///< of the planned thrust's
-  float rate_gain_1_s = 22;         ///< angular acceleration per body rate error, roll and pitch
+  float most_off_m = 6;  ///< a trajectory further off is moved so near; by plans of 0.8 s it is flown to at 8 m/s
+  float rate_gain_1_s = 22;  ///< angular acceleration per body rate error, roll and pitch
   float yaw_rate_gain_1_s = 8;
   std::uint32_t seed = 1;
 };
@@ -62,7 +64,8 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
   Status status() const noexcept {
     const MppiSettings& s = settings_;
     bool holds = true;
-    for (const float positive : {s.step_s, s.temperature, s.thrust_deviation_m_s2, s.rate_deviation_rad_s}) {
+    for (const float positive :
+         {s.step_s, s.temperature, s.thrust_deviation_m_s2, s.rate_deviation_rad_s, s.most_off_m}) {
       holds = holds && detail::plausible(positive);
     }
     for (const float cost : {s.position_cost_1_m2, s.velocity_cost_s2_m2, s.attitude_cost, s.rate_cost_s2,
@@ -169,6 +172,11 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
       points_[k] = sample(from_s + step_s);
       if (flat == Status::ok) flat = flat_motion(points_[k], vehicle_.site().gravity_m_s2, motions_[k]);
       if (flat != Status::ok) return flat;
+    }
+    const Vector3<float> off = start.body.position_m - sample(start.time_s).position_m;
+    const float off_m = std::sqrt(off.squaredNorm());
+    if (off_m > settings_.most_off_m) {
+      for (TrajectoryPoint<float>& point : points_) point.position_m += off * (1 - settings_.most_off_m / off_m);
     }
     if (begun_) {  // what was planned for a step is now a step nearer
       for (std::size_t k = 0; k + 1 < steps; ++k) plan_[k] = plan_[k + 1];
