@@ -5,7 +5,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -30,7 +29,7 @@ struct MppiSettings {
   float attitude_cost = 4;          ///< of 1 - (q . q_wanted)^2, a quarter of the squared angle
   float rate_cost_s2 = 0.02f;       ///< of the planned rates' distance from the trajectory's
   float thrust_cost_s4_m2 = 0.01f;  ///< of the planned thrust's
-  float most_off_m = 6;  ///< a trajectory further off is moved so near; by plans of 0.8 s it is flown to at 8 m/s
+  float most_off_m = 6;      ///< a trajectory further off is moved so near; by plans of 0.8 s it is flown to at 8 m/s
   float rate_gain_1_s = 22;  ///< angular acceleration per body rate error, roll and pitch
   float yaw_rate_gain_1_s = 8;
   std::uint32_t seed = 1;
@@ -174,7 +173,7 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
       if (flat != Status::ok) return flat;
     }
     const Vector3<float> off = start.body.position_m - sample(start.time_s).position_m;
-    const float off_m = std::sqrt(off.squaredNorm());
+    const float off_m = detail::square_root(off.squaredNorm());
     if (off_m > settings_.most_off_m) {
       for (TrajectoryPoint<float>& point : points_) point.position_m += off * (1 - settings_.most_off_m / off_m);
     }
