@@ -11,6 +11,7 @@
 #include "pinnquad/nn/kernel/column_broadcast.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
 #include "pinnquad/nn/kernel/tile.hpp"
+#include "pinnquad/nn/kernel/transpose.hpp"
 #include "support/packs.hpp"
 #include "support/random_network.hpp"
 #include "support/tolerances.hpp"
@@ -130,56 +131,98 @@ TEST_CASE_TEMPLATE("mini-batch products: values, and padding that never leaks", 
                    GenericPack<double, 4>, NativePack<float>, NativePack<double>) {
   using Scalar = typename Pack::Scalar;
   std::mt19937_64 engine(23);
-  for_each_shape(Shapes{}, [&engine](auto shape) {
-    constexpr int columns = decltype(shape)::rows, depth = decltype(shape)::columns;
-    constexpr int a_stride = padded<Pack>(depth), b_stride = padded<Pack>(columns);
-    for (const int samples : {1, 2, 3, 5, 8, 13}) {
-      CAPTURE(columns);
-      CAPTURE(depth);
-      CAPTURE(samples);
-      const int rows = (samples + Pack::tile_rows - 1) / Pack::tile_rows * Pack::tile_rows;
-      const auto at = [](auto& values, int stride, int row, int column) -> Scalar& {
-        return values[static_cast<std::size_t>(row * stride + column)];
-      };
-      const auto size = [](int count, int stride) { return static_cast<std::size_t>(count * stride); };
-      // A: samples x depth, B: depth x columns; padding columns of A hold what would show if it were read
-      std::vector<Scalar> a(size(rows, a_stride), Scalar(canary)), b(size(depth, b_stride)), start(size(1, b_stride));
-      fill_uniform(b, engine);
-      fill_uniform(start, engine);
-      for (int row = 0; row < rows; ++row) {
-        for (int k = 0; k < depth; ++k) at(a, a_stride, row, k) = static_cast<Scalar>(pinnquad::uniform(engine, -1, 1));
+  const auto at = [](auto& values, int stride, int row, int column) -> Scalar& {
+    return values[static_cast<std::size_t>(row * stride + column)];
+  };
+  const auto size = [](int count, int stride) { return static_cast<std::size_t>(count * stride); };
+  for_each_shape(Shapes{}, [&](auto shape) {
+    constexpr int rows = decltype(shape)::rows, depth = decltype(shape)::columns;
+    CAPTURE(rows);
+    CAPTURE(depth);
+    // W: rows x depth, X: depth x lanes, Y: rows x lanes; padding of W holds what would show if it were read
+    constexpr int stride = padded<Pack>(depth + 1), lanes = 2 * Pack::width;
+    std::vector<Scalar> w(size(rows, stride), Scalar(canary)), x(size(depth, lanes)), y(size(rows, lanes) + 1);
+    std::vector<Scalar> start(size(rows, 1));
+    fill_uniform(x, engine);
+    fill_uniform(start, engine);
+    for (int row = 0; row < rows; ++row) {
+      for (int k = 0; k < depth; ++k) at(w, stride, row, k) = static_cast<Scalar>(pinnquad::uniform(engine, -1, 1));
+    }
+    y.back() = Scalar(canary);
+    pinnquad::detail::multiply_lanes<Pack, 2, rows, stride, 1>(
+        w.data(), x.data(), lanes, depth, [&](int row) { return Pack::broadcast(start[size(row, 1)]); },
+        [&](int row, int vector, Pack sum) { return sum + Pack::broadcast(Scalar(10 * row + 1000 * vector)); },
+        y.data(), lanes);
+    for (int row = 0; row < rows; ++row) {
+      for (int lane = 0; lane < lanes; ++lane) {
+        double sum = static_cast<double>(start[size(row, 1)]);
+        for (int k = 0; k < depth; ++k) {
+          sum += static_cast<double>(at(w, stride, row, k)) * static_cast<double>(at(x, lanes, k, lane));
+        }
+        sum += 10 * row + 1000 * (lane / Pack::width);
+        CHECK(std::fabs(static_cast<double>(at(y, lanes, row, lane)) - sum) <=
+              sum_tolerance<Scalar>(depth) + rounding<Scalar>(1) * sum);
       }
-      std::vector<Scalar> c(size(rows, b_stride) + 1, Scalar(canary));
-      pinnquad::multiply_batch<Pack, a_stride, b_stride>(a.data(), b.data(), depth, start.data(), c.data(), samples);
-      for (int row = 0; row < samples; ++row) {
-        for (int column = 0; column < columns; ++column) {
-          double sum = static_cast<double>(at(start, b_stride, 0, column));
-          for (int k = 0; k < depth; ++k) {
-            sum += static_cast<double>(at(a, a_stride, row, k)) * static_cast<double>(at(b, b_stride, k, column));
+    }
+    CHECK(y.back() == Scalar(canary));
+
+    // W^T Y, from the same W
+    std::vector<Scalar> product(size(depth, lanes) + 1, Scalar(canary));
+    fill_uniform(y, engine);
+    pinnquad::detail::multiply_lanes<Pack, 2, depth, 1, stride>(
+        w.data(), y.data(), lanes, rows, [](int) { return Pack::broadcast(Scalar(0)); },
+        [](int, int, Pack sum) { return sum; }, product.data(), lanes);
+    for (int k = 0; k < depth; ++k) {
+      for (int lane = 0; lane < lanes; ++lane) {
+        double sum = 0.0;
+        for (int row = 0; row < rows; ++row) {
+          sum += static_cast<double>(at(w, stride, row, k)) * static_cast<double>(at(y, lanes, row, lane));
+        }
+        CHECK(std::fabs(static_cast<double>(at(product, lanes, k, lane)) - sum) <= sum_tolerance<Scalar>(rows));
+      }
+    }
+    CHECK(product.back() == Scalar(canary));
+
+    // Y Z: rows x padded depth, over fewer samples than Y's rows hold
+    for (const int samples : {1, 2, 3, lanes - 1, lanes}) {
+      CAPTURE(samples);
+      std::vector<Scalar> z(size(samples, stride)), c(size(rows, stride) + 1, Scalar(canary));
+      fill_uniform(z, engine);
+      pinnquad::detail::multiply_matrices<Pack, rows, lanes, stride>(y.data(), z.data(), samples, c.data());
+      for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < stride; ++column) {
+          double sum = 0.0;
+          for (int i = 0; i < samples; ++i) {
+            sum += static_cast<double>(at(y, lanes, row, i)) * static_cast<double>(at(z, stride, i, column));
           }
-          CHECK(std::fabs(static_cast<double>(at(c, b_stride, row, column)) - sum) <= sum_tolerance<Scalar>(depth));
+          CHECK(std::fabs(static_cast<double>(at(c, stride, row, column)) - sum) <= sum_tolerance<Scalar>(samples));
         }
       }
       CHECK(c.back() == Scalar(canary));
-
-      // A^T D: depth x columns over the samples, without a start
-      std::vector<Scalar> d(size(samples, b_stride));
-      fill_uniform(d, engine);
-      std::vector<Scalar> product(size(depth, b_stride) + 1, Scalar(canary));
-      pinnquad::multiply_transposed<Pack, depth, a_stride, b_stride>(a.data(), d.data(), samples, product.data());
-      for (int k = 0; k < depth; ++k) {
-        for (int column = 0; column < columns; ++column) {
-          double sum = 0.0;
-          for (int row = 0; row < samples; ++row) {
-            sum += static_cast<double>(at(a, a_stride, row, k)) * static_cast<double>(at(d, b_stride, row, column));
-          }
-          CHECK(std::fabs(static_cast<double>(at(product, b_stride, k, column)) - sum) <=
-                sum_tolerance<Scalar>(samples));
-        }
-      }
-      CHECK(product.back() == Scalar(canary));
     }
   });
+}
+
+TEST_CASE_TEMPLATE("a transposed matrix of any size, and nothing else written", Pack, PINNQUAD_TEST_REGISTER_PACKS,
+                   GenericPack<float, 4>, GenericPack<double, 3>) {
+  using Scalar = typename Pack::Scalar;
+  for (const int rows : {1, 3, 4, 7, 8, 15, 16, 17, 25, 40}) {
+    for (const int columns : {1, 3, 4, 5, 16, 25}) {
+      CAPTURE(rows);
+      CAPTURE(columns);
+      const int from_stride = columns + 3, to_stride = rows + 2;
+      std::vector<Scalar> from(static_cast<std::size_t>((rows - 1) * from_stride + columns));
+      for (std::size_t i = 0; i < from.size(); ++i) from[i] = Scalar(i + 1);
+      std::vector<Scalar> to(static_cast<std::size_t>(columns * to_stride), Scalar(canary));
+      pinnquad::detail::transpose<Pack>(from.data(), from_stride, rows, columns, to.data(), to_stride);
+      for (int column = 0; column < columns; ++column) {
+        for (int row = 0; row < to_stride; ++row) {
+          CHECK(to[static_cast<std::size_t>(column * to_stride + row)] ==
+                (row < rows ? from[static_cast<std::size_t>(row * from_stride + column)] : Scalar(canary)));
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE_TEMPLATE("every pack does what a scalar does, lane by lane", Pack, PINNQUAD_TEST_REGISTER_PACKS,

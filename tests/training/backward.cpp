@@ -25,7 +25,6 @@ using pinnquad::Dense;
 using pinnquad::DenseWithoutBias;
 using pinnquad::GenericPack;
 using pinnquad::is_elementwise;
-using pinnquad::padded;
 using pinnquad::Relu;
 using pinnquad::Tanh;
 using pinnquad::detail::BatchLayer;
@@ -91,53 +90,65 @@ void check_rule() {
 /// The mini-batch form sums over samples; what it is given past them must not count.
 template <class Layer, class Pack>
 void check_batch() {
-  constexpr int capacity = 16, x_stride = padded<Pack>(Layer::inputs), y_stride = padded<Pack>(Layer::outputs);
+  using Form = BatchLayer<Layer, Pack, 13>;
+  constexpr int stride = pinnquad::detail::batch_capacity<Pack, 13>;
+  constexpr double canary = 1e30;
   std::mt19937_64 engine(82);
   for (const int samples : {1, 2, 3, 4, 5, 8, 13}) {
     CAPTURE(samples);
-    const int rows = (samples + Pack::tile_rows - 1) / Pack::tile_rows * Pack::tile_rows;
-    auto layer = std::make_unique<BatchLayer<Layer, Pack, capacity>>();
+    auto layer = std::make_unique<Form>();
     std::vector<double> parameters(index(Layer::parameter_count)), stored(parameters.size());
     fill_uniform(parameters, engine);
     layer->load(parameters.data());
     layer->store(stored.data());
     CHECK(stored == parameters);
 
-    std::vector<double> x(index(capacity * x_stride)), y(index(capacity * y_stride)), delta(y.size()),
-        previous(x.size());
+    std::vector<double> x(index(Layer::inputs * stride), canary), y(index(Layer::outputs * stride), canary),
+        delta = y, previous = x;
     for (int sample = 0; sample < samples; ++sample) {
       const auto values = off_zero(index(Layer::inputs), engine, input_margin);
-      for (int i = 0; i < Layer::inputs; ++i) x[index(sample * x_stride + i)] = values[index(i)];
-      for (int k = 0; k < Layer::outputs; ++k) delta[index(sample * y_stride + k)] = pinnquad::uniform(engine, -1, 1);
+      for (int i = 0; i < Layer::inputs; ++i) x[index(i * stride + sample)] = values[index(i)];
+      for (int k = 0; k < Layer::outputs; ++k) delta[index(k * stride + sample)] = pinnquad::uniform(engine, -1, 1);
     }
     const auto c = delta;
     const auto inputs = x;
-    constexpr bool in_place = std::decay_t<decltype(*layer)>::in_place;
-    if constexpr (in_place) {
+    if constexpr (Form::in_place) {
       y = x;
-      layer->forward(y.data(), y.data(), rows);
-      layer->backward(y.data(), y.data(), delta.data(), delta.data(), rows);
+      layer->forward(y.data(), y.data(), samples);
+      layer->backward(y.data(), y.data(), delta.data(), delta.data(), samples);
+    } else if constexpr (Form::fuses_slope) {
+      layer->forward(x.data(), y.data(), samples, pinnquad::detail::Activate<void>{});
+      layer->backward(x.data(), delta.data(), previous.data(), samples, pinnquad::detail::ScaleBySlope<void>{});
     } else {
-      layer->forward(x.data(), y.data(), rows);
-      layer->backward(x.data(), y.data(), delta.data(), previous.data(), rows);
+      layer->forward(x.data(), y.data(), samples);
+      layer->backward(x.data(), y.data(), delta.data(), previous.data(), samples);
     }
-    const std::vector<double>& dx = in_place ? delta : previous;
+    const std::vector<double>& dx = Form::in_place ? delta : previous;
+    const auto sample_of = [](const std::vector<double>& values, int features, int sample) {
+      std::vector<double> column(index(features));
+      for (int i = 0; i < features; ++i) column[index(i)] = values[index(i * stride + sample)];
+      return column;
+    };
     const auto loss = [&] {
       double sum = 0.0;
       for (int s = 0; s < samples; ++s) {
-        sum += weighted_output<Layer>(parameters, x.data() + s * x_stride, c.data() + s * y_stride);
+        sum += weighted_output<Layer>(parameters, sample_of(x, Layer::inputs, s).data(),
+                                      sample_of(c, Layer::outputs, s).data());
       }
       return sum;
     };
     for (int sample = 0; sample < samples; ++sample) {
       std::vector<double> expected(index(Layer::outputs));
-      Layer::forward(parameters.data(), x.data() + sample * x_stride, expected.data());
+      Layer::forward(parameters.data(), sample_of(x, Layer::inputs, sample).data(), expected.data());
       for (int k = 0; k < Layer::outputs; ++k) {
-        CHECK(y[index(sample * y_stride + k)] == doctest::Approx(expected[index(k)]).epsilon(1e-13));
+        CHECK(y[index(k * stride + sample)] == doctest::Approx(expected[index(k)]).epsilon(1e-13));
       }
     }
-    const auto numerical = central_differences(loss, x.data(), index(samples * x_stride));
-    CHECK(gradient_error(dx.data(), numerical.data(), numerical.size()) <= gradient_tolerance);  // padding: 0 = 0
+    for (int i = 0; i < Layer::inputs; ++i) {
+      double* const row = x.data() + i * stride;
+      const auto numerical = central_differences(loss, row, index(samples));
+      CHECK(gradient_error(dx.data() + i * stride, numerical.data(), numerical.size()) <= gradient_tolerance);
+    }
     std::vector<double> gradient(parameters.size());
     layer->store_gradient(gradient.data());
     CHECK(gradient_error(gradient.data(), central_differences(loss, parameters.data(), parameters.size()).data(),

@@ -106,12 +106,11 @@ Rows plain_batch(const double* parameters, const Rows& x, double& smallest_kink,
 
 template <class Gradient>
 void put(Gradient& gradient, const Rows& x) {
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    for (std::size_t k = 0; k < x[i].size(); ++k) {
-      using Scalar = typename Gradient::Scalar;
-      gradient.input(static_cast<int>(i))[k] = static_cast<Scalar>(x[i][k]);
-    }
+  std::vector<typename Gradient::Scalar> values;
+  for (const auto& row : x) {
+    for (const double v : row) values.push_back(static_cast<typename Gradient::Scalar>(v));
   }
+  gradient.put(values.data(), static_cast<int>(x.size()));
 }
 
 template <class Net, class Pack>
@@ -139,10 +138,10 @@ void check_gradient() {
     gradient->forward(samples);
     const Rows y = plain_batch<Net>(net.parameters.data(), x, kink, unused);
     for (int i = 0; i < samples; ++i) {
-      for (int k = 0; k < gradient->output_stride; ++k) {
+      for (int k = 0; k < Net::outputs; ++k) {
         const auto row = static_cast<std::size_t>(i), column = static_cast<std::size_t>(k);
-        gradient->output_delta(i)[k] = k < Net::outputs ? c[row][column] : 0.0;
-        if (k < Net::outputs) CHECK(gradient->output(i)[k] == doctest::Approx(y[row][column]).epsilon(1e-11));
+        gradient->output_delta(k, i) = c[row][column];
+        CHECK(gradient->output(k, i) == doctest::Approx(y[row][column]).epsilon(1e-11));
       }
     }
     gradient->backward(samples);
@@ -233,7 +232,7 @@ TEST_CASE("prediction is the network with its running statistics, whatever the b
     for (int i = 0; i < samples; ++i) {
       double y[4] = {};
       net.forward(x[static_cast<std::size_t>(i)].data(), y);
-      for (int k = 0; k < 4; ++k) CHECK(gradient->output(i)[k] == doctest::Approx(y[k]).epsilon(1e-12));
+      for (int k = 0; k < 4; ++k) CHECK(gradient->output(k, i) == doctest::Approx(y[k]).epsilon(1e-12));
     }
     gradient->follow_statistics();  // a prediction has nothing to follow
     Small::Parameters after{};
@@ -251,7 +250,7 @@ TEST_CASE("what a larger batch left behind does not reach a smaller one, not eve
     gradient->load(net.parameters);
     gradient->forward(samples);
     for (int i = 0; i < samples; ++i) {
-      for (int k = 0; k < gradient->output_stride; ++k) gradient->output_delta(i)[k] = k < 2 ? 1.0 + i : 0.0;
+      for (int k = 0; k < 2; ++k) gradient->output_delta(k, i) = 1.0 + i;
     }
     gradient->backward(samples);
     gradient->follow_statistics();

@@ -99,10 +99,7 @@ void check_network() {
 
     gradient->load(net->parameters);
     const auto put = [&] {
-      for (int i = 0; i < samples; ++i) {
-        for (int k = 0; k < Net::inputs; ++k)
-          gradient->input(i)[k] = x[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
-      }
+      gradient->put(x[0].data(), samples);
       gradient->forward(samples);
     };
     put();
@@ -110,10 +107,9 @@ void check_network() {
       std::array<double, Net::outputs> y{};
       net->forward(x[static_cast<std::size_t>(i)].data(), y.data());
       for (int k = 0; k < Net::outputs; ++k) {
-        CHECK(gradient->output(i)[k] == doctest::Approx(y[static_cast<std::size_t>(k)]).epsilon(1e-12));
-        gradient->output_delta(i)[k] = c[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+        CHECK(gradient->output(k, i) == doctest::Approx(y[static_cast<std::size_t>(k)]).epsilon(1e-12));
+        gradient->output_delta(k, i) = c[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
       }
-      for (int k = Net::outputs; k < gradient->output_stride; ++k) gradient->output_delta(i)[k] = 0.0;
     }
     gradient->backward(samples);
     typename Net::Parameters analytic{};
@@ -189,23 +185,21 @@ TEST_CASE("what a larger batch left behind does not reach a smaller one, not eve
   Net net;
   fill_uniform(net.parameters, engine);
   gradient->load(net.parameters);
-  const auto run = [&](int samples) {
+  const auto run = [&](double value, int samples) {
+    const std::vector<double> x(static_cast<std::size_t>(3 * samples), value);
+    gradient->put(x.data(), samples);
     gradient->forward(samples);
     for (int i = 0; i < samples; ++i) {
-      for (int k = 0; k < gradient->output_stride; ++k) gradient->output_delta(i)[k] = k < 2 ? 1.0 : 0.0;
+      for (int k = 0; k < 2; ++k) gradient->output_delta(k, i) = value;
     }
     gradient->backward(samples);
     Net::Parameters result{};
     gradient->store_gradient(result);
     return result;
   };
-  for (int k = 0; k < 3; ++k) gradient->input(0)[k] = 0.5;
-  const auto clean = run(1);
-  for (int i = 1; i < 4; ++i) {
-    for (int k = 0; k < 3; ++k) gradient->input(i)[k] = std::numeric_limits<double>::quiet_NaN();
-  }
-  run(4);
-  CHECK(run(1) == clean);
+  const auto clean = run(0.5, 1);
+  run(std::numeric_limits<double>::quiet_NaN(), 7);
+  CHECK(run(0.5, 1) == clean);
 }
 
 namespace {
@@ -218,16 +212,12 @@ std::vector<double> gradient_of(const std::vector<double>& parameters, const std
   typename Net::Parameters loaded{}, result{};
   for (std::size_t i = 0; i < loaded.size(); ++i) loaded[i] = static_cast<Scalar>(parameters[i]);
   gradient->load(loaded);
-  for (int s = 0; s < samples; ++s) {
-    for (int k = 0; k < Net::inputs; ++k) {
-      gradient->input(s)[k] = static_cast<Scalar>(x[static_cast<std::size_t>(s * Net::inputs + k)]);
-    }
-  }
+  std::vector<Scalar> inputs(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) inputs[i] = static_cast<Scalar>(x[i]);
+  gradient->put(inputs.data(), samples);
   gradient->forward(samples);
   for (int s = 0; s < samples; ++s) {
-    for (int k = 0; k < gradient->output_stride; ++k) {
-      gradient->output_delta(s)[k] = k < Net::outputs ? Scalar(0.25) * Scalar(s - 2 * k + 1) : Scalar(0);
-    }
+    for (int k = 0; k < Net::outputs; ++k) gradient->output_delta(k, s) = Scalar(0.25) * Scalar(s - 2 * k + 1);
   }
   gradient->backward(samples);
   gradient->store_gradient(result);

@@ -11,18 +11,6 @@ namespace pinnquad {
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Twelve sums (six rows of two packs) hide the latency of the multiply-add; with many more the processor cannot
-/// overlap one tile with the next. Sixteen registers hold twelve sums; with 32, a tile may be one row taller to save
-/// another.
-template <class Pack, int Rows, class Body>
-PINNQUAD_ALWAYS_INLINE void in_batched_tiles(const Body& body) noexcept {
-  if constexpr (sizeof(Pack) >= 64) {
-    in_even_tiles<Rows, 7>(body);
-  } else {
-    in_full_tiles<Rows, 6>(body);
-  }
-}
-
 /// How a layer runs over a block of `Lanes` samples, x and y by feature with strides: one sample after the other,
 /// unless specialised.
 template <class Layer, class Pack, int Lanes>
@@ -48,15 +36,11 @@ struct BatchedLayer<DenseLayer<Scalar, In, Out, HasBias>, Pack, Lanes> {
   template <class Activation>
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* parameters, const Scalar* x, int x_stride, Scalar* y,
                                              int y_stride, const Activation& activation) noexcept {
-    const auto start = [parameters](int row) PINNQUAD_INLINE_LAMBDA {
-      return Pack::broadcast(HasBias ? parameters[In * Out + row] : Scalar(0));
-    };
-    in_batched_tiles<Pack, Out>([&](auto first, auto rows) PINNQUAD_INLINE_LAMBDA {
-      multiply_tile<Consecutive<Pack, Lanes / Pack::width>, decltype(rows)::value, In, 1>(
-          parameters + first * In, x, x_stride, In,
-          [&](auto r, auto) PINNQUAD_INLINE_LAMBDA { return start(first + r); },
-          [&](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return activation(sum); }, y + first * y_stride, y_stride);
-    });
+    multiply_lanes<Pack, Lanes / Pack::width, Out, In, 1>(
+        parameters, x, x_stride, In,
+        [&](int row)
+            PINNQUAD_INLINE_LAMBDA { return Pack::broadcast(HasBias ? parameters[In * Out + row] : Scalar(0)); },
+        [&](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return activation(sum); }, y, y_stride);
   }
 };
 

@@ -3,16 +3,19 @@
 //   static void backward(const Scalar* parameters, const Scalar* x, const Scalar* y, const Scalar* dy, Scalar* dx,
 //                        Scalar* parameter_gradient) noexcept;
 // dx is set, parameter_gradient is added to. Dense needs none, and an element-wise layer has its slope (nn/layer.hpp).
-// Over a mini-batch activations are [sample][padded width], and parameters stand as the kernels want them. Only a layer
-// with `whole_tiles` is run on padding rows too, and finds zeros there (network_gradient.hpp).
+// Over a mini-batch activations are [feature][sample], a sample per lane, each row as long as the largest batch in whole
+// blocks. A forward pass runs over whole packs: lanes behind the last sample hold copies of it. A backward pass may leave
+// anything there, and no sum over samples takes it in.
 #pragma once
 
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/nn/dense.hpp"
 #include "pinnquad/nn/kernel/tile.hpp"
+#include "pinnquad/nn/kernel/transpose.hpp"
 #include "pinnquad/nn/layer.hpp"
 
 namespace pinnquad {
@@ -28,16 +31,23 @@ using BackwardOf = std::bool_constant<noexcept(BackwardRule<Layer>::backward(
     std::declval<const typename Layer::Scalar*>(), std::declval<const typename Layer::Scalar*>(),
     std::declval<typename Layer::Scalar*>(), std::declval<typename Layer::Scalar*>()))>;
 
+/// Packs of samples that run at once.
+template <class Pack, int BatchSize>
+inline constexpr int packs_in_block = BatchSize > Pack::width ? 2 : 1;
+/// Samples in a row of activations: the batch in whole blocks.
+template <class Pack, int BatchSize>
+inline constexpr int batch_capacity = (BatchSize + Pack::width * packs_in_block<Pack, BatchSize> - 1) /
+                                      (Pack::width *
+                                       packs_in_block<Pack, BatchSize>)*(Pack::width* packs_in_block<Pack, BatchSize>);
+
 /// The members of every layer over a mini-batch, but for load(), store(), store_gradient(), forward() and backward().
 struct BatchTraits {
   static constexpr bool in_place = false;         ///< works in the buffer of a layer before that does not need it
   static constexpr bool needs_output = false;     ///< backward() reads y: it may not be overwritten
   static constexpr bool couples_samples = false;  ///< outputs depend on the other samples of the batch (batch_norm.hpp)
-  static constexpr bool whole_tiles = false;      ///< `samples` has to be a multiple of the pack's tile_rows
-  static constexpr int size = 0;                  ///< of the arrays that an optimiser sees
-
-  /// Call after `stored` was changed.
-  void refresh() noexcept {}
+  static constexpr bool fuses_activation = false;  ///< forward() takes the activation behind the layer
+  static constexpr bool fuses_slope = false;       ///< backward() takes the slope of the activation before the layer
+  static constexpr int size = 0;                   ///< of the arrays that an optimiser sees
 };
 
 /// The flat arrays that an optimiser sees.
@@ -59,95 +69,116 @@ struct BatchLayer : BatchParameters<typename Layer::Scalar, padded<Pack>(Layer::
                 "pinnquad: a BackwardRule's backward() must be noexcept (training/backward.hpp)");
   using Scalar = typename Layer::Scalar;
   static constexpr bool needs_output = true;
-  static constexpr int x_stride = padded<Pack>(Layer::inputs);
-  static constexpr int y_stride = padded<Pack>(Layer::outputs);
+  static constexpr int stride = batch_capacity<Pack, BatchSize>;
 
   void load(const Scalar* parameters) noexcept { copy(parameters, this->stored); }
   void store(Scalar* parameters) const noexcept { copy(this->stored, parameters); }
   void store_gradient(Scalar* parameters) const noexcept { copy(this->gradient, parameters); }
 
   void forward(const Scalar* x, Scalar* y, int samples) const noexcept {
-    for (int i = 0; i < samples; ++i) Layer::forward(this->stored, x + i * x_stride, y + i * y_stride);
+    for (int i = 0; i < padded<Pack>(samples); ++i) {
+      Scalar in[Layer::inputs], out[Layer::outputs];
+      gather(x + i, in);
+      Layer::forward(this->stored, in, out);
+      scatter(out, y + i);
+    }
   }
   /// `delta` holds dy; dx goes to `previous` (which may be null for the first layer).
   void backward(const Scalar* x, const Scalar* y, const Scalar* delta, Scalar* previous, int samples) noexcept {
     for (Scalar& g : this->gradient) g = Scalar(0);
-    Scalar scratch[x_stride] = {};
     for (int i = 0; i < samples; ++i) {
-      Scalar* dx = previous != nullptr ? previous + i * x_stride : scratch;
-      BackwardRule<Layer>::backward(this->stored, x + i * x_stride, y + i * y_stride, delta + i * y_stride, dx,
-                                    this->gradient);
+      Scalar in[Layer::inputs], out[Layer::outputs], dy[Layer::outputs], dx[Layer::inputs];
+      gather(x + i, in);
+      gather(y + i, out);
+      gather(delta + i, dy);
+      BackwardRule<Layer>::backward(this->stored, in, out, dy, dx, this->gradient);
+      if (previous != nullptr) scatter(dx, previous + i);
     }
   }
 
  private:
+  template <std::size_t Size>
+  static void gather(const Scalar* column, Scalar (&values)[Size]) noexcept {
+    for (std::size_t i = 0; i < Size; ++i) values[i] = column[static_cast<int>(i) * stride];
+  }
+  template <std::size_t Size>
+  static void scatter(const Scalar (&values)[Size], Scalar* column) noexcept {
+    for (std::size_t i = 0; i < Size; ++i) column[static_cast<int>(i) * stride] = values[i];
+  }
   static void copy(const Scalar* from, Scalar* to) noexcept {
     for (int i = 0; i < Layer::parameter_count; ++i) to[i] = from[i];
   }
 };
 
-/// Dense: weights stand input by input, each row padded, the bias (if any) as last row; a transposed copy serves dX.
-/// dx = W^T dy, dW = dy x^T, db = dy, by register tiles.
-template <class Scalar, int In, int Out, bool HasBias, class Pack>
-struct BatchDense : BatchParameters<Scalar, (In + (HasBias ? 1 : 0)) * padded<Pack>(Out)> {
-  static constexpr bool whole_tiles = true;
-  static constexpr int x_stride = padded<Pack>(In);
-  static constexpr int y_stride = padded<Pack>(Out);
-
-  alignas(64) Scalar by_output[Out * x_stride] = {};  // [output][input]
+/// Dense: dx = W^T dy, dW = dy x^T, db = dy, by register tiles. A row of `stored` is that of an output: its weights, its
+/// bias, padding. The gradient is the product of dy with the samples' inputs, transposed, each with a 1 for the bias
+/// behind.
+template <class Scalar, int In, int Out, bool HasBias, class Pack, int BatchSize>
+struct BatchDense : BatchParameters<Scalar, Out * padded<Pack>(In + (HasBias ? 1 : 0))> {
+  static constexpr bool fuses_activation = true;
+  static constexpr bool fuses_slope = true;
+  static constexpr int row = padded<Pack>(In + (HasBias ? 1 : 0));
+  static constexpr int stride = batch_capacity<Pack, BatchSize>;
 
   void load(const Scalar* parameters) noexcept {
     for (int out = 0; out < Out; ++out) {
-      for (int in = 0; in < In; ++in) this->stored[in * y_stride + out] = parameters[out * In + in];
-      if constexpr (HasBias) this->stored[In * y_stride + out] = parameters[Out * In + out];
+      for (int in = 0; in < In; ++in) this->stored[out * row + in] = parameters[out * In + in];
+      if constexpr (HasBias) this->stored[out * row + In] = parameters[Out * In + out];
     }
-    refresh();
   }
   void store(Scalar* parameters) const noexcept { gather(this->stored, parameters); }
   void store_gradient(Scalar* parameters) const noexcept { gather(this->gradient, parameters); }
-  void refresh() noexcept {
-    for (int out = 0; out < Out; ++out) {
-      for (int in = 0; in < In; ++in) by_output[out * x_stride + in] = this->stored[in * y_stride + out];
-    }
-  }
 
-  void forward(const Scalar* x, Scalar* y, int samples) const noexcept {
-    const Scalar* weights = this->stored;
-    multiply_batch<Pack, x_stride, y_stride>(x, weights, In, HasBias ? weights + In * y_stride : nullptr, y, samples);
-  }
-  void backward(const Scalar* x, const Scalar*, const Scalar* delta, Scalar* previous, int samples) noexcept {
-    multiply_transposed<Pack, In, x_stride, y_stride>(x, delta, samples, this->gradient);
-    if constexpr (HasBias) {
-      constexpr int vectors = y_stride / Pack::width;
-      Pack sum[vectors];
-      for (Pack& s : sum) s = Pack::broadcast(Scalar(0));
-      for (int i = 0; i < samples; ++i) {
-        unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
-          sum[v] = sum[v] + Pack::load(delta + i * y_stride + v * Pack::width);
-        });
-      }
-      for (int v = 0; v < vectors; ++v) sum[v].store(this->gradient + In * y_stride + v * Pack::width);
+  template <class Activation>
+  PINNQUAD_NOINLINE void forward(const Scalar* x, Scalar* y, int samples, const Activation& activation) const noexcept {
+    const auto start = [&](int out) PINNQUAD_INLINE_LAMBDA {
+      return Pack::broadcast(HasBias ? this->stored[out * row + In] : Scalar(0));
+    };
+    const auto finish = [&](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return activation(sum); };
+    for (int i = 0; i < samples; i += block) {
+      multiply_lanes<Pack, vectors, Out, row, 1>(this->stored, x + i, stride, In, start, finish, y + i, stride);
     }
-    if (previous != nullptr) {
-      multiply_batch<Pack, y_stride, x_stride>(delta, by_output, Out, nullptr, previous, samples);
+  }
+  /// `delta` holds dy; scale(x, dx) goes to `previous` (which may be null for the first layer).
+  template <class Scale>
+  PINNQUAD_NOINLINE void backward(const Scalar* x, const Scalar* delta, Scalar* previous, int samples,
+                                  const Scale& scale) noexcept {
+    alignas(64) Scalar by_sample[stride * row];
+    if constexpr (row > In) {
+      constexpr int last = row - Pack::width;
+      Scalar behind[Pack::width] = {};
+      if (HasBias) behind[In - last] = Scalar(1);
+      for (int i = 0; i < samples; ++i) Pack::load(behind).store(by_sample + i * row + last);
+    }
+    transpose<Pack>(x, stride, In, samples, by_sample, row);
+    multiply_matrices<Pack, Out, stride, row>(delta, by_sample, samples, this->gradient);
+    if (previous == nullptr) return;
+    for (int i = 0; i < samples; i += block) {
+      multiply_lanes<Pack, vectors, In, 1, row>(
+          this->stored, delta + i, stride, Out, [](int) PINNQUAD_INLINE_LAMBDA { return Pack::broadcast(Scalar(0)); },
+          [&](int in, int v, Pack dx)
+              PINNQUAD_INLINE_LAMBDA { return scale(Pack::load(x + in * stride + i + v * Pack::width), dx); },
+          previous + i, stride);
     }
   }
 
  private:
+  static constexpr int vectors = packs_in_block<Pack, BatchSize>;
+  static constexpr int block = vectors * Pack::width;
+
   static void gather(const Scalar* from, Scalar* parameters) noexcept {
     for (int out = 0; out < Out; ++out) {
-      for (int in = 0; in < In; ++in) parameters[out * In + in] = from[in * y_stride + out];
-      if constexpr (HasBias) parameters[Out * In + out] = from[In * y_stride + out];
+      for (int in = 0; in < In; ++in) parameters[out * In + in] = from[out * row + in];
+      if constexpr (HasBias) parameters[Out * In + out] = from[out * row + In];
     }
   }
 };
 template <class Scalar, int In, int Out, bool HasBias, class Pack, int BatchSize>
 struct BatchLayer<DenseLayer<Scalar, In, Out, HasBias>, Pack, BatchSize, void>
-    : BatchDense<Scalar, In, Out, HasBias, Pack> {};
+    : BatchDense<Scalar, In, Out, HasBias, Pack, BatchSize> {};
 
 /// Element-wise, with a slope from the output: forward works on its own buffer or on that of the layer before, dx
-/// overwrites dy. The padding columns of both may hold anything: no layer reads them into a real column. With a slope
-/// from the input, the input is left as it is, and dx goes to a buffer of its own.
+/// overwrites dy. With a slope from the input, the input is left as it is, and dx goes to a buffer of its own.
 template <class Layer, class Pack, int BatchSize>
 struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>>> : BatchTraits {
   static_assert(has_slope<Layer>,
@@ -156,30 +187,55 @@ struct BatchLayer<Layer, Pack, BatchSize, std::enable_if_t<is_elementwise<Layer>
   using Scalar = typename Layer::Scalar;
   static constexpr bool in_place = !slopes_from_input<Layer>;
   static constexpr bool needs_output = in_place;
-  static constexpr int stride = padded<Pack>(Layer::outputs);
+  static constexpr int stride = batch_capacity<Pack, BatchSize>;
 
   void load(const Scalar*) noexcept {}
   void store(Scalar*) const noexcept {}
   void store_gradient(Scalar*) const noexcept {}
 
   void forward(const Scalar* x, Scalar* y, int samples) const noexcept {
-    if constexpr (activates_pack<Layer, Pack>) {
-      const Activate<Layer> activate;
-      for (int i = 0; i < samples * stride; i += Pack::width) activate(Pack::load(x + i)).store(y + i);
-    } else {
-      for (int i = 0; i < samples; ++i) Layer::forward(nullptr, x + i * stride, y + i * stride);
-    }
+    const Activate<Layer> activate;
+    constexpr bool packs = activates_pack<Layer, Pack>;
+    each<packs ? Pack::width : 1>(samples, [&](int i) PINNQUAD_INLINE_LAMBDA {
+      if constexpr (packs) {
+        activate(Pack::load(x + i)).store(y + i);
+      } else {
+        y[i] = activate(x[i]);
+      }
+    });
   }
   void backward(const Scalar* x, const Scalar* y, const Scalar* delta, Scalar* previous, int samples) noexcept {
     if (previous == nullptr) return;
     const Scalar* seen = in_place ? y : x;
-    constexpr int step = scales_pack<Layer, Pack> ? Pack::width : 1;
-    for (int i = 0; i < samples * stride; i += step) {
-      if constexpr (scales_pack<Layer, Pack>) {
+    constexpr bool packs = scales_pack<Layer, Pack>;
+    each<packs ? Pack::width : 1>(samples, [&](int i) PINNQUAD_INLINE_LAMBDA {
+      if constexpr (packs) {
         scaled_by_slope<Layer>(Pack::load(seen + i), Pack::load(delta + i)).store(previous + i);
       } else {
         previous[i] = scaled_by_slope<Layer>(seen[i], delta[i]);
       }
+    });
+  }
+
+ private:
+  /// body(index) for every feature and every `Step`-th lane of whole packs.
+  template <int Step, class Body>
+  static PINNQUAD_ALWAYS_INLINE void each(int samples, const Body& body) {
+    for (int row = 0; row < Layer::outputs * stride; row += stride) {
+      for (int lane = 0; lane < padded<Pack>(samples); lane += Step) body(row + lane);
+    }
+  }
+};
+
+/// dx times the slope of the activation that gave x; of `void`, dx itself.
+template <class Layer>
+struct ScaleBySlope {
+  template <class Pack>
+  PINNQUAD_ALWAYS_INLINE Pack operator()(const Pack& x, const Pack& dx) const noexcept {
+    if constexpr (std::is_void_v<Layer>) {
+      return dx;
+    } else {
+      return scaled_by_slope<Layer>(x, dx);
     }
   }
 };

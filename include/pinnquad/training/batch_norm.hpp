@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Batch norm over a mini-batch: statistics of the batch in training, running ones for prediction (PyTorch's meaning).
-// Works on whole rows of [sample][padded width], a pack of neurons at a time.
+// A neuron's samples stand side by side: sums go lane by lane, and the lanes of many neurons are added at once.
 #pragma once
 
 #include "pinnquad/nn/batch_norm.hpp"
@@ -23,21 +23,23 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
     : BatchParameters<Scalar, 2 * padded<Pack>(Size)> {  // gamma, then beta
   static_assert(BatchSize > 1, "pinnquad: batch norm can't be trained in batches of one sample; they have no variance");
   static constexpr bool couples_samples = true;
-  static constexpr int stride = padded<Pack>(Size);
+  static constexpr bool fuses_activation = true;
+  static constexpr int stride = batch_capacity<Pack, BatchSize>;
+  static constexpr int neurons = padded<Pack>(Size);
 
-  using BatchParameters<Scalar, 2 * stride>::stored;
-  using BatchParameters<Scalar, 2 * stride>::gradient;
-  alignas(64) Scalar running_mean[stride] = {};
-  alignas(64) Scalar running_variance[stride] = {};
-  alignas(64) Scalar mean[stride] = {};               // of the last batch
-  alignas(64) Scalar variance[stride] = {};           // of the last batch, divisor N
-  alignas(64) Scalar inverse_deviation[stride] = {};  // 1 / sqrt(variance + epsilon) of the last batch
+  using BatchParameters<Scalar, 2 * neurons>::stored;
+  using BatchParameters<Scalar, 2 * neurons>::gradient;
+  alignas(64) Scalar running_mean[neurons] = {};
+  alignas(64) Scalar running_variance[neurons] = {};
+  alignas(64) Scalar mean[neurons] = {};               // of the last batch
+  alignas(64) Scalar variance[neurons] = {};           // of the last batch, divisor N
+  alignas(64) Scalar inverse_deviation[neurons] = {};  // 1 / sqrt(variance + epsilon) of the last batch
   int batch_samples = 0;
 
   void load(const Scalar* parameters) noexcept {
     for (int i = 0; i < Size; ++i) {
       stored[i] = parameters[i];
-      stored[stride + i] = parameters[Size + i];
+      stored[neurons + i] = parameters[Size + i];
       running_mean[i] = parameters[2 * Size + i];
       running_variance[i] = parameters[3 * Size + i];
     }
@@ -45,7 +47,7 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
   void store(Scalar* parameters) const noexcept {
     for (int i = 0; i < Size; ++i) {
       parameters[i] = stored[i];
-      parameters[Size + i] = stored[stride + i];
+      parameters[Size + i] = stored[neurons + i];
       parameters[2 * Size + i] = running_mean[i];
       parameters[3 * Size + i] = running_variance[i];
     }
@@ -54,24 +56,26 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
   void store_gradient(Scalar* parameters) const noexcept {
     for (int i = 0; i < Size; ++i) {
       parameters[i] = gradient[i];
-      parameters[Size + i] = gradient[stride + i];
+      parameters[Size + i] = gradient[neurons + i];
       parameters[2 * Size + i] = parameters[3 * Size + i] = Scalar(0);
     }
   }
-  void forward(const Scalar* x, Scalar* y, int samples) noexcept {
+  template <class Activation>
+  PINNQUAD_NOINLINE void forward(const Scalar* x, Scalar* y, int samples, const Activation& activation) noexcept {
     batch_samples = samples;
     if (samples > 1) {
       take_statistics(x, samples);
     } else {
       copy_running_statistics();
     }
-    normalise(x, y, samples);
+    normalise(x, y, samples, activation);
   }
   /// By running statistics.
-  void predict(const Scalar* x, Scalar* y, int samples) noexcept {
+  template <class Activation>
+  void predict(const Scalar* x, Scalar* y, int samples, const Activation& activation) noexcept {
     batch_samples = 1;
     copy_running_statistics();
-    normalise(x, y, samples);
+    normalise(x, y, samples, activation);
   }
 
   void follow_statistics() noexcept {
@@ -79,7 +83,7 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
     const Pack old_share = Pack::broadcast(Scalar(1.0 - batch_norm_momentum));
     const Pack share = Pack::broadcast(Scalar(batch_norm_momentum));
     const Pack unbiased = Pack::broadcast(Scalar(batch_norm_momentum * batch_samples / (batch_samples - 1.0)));
-    for (int i = 0; i < stride; i += Pack::width) {
+    for (int i = 0; i < neurons; i += Pack::width) {
       Pack::multiply_add(old_share, Pack::load(running_mean + i), share * Pack::load(mean + i)).store(running_mean + i);
       Pack::multiply_add(old_share, Pack::load(running_variance + i), unbiased * Pack::load(variance + i))
           .store(running_variance + i);
@@ -87,75 +91,90 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
   }
 
   /// `delta` holds dy; dx goes to `previous` (which may be null for the first layer).
-  void backward(const Scalar* x, const Scalar*, const Scalar* delta, Scalar* previous, int samples) noexcept {
-    unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
-      constexpr int offset = decltype(v)::value * Pack::width;
-      const Pack center = Pack::load(mean + offset), inverse = Pack::load(inverse_deviation + offset);
-      Pack shift[chains], scale[chains];
-      for (int c = 0; c < chains; ++c) shift[c] = scale[c] = Pack::broadcast(Scalar(0));
-      const auto add = [&](int i, int c) PINNQUAD_INLINE_LAMBDA {
-        const Pack dy = Pack::load(delta + i * stride + offset);
-        shift[c] = shift[c] + dy;
-        scale[c] = Pack::multiply_add(dy, Pack::load(x + i * stride + offset) - center, scale[c]);
-      };
-      over_samples(samples, add);
-      const Pack beta_gradient = total(shift);
-      const Pack gamma_gradient = total(scale) * inverse;
-      gamma_gradient.store(gradient + offset);
-      beta_gradient.store(gradient + stride + offset);
-      if (previous == nullptr) return;
+  PINNQUAD_NOINLINE void backward(const Scalar* x, const Scalar*, const Scalar* delta, Scalar* previous,
+                                  int samples) noexcept {
+    const Lanes lanes(samples);
+    const auto distance = [&](int neuron, int i)
+                              PINNQUAD_INLINE_LAMBDA { return Pack::load(x + i) - Pack::broadcast(mean[neuron]); };
+    Scalar* const beta_gradient = gradient + neurons;
+    lanes.sums(beta_gradient, [&](int, int i) PINNQUAD_INLINE_LAMBDA { return Pack::load(delta + i); });
+    lanes.sums(gradient,
+               [&](int neuron, int i) PINNQUAD_INLINE_LAMBDA { return Pack::load(delta + i) * distance(neuron, i); });
+    for (int i = 0; i < neurons; i += Pack::width) {
+      (Pack::load(gradient + i) * Pack::load(inverse_deviation + i)).store(gradient + i);
+    }
+    if (previous == nullptr) return;
 
-      // dx = factor (dy - a - b (x - mean)); a batch of one was normalised by constants: a = b = 0
-      const Pack factor = Pack::load(stored + offset) * inverse;
-      const Pack share = Pack::broadcast(samples > 1 ? Scalar(1) / Scalar(samples) : Scalar(0));
-      const Pack a = share * beta_gradient;
-      const Pack b = share * gamma_gradient * inverse;
-      for (int i = 0; i < samples; ++i) {
-        const Pack dy = Pack::load(delta + i * stride + offset);
-        const Pack distance = Pack::load(x + i * stride + offset) - center;
-        (factor * ((dy - a) - b * distance)).store(previous + i * stride + offset);
-      }
+    // dx = factor (dy - a - b (x - mean)); a batch of one was normalised by constants: a = b = 0
+    const Scalar share = samples > 1 ? Scalar(1) / Scalar(samples) : Scalar(0);
+    lanes.each([&](int neuron, const auto& over_samples) PINNQUAD_INLINE_LAMBDA {
+      const Scalar inverse = inverse_deviation[neuron];
+      const Pack factor = Pack::broadcast(stored[neuron] * inverse);
+      const Pack a = Pack::broadcast(share * beta_gradient[neuron]);
+      const Pack b = Pack::broadcast(share * gradient[neuron] * inverse);
+      over_samples([&](int i) PINNQUAD_INLINE_LAMBDA {
+        (factor * ((Pack::load(delta + i) - a) - b * distance(neuron, i))).store(previous + i);
+      });
     });
   }
 
  private:
-  static constexpr int vectors = stride / Pack::width;
-  static constexpr int chains = 4;  ///< sums that run side by side and hide each other's latency
+  /// The samples of a batch in packs.
+  struct Lanes {
+    int whole;                                  ///< samples in packs that they fill
+    int rest;                                   ///< in one more
+    alignas(64) Scalar used[Pack::width] = {};  ///< of that one: 1 for a sample, else 0
 
-  /// body(sample, chain) for all samples.
-  template <class Body>
-  static PINNQUAD_ALWAYS_INLINE void over_samples(int samples, const Body& body) {
-    int i = 0;
-    for (; i + chains <= samples; i += chains) {
-      unroll<chains>([&](auto c) PINNQUAD_INLINE_LAMBDA { body(i + c, c); });
+    explicit Lanes(int samples) noexcept : whole(samples / Pack::width * Pack::width), rest(samples - whole) {
+      for (int i = 0; i < rest; ++i) used[i] = Scalar(1);
     }
-    for (; i < samples; ++i) body(i, 0);
-  }
-  static PINNQUAD_ALWAYS_INLINE Pack total(const Pack (&sum)[chains]) { return (sum[0] + sum[1]) + (sum[2] + sum[3]); }
+    /// body(neuron, over_samples), over_samples(of_pack): of_pack(index of the pack in [neuron][sample]).
+    template <class Body>
+    PINNQUAD_ALWAYS_INLINE void each(const Body& body) const noexcept {
+      for (int neuron = 0; neuron < Size; ++neuron) {
+        body(neuron, [&](const auto& of_pack) PINNQUAD_INLINE_LAMBDA {
+          for (int i = 0; i < whole + rest; i += Pack::width) of_pack(neuron * stride + i);
+        });
+      }
+    }
+    /// sum[neuron] = the sum over the samples of term(neuron, index of the pack).
+    template <class Term>
+    PINNQUAD_ALWAYS_INLINE void sums(Scalar* sum, const Term& term) const noexcept {
+      alignas(64) Scalar by_lane[neurons * Pack::width];
+      alignas(64) Scalar by_neuron[Pack::width * neurons];
+      const Pack last = Pack::load(used);
+      for (int neuron = 0; neuron < Size; ++neuron) {
+        Pack total = Pack::broadcast(Scalar(0));
+        for (int i = 0; i < whole; i += Pack::width) total = total + term(neuron, neuron * stride + i);
+        if (rest > 0) total = total + Pack::where_positive(last, term(neuron, neuron * stride + whole));
+        total.store(by_lane + neuron * Pack::width);
+      }
+      transpose<Pack>(by_lane, Pack::width, Size, Pack::width, by_neuron, neurons);
+      for (int i = 0; i < neurons; i += Pack::width) {
+        Pack total = Pack::load(by_neuron + i);
+        for (int lane = 1; lane < Pack::width; ++lane) total = total + Pack::load(by_neuron + lane * neurons + i);
+        total.store(sum + i);
+      }
+    }
+  };
 
   void take_statistics(const Scalar* x, int samples) noexcept {
+    const Lanes lanes(samples);
     const Pack share = Pack::broadcast(Scalar(1) / Scalar(samples));
-    unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
-      constexpr int offset = decltype(v)::value * Pack::width;
-      Pack sum[chains];
-      for (Pack& s : sum) s = Pack::broadcast(Scalar(0));
-      const auto add = [&](int i, int c)
-                           PINNQUAD_INLINE_LAMBDA { sum[c] = sum[c] + Pack::load(x + i * stride + offset); };
-      over_samples(samples, add);
-      const Pack center = share * total(sum);
-      for (Pack& s : sum) s = Pack::broadcast(Scalar(0));
-      const auto add_square = [&](int i, int c) PINNQUAD_INLINE_LAMBDA {
-        const Pack distance = Pack::load(x + i * stride + offset) - center;
-        sum[c] = Pack::multiply_add(distance, distance, sum[c]);
-      };
-      over_samples(samples, add_square);
-      center.store(mean + offset);
-      (share * total(sum)).store(variance + offset);
+    const auto divide = [&](Scalar* sums) PINNQUAD_INLINE_LAMBDA {
+      for (int i = 0; i < neurons; i += Pack::width) (share * Pack::load(sums + i)).store(sums + i);
+    };
+    lanes.sums(mean, [&](int, int i) PINNQUAD_INLINE_LAMBDA { return Pack::load(x + i); });
+    divide(mean);
+    lanes.sums(variance, [&](int neuron, int i) PINNQUAD_INLINE_LAMBDA {
+      const Pack distance = Pack::load(x + i) - Pack::broadcast(mean[neuron]);
+      return distance * distance;
     });
+    divide(variance);
     invert_deviation();
   }
   void copy_running_statistics() noexcept {
-    for (int i = 0; i < stride; ++i) {
+    for (int i = 0; i < neurons; ++i) {
       mean[i] = running_mean[i];
       variance[i] = running_variance[i];
     }
@@ -163,20 +182,20 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
   }
   void invert_deviation() noexcept {
     const Pack one = Pack::broadcast(Scalar(1)), epsilon = Pack::broadcast(Scalar(batch_norm_epsilon));
-    for (int i = 0; i < stride; i += Pack::width) {
+    for (int i = 0; i < neurons; i += Pack::width) {
       (one / Pack::square_root(Pack::load(variance + i) + epsilon)).store(inverse_deviation + i);
     }
   }
-  void normalise(const Scalar* x, Scalar* y, int samples) const noexcept {
-    unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
-      constexpr int offset = decltype(v)::value * Pack::width;
-      const Pack center = Pack::load(mean + offset);
-      const Pack factor = Pack::load(stored + offset) * Pack::load(inverse_deviation + offset);
-      const Pack shift = Pack::load(stored + stride + offset);
-      for (int i = 0; i < samples; ++i) {
-        const Pack distance = Pack::load(x + i * stride + offset) - center;
-        Pack::multiply_add(distance, factor, shift).store(y + i * stride + offset);
-      }
+  template <class Activation>
+  PINNQUAD_ALWAYS_INLINE void normalise(const Scalar* x, Scalar* y, int samples,
+                                        const Activation& activation) const noexcept {
+    Lanes(samples).each([&](int neuron, const auto& over_samples) PINNQUAD_INLINE_LAMBDA {
+      const Pack center = Pack::broadcast(mean[neuron]);
+      const Pack factor = Pack::broadcast(stored[neuron] * inverse_deviation[neuron]);
+      const Pack shift = Pack::broadcast(stored[neurons + neuron]);
+      over_samples([&](int i) PINNQUAD_INLINE_LAMBDA {
+        activation(Pack::multiply_add(Pack::load(x + i) - center, factor, shift)).store(y + i);
+      });
     });
   }
 };

@@ -13,7 +13,7 @@ namespace pinnquad {
 
 namespace detail {
 
-/// Activations of one layer, [sample][padded width]; empty for layers that work in the buffer of the layer before.
+/// Activations of one layer, [feature][sample]; empty for layers that work in the buffer of the layer before.
 template <class Scalar, int Size>
 struct ActivationBuffer {
   alignas(64) Scalar values[Size] = {};
@@ -22,18 +22,13 @@ template <class Scalar>
 struct ActivationBuffer<Scalar, 0> {};
 
 /// Gradient of a scalar loss by all parameters, for up to BatchSize samples.
-/// Tiles may be wider than the batch. The rows past its samples are zeros in every activation and in every dL/dy, and
-/// only Dense, which makes 0 of them, is run on them: they add nothing to a gradient, whatever a layer gives for an
-/// input of zeros. Use: input() <- standardised samples, forward(n), output_delta() <- dL/dy, backward(n), then each
-/// layer's `gradient`.
+/// Use: put() standardised samples, forward(n), output_delta() <- dL/dy, backward(n), then each layer's `gradient`.
 template <class NetworkType, int BatchSize, class PackType = pinnquad::NativePack<typename NetworkType::Scalar>>
 class NetworkGradient {
  public:
   using Scalar = typename NetworkType::Scalar;
   using Pack = PackType;
-  static constexpr int capacity = (BatchSize + Pack::tile_rows - 1) / Pack::tile_rows * Pack::tile_rows;
-  static constexpr int input_stride = padded<Pack>(NetworkType::inputs);
-  static constexpr int output_stride = padded<Pack>(NetworkType::outputs);
+  static constexpr int capacity = batch_capacity<Pack, BatchSize>;
 
   void load(const typename NetworkType::Parameters& parameters) noexcept {
     each([&](auto& layer, auto index) { layer.load(parameters.data() + NetworkType::Sizes::offset(index)); });
@@ -48,25 +43,27 @@ class NetworkGradient {
     });
   }
 
-  Scalar* input(int sample) noexcept { return input_ + sample * input_stride; }
-  const Scalar* output(int sample) const noexcept {
-    return const_cast<NetworkGradient*>(this)->template activations<last>() + sample * output_stride;
+  /// Inputs of the next pass: `samples` of them (1 to `capacity`), one after the other. The lanes of a pack that they
+  /// leave over repeat the last.
+  void put(const Scalar* x, int samples) noexcept {
+    transpose<Pack>(x, NetworkType::inputs, samples, NetworkType::inputs, input_, capacity);
+    for (int k = 0; k < NetworkType::inputs; ++k) {
+      Scalar* const row = input_ + k * capacity;
+      for (int i = samples; i < padded<Pack>(samples); ++i) row[i] = row[samples - 1];
+    }
   }
-  /// dL/dy of one sample; the whole row up to output_stride is the network's, entries past `outputs` stay zero.
-  Scalar* output_delta(int sample) noexcept { return delta_[0] + sample * output_stride; }
+  Scalar output(int k, int sample) const noexcept {
+    return const_cast<NetworkGradient*>(this)->template activations<last>()[k * capacity + sample];
+  }
+  /// dL/dy of one sample.
+  Scalar& output_delta(int k, int sample) noexcept { return delta_[0][k * capacity + sample]; }
 
-  /// Outputs of the first `samples` inputs (at most `capacity`), batch norm by the statistics of these samples.
-  void forward(int samples) noexcept {
-    clear_padding(input_, input_stride, samples);
-    walk_forward<NetworkType, Kernel>(Forward<true>{{}, *this}, samples);
-  }
+  /// Outputs of the samples put, batch norm by their statistics.
+  void forward(int samples) noexcept { walk_forward<NetworkType, Kernel>(Forward<true>{{}, *this}, samples); }
 
   /// The same with batch norm's running statistics: outputs of the network as it will fly. backward() does not fit
   /// this pass.
-  void predict(int samples) noexcept {
-    clear_padding(input_, input_stride, samples);
-    walk_forward<NetworkType, Kernel>(Forward<false>{{}, *this}, samples);
-  }
+  void predict(int samples) noexcept { walk_forward<NetworkType, Kernel>(Forward<false>{{}, *this}, samples); }
 
   /// Running statistics follow the batch of the last forward().
   void follow_statistics() noexcept {
@@ -77,8 +74,7 @@ class NetworkGradient {
 
   /// Gradients of all layers.
   void backward(int samples) noexcept {
-    clear_padding(delta_[0], output_stride, samples);
-    walk_back<NetworkType, FusesNothing>(Backward{{}, *this, samples}, Deltas{delta_[0], delta_[1]});
+    walk_back<NetworkType, SlopeKernel>(Backward{{}, *this, samples}, Deltas{delta_[0], delta_[1]});
   }
 
   /// function(layer, integral_constant<index>) for every layer.
@@ -94,7 +90,6 @@ class NetworkGradient {
  private:
   static constexpr int layer_count = NetworkType::layer_count;
   static constexpr int last = layer_count - 1;
-  static constexpr int widest = padded<Pack>(NetworkType::widest);
   template <class... Layers>
   static std::tuple<BatchLayer<Layers, Pack, BatchSize>...> batched(const std::tuple<Layers...>&);
   using Layers = decltype(batched(std::declval<typename NetworkType::Layers>()));
@@ -108,30 +103,26 @@ class NetworkGradient {
     static constexpr bool fuses =
         !BatchLayer<NetworkLayer, Pack, BatchSize>::needs_output && BatchLayer<Elementwise, Pack, BatchSize>::in_place;
   };
+  /// Back, such a layer runs with the layer behind it where that takes its slope.
+  struct SlopeKernel {
+    template <class NetworkLayer, class Elementwise>
+    static constexpr bool fuses = BatchLayer<NetworkLayer, Pack, BatchSize>::fuses_slope&&
+        BatchLayer<Elementwise, Pack, BatchSize>::in_place&& scales_pack<Elementwise, Pack>;
+  };
   /// True for a layer in the buffer of the layer before it, or of the inputs.
   template <int Index>
   static constexpr bool overwrites() noexcept {
     return runs_with_layer_before<NetworkType, Kernel, Index>() || (Index == 0 && Layer<Index>::in_place);
   }
   template <int Index>
-  static constexpr int stride = padded<Pack>(NetworkType::template Layer<Index>::outputs);
+  static constexpr int buffer_size = NetworkType::template Layer<Index>::outputs* capacity;
   template <class Indices>
   struct BuffersOf;
   template <int... Index>
   struct BuffersOf<std::integer_sequence<int, Index...>> {
-    using type = std::tuple<ActivationBuffer<Scalar, overwrites<Index>() ? 0 : capacity * stride<Index>>...>;
+    using type = std::tuple<ActivationBuffer<Scalar, overwrites<Index>() ? 0 : buffer_size<Index>>...>;
   };
   using Buffers = typename BuffersOf<std::make_integer_sequence<int, layer_count>>::type;
-
-  static int tiled(int samples) noexcept { return (samples + Pack::tile_rows - 1) / Pack::tile_rows * Pack::tile_rows; }
-
-  static void clear_padding(Scalar* values, int row_stride, int samples) noexcept {
-    for (int i = samples * row_stride; i < tiled(samples) * row_stride; ++i) values[i] = Scalar(0);
-  }
-  template <int Index>
-  static int rows_of(int samples) noexcept {
-    return Layer<Index>::whole_tiles ? tiled(samples) : samples;
-  }
 
   /// Where a layer's output stands: its own buffer, or that of the layer it works in.
   template <int Index>
@@ -151,30 +142,35 @@ class NetworkGradient {
     NetworkGradient& of;
     template <class Step>
     int visit(int samples) const noexcept {
-      Scalar* values = of.template activations<Step::index>();
-      of.template run<Step::index, Training>(samples);
-      if constexpr (Step::fused) {
-        std::get<Step::index + 1>(of.layers_).forward(values, values, samples);
+      using Activation = typename Step::Activation;
+      constexpr int index = Step::index;
+      Scalar* values = of.template activations<index>();
+      if constexpr (!Layer<index>::fuses_activation) {
+        of.template run<index, Training>(samples);
+      } else if constexpr (std::is_void_v<Activation> || activates_pack<Activation, Pack>) {
+        of.template run<index, Training>(samples, Activate<Activation>{});
+        return samples;
+      } else {
+        of.template run<index, Training>(samples, Activate<void>{});
       }
-      clear_padding(values, stride<Step::index>, samples);
+      if constexpr (Step::fused) std::get<index + 1>(of.layers_).forward(values, values, samples);
       return samples;
     }
   };
-  template <int Index, bool Training>
-  void run(int samples) noexcept {
+  template <int Index, bool Training, class... Activation>
+  void run(int samples, const Activation&... activation) noexcept {
     auto& layer = std::get<Index>(layers_);
-    const int rows = rows_of<Index>(samples);
     Scalar* values = activations<Index>();
     if constexpr (Layer<Index>::in_place) {
       if constexpr (!overwrites<Index>()) {
         const Scalar* before = activations<Index - 1>();
-        for (int i = 0; i < rows * stride<Index>; ++i) values[i] = before[i];
+        for (int i = 0; i < buffer_size<Index>; ++i) values[i] = before[i];
       }
-      layer.forward(values, values, rows);
+      layer.forward(values, values, samples);
     } else if constexpr (Layer<Index>::couples_samples && !Training) {
-      layer.predict(activations<Index - 1>(), values, rows);
+      layer.predict(activations<Index - 1>(), values, samples, activation...);
     } else {
-      layer.forward(activations<Index - 1>(), values, rows);
+      layer.forward(activations<Index - 1>(), values, samples, activation...);
     }
   }
 
@@ -190,15 +186,18 @@ class NetworkGradient {
     Deltas visit(const Deltas& delta) const noexcept {
       constexpr int index = Step::index;
       auto& layer = std::get<index>(of.layers_);
-      const int rows = rows_of<index>(samples);
       const Scalar* values = of.template activations<index>();
       if constexpr (Layer<index>::in_place) {
-        layer.backward(values, values, delta.here, delta.here, rows);
+        layer.backward(values, values, delta.here, delta.here, samples);
         return delta;
       } else {
+        const Scalar* x = of.template activations<index - 1>();
         Scalar* previous = index > 0 ? delta.other : nullptr;
-        layer.backward(of.template activations<index - 1>(), values, delta.here, previous, rows);
-        if constexpr (index > 0) clear_padding(previous, stride<index - 1>, samples);
+        if constexpr (Layer<index>::fuses_slope) {
+          layer.backward(x, delta.here, previous, samples, ScaleBySlope<typename Step::Activation>{});
+        } else {
+          layer.backward(x, values, delta.here, previous, samples);
+        }
         return {delta.other, delta.here};
       }
     }
@@ -206,8 +205,8 @@ class NetworkGradient {
 
   Layers layers_{};
   Buffers buffers_{};
-  alignas(64) Scalar input_[capacity * input_stride] = {};
-  alignas(64) Scalar delta_[2][capacity * widest] = {};
+  alignas(64) Scalar input_[NetworkType::inputs * capacity] = {};
+  alignas(64) Scalar delta_[2][NetworkType::widest * capacity] = {};
 };
 
 }  // namespace detail

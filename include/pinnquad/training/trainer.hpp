@@ -122,7 +122,6 @@ class Trainer {
       if constexpr (std::decay_t<decltype(layer)>::size > 0) {
         optimizer_.template update<Pack>(step, layer.stored, layer.gradient, layer.first_moment, layer.second_moment,
                                          layer.size);
-        layer.refresh();
       }
     });
     return value;
@@ -147,21 +146,18 @@ class Trainer {
       if (!all_finite(x, Network::inputs) || !all_finite(y, Network::outputs)) {
         refuse("expected finite numbers, found others in row " + std::to_string(rows[i]));
       }
-      Scalar* input = gradient_.input(i);
-      for (int k = 0; k < Network::inputs; ++k) input[k] = loss_batch_.features(k, i) = x[k];
+      for (int k = 0; k < Network::inputs; ++k) loss_batch_.features(k, i) = x[k];
       for (int k = 0; k < Network::outputs; ++k) loss_batch_.target(k, i) = y[k];
     }
+    gradient_.put(loss_batch_.features.data(), size);
     gradient_.forward(size);
     for (int i = 0; i < size; ++i) {
-      const Scalar* output = gradient_.output(i);
-      for (int k = 0; k < Network::outputs; ++k) loss_batch_.prediction(k, i) = output[k];
+      for (int k = 0; k < Network::outputs; ++k) loss_batch_.prediction(k, i) = gradient_.output(k, i);
     }
     output_gradient_.setZero(Eigen::NoChange, size);
     const Scalar value = loss_.evaluate(context_, loss_batch_, Scalar(1), output_gradient_);
     for (int i = 0; i < size; ++i) {
-      Scalar* delta = gradient_.output_delta(i);
-      for (int k = 0; k < Gradient::output_stride; ++k)
-        delta[k] = k < Network::outputs ? output_gradient_(k, i) : Scalar(0);
+      for (int k = 0; k < Network::outputs; ++k) gradient_.output_delta(k, i) = output_gradient_(k, i);
     }
     gradient_.backward(size);
     return value;
@@ -175,17 +171,13 @@ class Trainer {
     double squared = 0, absolute = 0;
     for (int first = 0; first < data.size(); first += BatchSize) {
       const int size = data.size() - first < BatchSize ? data.size() - first : BatchSize;
-      for (int i = 0; i < size; ++i) {
-        const Scalar* x = data.features_of(first + i);
-        Scalar* input = gradient_.input(i);
-        for (int k = 0; k < Network::inputs; ++k) input[k] = x[k];
-      }
+      gradient_.put(data.features_of(first), size);
       gradient_.predict(size);
       for (int i = 0; i < size; ++i) {
-        const Scalar* output = gradient_.output(i);
         const Scalar* y = data.outputs_of(first + i);
         for (std::size_t k = 0; k < std::size_t(Network::outputs); ++k) {
-          const double difference = static_cast<double>(output[k]) - static_cast<double>(y[k]);
+          const double difference =
+              static_cast<double>(gradient_.output(static_cast<int>(k), i)) - static_cast<double>(y[k]);
           squared += difference * difference;
           absolute += std::abs(difference) * context_.output.standard_deviation[k];
         }

@@ -45,6 +45,20 @@ struct PackAvx2 {
     const __m256 positive = _mm256_cmp_ps(gate.value, _mm256_setzero_ps(), _CMP_GT_OQ);
     return {_mm256_and_ps(positive, a.value)};
   }
+  /// column[c]: x[row * stride + c] in lane `row`, c = 0..3. Both halves of a register are transposed at once.
+  static PINNQUAD_ALWAYS_INLINE void four_columns(const float* x, int stride, PackAvx2 (&column)[4]) noexcept {
+    __m256 row[4];
+    for (int i = 0; i < 4; ++i) {
+      row[i] = _mm256_castps128_ps256(_mm_loadu_ps(x + i * stride));
+      row[i] = _mm256_insertf128_ps(row[i], _mm_loadu_ps(x + (4 + i) * stride), 1);
+    }
+    const __m256 first = _mm256_unpacklo_ps(row[0], row[1]), second = _mm256_unpacklo_ps(row[2], row[3]);
+    const __m256 third = _mm256_unpackhi_ps(row[0], row[1]), fourth = _mm256_unpackhi_ps(row[2], row[3]);
+    column[0].value = _mm256_shuffle_ps(first, second, 0x44);
+    column[1].value = _mm256_shuffle_ps(first, second, 0xee);
+    column[2].value = _mm256_shuffle_ps(third, fourth, 0x44);
+    column[3].value = _mm256_shuffle_ps(third, fourth, 0xee);
+  }
 
   // A layer in registers (register_layer.hpp): four rows, each in two neighbouring lanes that take two inputs; two such
   // sums make a register of eight values.

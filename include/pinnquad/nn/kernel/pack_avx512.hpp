@@ -49,6 +49,24 @@ struct PackAvx512 {
     const __mmask16 positive = _mm512_cmp_ps_mask(gate.value, _mm512_setzero_ps(), _CMP_GT_OQ);
     return {_mm512_maskz_mov_ps(positive, a.value)};
   }
+  /// column[c]: x[row * stride + c] in lane `row`, c = 0..3. All quarters of a register are transposed at once.
+  static PINNQUAD_ALWAYS_INLINE void four_columns(const float* x, int stride, PackAvx512 (&column)[4]) noexcept {
+    __m512 row[4];
+    for (int i = 0; i < 4; ++i) {
+      row[i] = _mm512_zextps128_ps512(_mm_loadu_ps(x + i * stride));
+      row[i] = _mm512_maskz_insertf32x4(all, row[i], _mm_loadu_ps(x + (4 + i) * stride), 1);
+      row[i] = _mm512_maskz_insertf32x4(all, row[i], _mm_loadu_ps(x + (8 + i) * stride), 2);
+      row[i] = _mm512_maskz_insertf32x4(all, row[i], _mm_loadu_ps(x + (12 + i) * stride), 3);
+    }
+    const __m512 first = _mm512_maskz_unpacklo_ps(all, row[0], row[1]);
+    const __m512 second = _mm512_maskz_unpacklo_ps(all, row[2], row[3]);
+    const __m512 third = _mm512_maskz_unpackhi_ps(all, row[0], row[1]);
+    const __m512 fourth = _mm512_maskz_unpackhi_ps(all, row[2], row[3]);
+    column[0].value = _mm512_maskz_shuffle_ps(all, first, second, 0x44);
+    column[1].value = _mm512_maskz_shuffle_ps(all, first, second, 0xee);
+    column[2].value = _mm512_maskz_shuffle_ps(all, third, fourth, 0x44);
+    column[3].value = _mm512_maskz_shuffle_ps(all, third, fourth, 0xee);
+  }
 
   // A layer in registers (register_layer.hpp): eight rows, each in two neighbouring lanes that take two inputs.
   static constexpr int columns = 2;

@@ -59,6 +59,11 @@ struct PackSse2 {
   static PINNQUAD_ALWAYS_INLINE PackSse2 where_positive(PackSse2 gate, PackSse2 a) noexcept {
     return {_mm_and_ps(_mm_cmpgt_ps(gate.value, _mm_setzero_ps()), a.value)};
   }
+  /// column[c]: x[row * stride + c] in lane `row`, c = 0..3.
+  static PINNQUAD_ALWAYS_INLINE void four_columns(const float* x, int stride, PackSse2 (&column)[4]) noexcept {
+    for (int row = 0; row < 4; ++row) column[row] = load(x + row * stride);
+    _MM_TRANSPOSE4_PS(column[0].value, column[1].value, column[2].value, column[3].value);
+  }
 
   // A layer in registers (register_layer.hpp): four rows, one input.
   static constexpr int columns = 1;

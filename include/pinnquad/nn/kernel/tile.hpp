@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Matrix products of a mini-batch as outer-product register tiles: no horizontal sums, each loaded row of B serves a
+// Matrix products of many samples as outer-product register tiles: no horizontal sums, each loaded row of B serves a
 // whole tile. One routine for the three products of back-propagation; only the strides of A differ.
 #pragma once
 
@@ -85,55 +85,57 @@ PINNQUAD_ALWAYS_INLINE void in_full_tiles(const Body& body) noexcept {
   }
 }
 
-/// One tile of rows over all columns; `start` is one row that all begin with, or null for zeros.
-template <class Pack, int Rows, int RowStride, int DepthStride, int Stride, int Columns>
+/// C[r][v] = finish(r, v, start(r) + sum_k A(r, k) B[k][v]) over `Vectors` packs of samples, a sample per lane; A as in
+/// multiply_tile(). Twelve sums (six rows of two packs) hide the latency of the multiply-add; with many more the
+/// processor cannot overlap one tile with the next. Sixteen registers hold twelve sums; with 32, a tile may be one row
+/// taller to save another.
+template <class Pack, int Vectors, int Rows, int RowStride, int DepthStride, class Scalar, class Start, class Finish>
+PINNQUAD_ALWAYS_INLINE void multiply_lanes(const Scalar* a, const Scalar* b, int b_stride, int depth,
+                                           const Start& start, const Finish& finish, Scalar* c, int c_stride) noexcept {
+  const auto tile = [&](auto first, auto rows) PINNQUAD_INLINE_LAMBDA {
+    multiply_tile<Consecutive<Pack, Vectors>, decltype(rows)::value, RowStride, DepthStride>(
+        a + first * RowStride, b, b_stride, depth,
+        [&](auto r, auto) PINNQUAD_INLINE_LAMBDA { return start(first + r); },
+        [&](auto r, auto v, Pack sum) PINNQUAD_INLINE_LAMBDA { return finish(first + r, v, sum); },
+        c + first * c_stride, c_stride);
+  };
+  if constexpr (sizeof(Pack) >= 64) {
+    in_even_tiles<Rows, 7>(tile);
+  } else {
+    in_full_tiles<Rows, 6>(tile);
+  }
+}
+
+/// One tile of rows over all columns.
+template <class Pack, int Rows, int AStride, int Columns>
 PINNQUAD_ALWAYS_INLINE void multiply_rows(const typename Pack::Scalar* a, const typename Pack::Scalar* b, int depth,
-                                          const typename Pack::Scalar* start, typename Pack::Scalar* c) noexcept {
+                                          typename Pack::Scalar* c) noexcept {
   constexpr int vectors = Columns / Pack::width;
   constexpr int block = vectors < Pack::tile_vectors ? vectors : Pack::tile_vectors;
   constexpr int blocks = vectors / block;
   constexpr int rest = vectors % block;
   const auto tile = [&](auto count, int offset) PINNQUAD_INLINE_LAMBDA {
-    constexpr int tile_vectors = decltype(count)::value;
-    Pack first[tile_vectors];
-    unroll<tile_vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
-      first[v] =
-          start != nullptr ? Pack::load(start + offset + v * Pack::width) : Pack::broadcast(typename Pack::Scalar(0));
-    });
-    multiply_tile<Consecutive<Pack, tile_vectors>, Rows, RowStride, DepthStride>(
-        a, b + offset, Stride, depth, [&](auto, auto v) PINNQUAD_INLINE_LAMBDA { return first[v]; },
-        [](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum; }, c + offset, Stride);
+    multiply_tile<Consecutive<Pack, decltype(count)::value>, Rows, AStride, 1>(
+        a, b + offset, Columns, depth,
+        [](auto, auto) PINNQUAD_INLINE_LAMBDA { return Pack::broadcast(typename Pack::Scalar(0)); },
+        [](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum; }, c + offset, Columns);
   };
   unroll<blocks>([&](auto i)
                      PINNQUAD_INLINE_LAMBDA { tile(Index<block>{}, decltype(i)::value * block * Pack::width); });
   if constexpr (rest > 0) tile(Index<rest>{}, blocks * block * Pack::width);
 }
 
-}  // namespace detail
-
-/// C = A B (+ start in every row), a run-time count of rows: `rows` is rounded up to whole tiles, C must hold them.
-/// A: rows x depth, row-major with stride AStride. B: depth x Columns, C: rows x Columns, both row-major with stride
-/// Columns (a multiple of the pack).
-template <class Pack, int AStride, int Columns>
-void multiply_batch(const typename Pack::Scalar* a, const typename Pack::Scalar* b, int depth,
-                    const typename Pack::Scalar* start, typename Pack::Scalar* c, int rows) noexcept {
-  constexpr int tile = Pack::tile_rows;
-  for (int row = 0; row < rows; row += tile) {
-    detail::multiply_rows<Pack, tile, AStride, 1, Columns, Columns>(a + row * AStride, b, depth, start,
-                                                                    c + row * Columns);
-  }
-}
-
-/// C = A^T B, a compile-time count of rows (columns of A), cut into tiles of nearly equal height.
-/// A: depth x Rows with stride AStride. B: depth x Columns, C: Rows x Columns, both with stride Columns.
+/// C = A B, cut into tiles of nearly equal height. A: Rows x depth, row-major with stride AStride. B: depth x Columns,
+/// C: Rows x Columns, both with stride Columns (a multiple of the pack).
 template <class Pack, int Rows, int AStride, int Columns>
-void multiply_transposed(const typename Pack::Scalar* a, const typename Pack::Scalar* b, int depth,
-                         typename Pack::Scalar* c) noexcept {
+PINNQUAD_ALWAYS_INLINE void multiply_matrices(const typename Pack::Scalar* a, const typename Pack::Scalar* b, int depth,
+                                              typename Pack::Scalar* c) noexcept {
   constexpr int largest = Pack::tile_rows + Pack::tile_rows / 4;
-  detail::in_even_tiles<Rows, largest>([&](auto first, auto rows) PINNQUAD_INLINE_LAMBDA {
-    detail::multiply_rows<Pack, decltype(rows)::value, 1, AStride, Columns, Columns>(a + first, b, depth, nullptr,
-                                                                                     c + first * Columns);
+  in_even_tiles<Rows, largest>([&](auto first, auto rows) PINNQUAD_INLINE_LAMBDA {
+    multiply_rows<Pack, decltype(rows)::value, AStride, Columns>(a + first * AStride, b, depth, c + first * Columns);
   });
 }
+
+}  // namespace detail
 
 }  // namespace pinnquad
