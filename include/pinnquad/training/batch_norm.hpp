@@ -97,9 +97,10 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
     const auto distance = [&](int neuron, int i)
                               PINNQUAD_INLINE_LAMBDA { return Pack::load(x + i) - Pack::broadcast(mean[neuron]); };
     Scalar* const beta_gradient = gradient + neurons;
-    lanes.sums(beta_gradient, [&](int, int i) PINNQUAD_INLINE_LAMBDA { return Pack::load(delta + i); });
-    lanes.sums(gradient,
-               [&](int neuron, int i) PINNQUAD_INLINE_LAMBDA { return Pack::load(delta + i) * distance(neuron, i); });
+    lanes.sums(beta_gradient, [&](int, int i, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum + Pack::load(delta + i); });
+    lanes.sums(gradient, [&](int neuron, int i, Pack sum) PINNQUAD_INLINE_LAMBDA {
+      return Pack::multiply_add(Pack::load(delta + i), distance(neuron, i), sum);
+    });
     for (int i = 0; i < neurons; i += Pack::width) {
       (Pack::load(gradient + i) * Pack::load(inverse_deviation + i)).store(gradient + i);
     }
@@ -109,52 +110,63 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
     const Scalar share = samples > 1 ? Scalar(1) / Scalar(samples) : Scalar(0);
     lanes.each([&](int neuron, const auto& over_samples) PINNQUAD_INLINE_LAMBDA {
       const Scalar inverse = inverse_deviation[neuron];
-      const Pack factor = Pack::broadcast(stored[neuron] * inverse);
-      const Pack a = Pack::broadcast(share * beta_gradient[neuron]);
-      const Pack b = Pack::broadcast(share * gradient[neuron] * inverse);
+      const Scalar scale = stored[neuron] * inverse;
+      const Pack factor = Pack::broadcast(scale);
+      const Pack shift = Pack::broadcast(-scale * share * beta_gradient[neuron]);
+      const Pack slope = Pack::broadcast(-scale * share * gradient[neuron] * inverse);
       over_samples([&](int i) PINNQUAD_INLINE_LAMBDA {
-        (factor * ((Pack::load(delta + i) - a) - b * distance(neuron, i))).store(previous + i);
+        const Pack direct = Pack::multiply_add(factor, Pack::load(delta + i), shift);
+        Pack::multiply_add(slope, distance(neuron, i), direct).store(previous + i);
       });
     });
   }
 
  private:
-  /// The samples of a batch in packs.
-  struct Lanes {
-    int whole;                                  ///< samples in packs that they fill
-    int rest;                                   ///< in one more
-    alignas(64) Scalar used[Pack::width] = {};  ///< of that one: 1 for a sample, else 0
+  static constexpr int vectors = packs_in_block<Pack, BatchSize>;
+  static constexpr int block = vectors * Pack::width;
 
-    explicit Lanes(int samples) noexcept : whole(samples / Pack::width * Pack::width), rest(samples - whole) {
-      for (int i = 0; i < rest; ++i) used[i] = Scalar(1);
+  /// The samples of a batch in blocks.
+  struct Lanes {
+    int whole;                            ///< samples in blocks that they fill
+    int samples;                          ///< all
+    alignas(64) Scalar used[block] = {};  ///< of the last block: 1 for a sample, else 0
+
+    explicit Lanes(int count) noexcept : whole(count / block * block), samples(count) {
+      for (int i = 0; i < samples - whole; ++i) used[i] = Scalar(1);
     }
     /// body(neuron, over_samples), over_samples(of_pack): of_pack(index of the pack in [neuron][sample]).
     template <class Body>
     PINNQUAD_ALWAYS_INLINE void each(const Body& body) const noexcept {
       for (int neuron = 0; neuron < Size; ++neuron) {
         body(neuron, [&](const auto& of_pack) PINNQUAD_INLINE_LAMBDA {
-          for (int i = 0; i < whole + rest; i += Pack::width) of_pack(neuron * stride + i);
+          for (int i = 0; i < samples; i += block) {
+            unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA { of_pack(neuron * stride + i + v * Pack::width); });
+          }
         });
       }
     }
-    /// sum[neuron] = the sum over the samples of term(neuron, index of the pack).
-    template <class Term>
-    PINNQUAD_ALWAYS_INLINE void sums(Scalar* sum, const Term& term) const noexcept {
+    /// result[neuron] = the sum over the samples; add(neuron, index of the pack, sum) gives the sum with that pack.
+    template <class Add>
+    PINNQUAD_ALWAYS_INLINE void sums(Scalar* result, const Add& add) const noexcept {
       alignas(64) Scalar by_lane[neurons * Pack::width];
-      alignas(64) Scalar by_neuron[Pack::width * neurons];
-      const Pack last = Pack::load(used);
+      const Pack zero = Pack::broadcast(Scalar(0));
       for (int neuron = 0; neuron < Size; ++neuron) {
-        Pack total = Pack::broadcast(Scalar(0));
-        for (int i = 0; i < whole; i += Pack::width) total = total + term(neuron, neuron * stride + i);
-        if (rest > 0) total = total + Pack::where_positive(last, term(neuron, neuron * stride + whole));
-        total.store(by_lane + neuron * Pack::width);
+        Pack sum[vectors];
+        for (Pack& s : sum) s = zero;
+        int i = neuron * stride;
+        for (; i < neuron * stride + whole; i += block) {
+          unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA { sum[v] = add(neuron, i + v * Pack::width, sum[v]); });
+        }
+        if (samples > whole) {
+          unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
+            const Pack seen = add(neuron, i + v * Pack::width, zero);
+            sum[v] = sum[v] + Pack::where_positive(Pack::load(used + v * Pack::width), seen);
+          });
+        }
+        if constexpr (vectors > 1) sum[0] = sum[0] + sum[1];
+        sum[0].store(by_lane + neuron * Pack::width);
       }
-      transpose<Pack>(by_lane, Pack::width, Size, Pack::width, by_neuron, neurons);
-      for (int i = 0; i < neurons; i += Pack::width) {
-        Pack total = Pack::load(by_neuron + i);
-        for (int lane = 1; lane < Pack::width; ++lane) total = total + Pack::load(by_neuron + lane * neurons + i);
-        total.store(sum + i);
-      }
+      add_lanes<Pack>(by_lane, Size, result);
     }
   };
 
@@ -164,11 +176,11 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
     const auto divide = [&](Scalar* sums) PINNQUAD_INLINE_LAMBDA {
       for (int i = 0; i < neurons; i += Pack::width) (share * Pack::load(sums + i)).store(sums + i);
     };
-    lanes.sums(mean, [&](int, int i) PINNQUAD_INLINE_LAMBDA { return Pack::load(x + i); });
+    lanes.sums(mean, [&](int, int i, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum + Pack::load(x + i); });
     divide(mean);
-    lanes.sums(variance, [&](int neuron, int i) PINNQUAD_INLINE_LAMBDA {
+    lanes.sums(variance, [&](int neuron, int i, Pack sum) PINNQUAD_INLINE_LAMBDA {
       const Pack distance = Pack::load(x + i) - Pack::broadcast(mean[neuron]);
-      return distance * distance;
+      return Pack::multiply_add(distance, distance, sum);
     });
     divide(variance);
     invert_deviation();
