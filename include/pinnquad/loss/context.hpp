@@ -126,13 +126,14 @@ struct Context : detail::ContextAirframe<VehicleType> {
 };
 
 namespace detail {
-/// One mini-batch as a loss sees it: a sample is a column. No heap: `MaxSize` is the capacity.
+/// One mini-batch as a loss sees it: a sample is a column, and each quantity's samples stand side by side in memory. No
+/// heap: `MaxSize` is the capacity.
 template <class ScalarType, int InputCount, int OutputCount, int MaxSize>
 struct LossBatch {
   using Scalar = ScalarType;
   template <int Rows>
   using Samples =
-      Eigen::Matrix<Scalar, Rows, Eigen::Dynamic, int(Eigen::ColMajor) | int(Eigen::DontAlign), Rows, MaxSize>;
+      Eigen::Matrix<Scalar, Rows, Eigen::Dynamic, int(Eigen::RowMajor) | int(Eigen::DontAlign), Rows, MaxSize>;
   using Gradient = Samples<OutputCount>;
   static constexpr int inputs = InputCount;
   static constexpr int outputs = OutputCount;

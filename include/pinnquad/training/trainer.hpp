@@ -2,7 +2,9 @@
 // Trains a network: shuffled mini-batches, forward, loss, backward, optimiser step. Composition by type.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -139,25 +141,25 @@ class Trainer {
         refuse("expected a row from 0 to below " + std::to_string(data.size()) + ", found " + std::to_string(rows[i]));
       }
     }
-    loss_batch_.resize(size);
-    for (int i = 0; i < size; ++i) {
-      const Scalar* x = data.features_of(rows[i]);
-      const Scalar* y = data.outputs_of(rows[i]);
-      if (!all_finite(x, Network::inputs) || !all_finite(y, Network::outputs)) {
-        refuse("expected finite numbers, found others in row " + std::to_string(rows[i]));
-      }
-      for (int k = 0; k < Network::inputs; ++k) loss_batch_.features(k, i) = x[k];
-      for (int k = 0; k < Network::outputs; ++k) loss_batch_.target(k, i) = y[k];
+    for (int i = 0; i < size; ++i) {  // copied first: rows drawn at random come from far away, many at a time
+      std::copy_n(data.features_of(rows[i]), Network::inputs, features_ + i * Network::inputs);
+      std::copy_n(data.outputs_of(rows[i]), Network::outputs, targets_ + i * Network::outputs);
     }
-    gradient_.put(loss_batch_.features.data(), size);
+    if (!all_finite(features_, size * Network::inputs) || !all_finite(targets_, size * Network::outputs)) {
+      refuse_row_of(data, rows, size);
+    }
+    loss_batch_.resize(size);
+    detail::transpose<Pack>(features_, Network::inputs, size, Network::inputs, loss_batch_.features.data(), size);
+    detail::transpose<Pack>(targets_, Network::outputs, size, Network::outputs, loss_batch_.target.data(), size);
+    gradient_.put(features_, size);
     gradient_.forward(size);
-    for (int i = 0; i < size; ++i) {
-      for (int k = 0; k < Network::outputs; ++k) loss_batch_.prediction(k, i) = gradient_.output(k, i);
+    for (int k = 0; k < Network::outputs; ++k) {
+      for (int i = 0; i < size; ++i) loss_batch_.prediction(k, i) = gradient_.output(k, i);
     }
     output_gradient_.setZero(Eigen::NoChange, size);
     const Scalar value = loss_.evaluate(context_, loss_batch_, Scalar(1), output_gradient_);
-    for (int i = 0; i < size; ++i) {
-      for (int k = 0; k < Network::outputs; ++k) gradient_.output_delta(k, i) = output_gradient_(k, i);
+    for (int k = 0; k < Network::outputs; ++k) {
+      for (int i = 0; i < size; ++i) gradient_.output_delta(k, i) = output_gradient_(k, i);
     }
     gradient_.backward(size);
     return value;
@@ -226,6 +228,14 @@ class Trainer {
     }
   }
 
+  /// One of these rows is not finite.
+  [[noreturn]] static void refuse_row_of(const Data& data, const int* rows, int size) {
+    const int* const bad = std::find_if(rows, rows + size, [&](int row) {
+      return !all_finite(data.features_of(row), Network::inputs) || !all_finite(data.outputs_of(row), Network::outputs);
+    });
+    refuse("expected finite numbers, found others in row " + std::to_string(*bad));
+  }
+
   auto begin_step() {
     ++steps_;
     const double epochs =
@@ -240,6 +250,8 @@ class Trainer {
   Order order_policy_;
   Gradient gradient_{};
   Batch loss_batch_{};
+  alignas(64) Scalar features_[std::size_t(BatchSize * Network::inputs)] = {};  // of a batch, row by row
+  alignas(64) Scalar targets_[std::size_t(BatchSize * Network::outputs)] = {};
   typename Batch::Gradient output_gradient_{};
   std::vector<int> order_;
   long steps_ = 0;
