@@ -24,7 +24,7 @@ struct SignedCommandSum {
   using Scalar = typename Batch::Scalar;
   using Array = Eigen::Array<Scalar, Eigen::Dynamic, 1, int(Eigen::ColMajor) | int(Eigen::DontAlign), Batch::max_size>;
   using Map = OutputMap<typename Context::Outputs>;
-  using Slope = Eigen::Array<Scalar, Map::size, Eigen::Dynamic, int(Eigen::ColMajor) | int(Eigen::DontAlign), Map::size,
+  using Slope = Eigen::Array<Scalar, Map::size, Eigen::Dynamic, int(Eigen::RowMajor) | int(Eigen::DontAlign), Map::size,
                              Batch::max_size>;
 
   Array commands;              ///< m: sum of sign_i u_i with the allocation's signs, divided by `divisor`
@@ -33,7 +33,13 @@ struct SignedCommandSum {
 
   SignedCommandSum(const Context& context, const Batch& batch, Scalar divisor)
       : commands(Array::Zero(batch.prediction.cols())), slope(Slope::Zero(Map::size, batch.prediction.cols())) {
-    const std::array<Scalar, rotor_count> signs = context.template signs<Axis, Scalar>();
+    std::array<Scalar, rotor_count> signs = context.template signs<Axis, Scalar>();
+    for (Scalar& sign : signs) sign /= divisor;
+    Scalar scale[Map::size], mean[Map::size];
+    for (std::size_t k = 0; k < std::size_t(Map::size); ++k) {
+      scale[k] = Scalar(context.output.standard_deviation[k]);
+      mean[k] = Scalar(context.output.mean[k]);
+    }
     const auto setting = context.template output_setting<typename Context::Outputs, Scalar>();
     for (Eigen::Index sample = 0; sample < commands.size(); ++sample) {
       Scalar x[Context::Features::size], outputs[Map::size], u[rotor_count], by_outputs[Map::slope_count];
@@ -44,16 +50,15 @@ struct SignedCommandSum {
                  Scalar(context.input.mean[feature]);
         }
       }
-      for (int k = 0; k < Map::size; ++k)
-        outputs[k] = batch.prediction(k, sample) * scale(context, k) + mean(context, k);
+      for (int k = 0; k < Map::size; ++k) outputs[k] = batch.prediction(k, sample) * scale[k] + mean[k];
       const Scalar* features = Map::takes_features ? static_cast<const Scalar*>(x) : nullptr;
       Map::commands(features, static_cast<const Scalar*>(outputs), setting, u);
       Map::slopes(features, static_cast<const Scalar*>(outputs), setting, by_outputs);
       for (int i = 0; i < rotor_count; ++i) {
-        const Scalar sign = signs[static_cast<std::size_t>(i)] / divisor;
+        const Scalar sign = signs[static_cast<std::size_t>(i)];
         commands[sample] += sign * u[i];
         for (int k = Map::first_output(i); k < Map::last_output(i); ++k) {
-          slope(k, sample) += sign * scale(context, k) * by_outputs[Map::slope_index(i, k)];
+          slope(k, sample) += sign * scale[k] * by_outputs[Map::slope_index(i, k)];
         }
       }
     }
@@ -67,14 +72,6 @@ struct SignedCommandSum {
     const Scalar value = compare(commands, angular_acceleration, by_commands);
     gradient.array() += slope.rowwise() * by_commands.transpose();
     return value;
-  }
-
- private:
-  static Scalar scale(const Context& context, int output) {
-    return Scalar(context.output.standard_deviation[static_cast<std::size_t>(output)]);
-  }
-  static Scalar mean(const Context& context, int output) {
-    return Scalar(context.output.mean[static_cast<std::size_t>(output)]);
   }
 };
 
@@ -102,7 +99,8 @@ struct TanhStep {
 };
 
 namespace detail {
-/// The steps of both series from sample to sample.
+/// The steps of both series from sample to sample. What is stepped is aligned and as long as the series, with a
+/// difference of 0 at the end: Eigen would do the lanes around whole packs one by one.
 template <class Array>
 struct StepPairs {
   using Scalar = typename Array::Scalar;
@@ -111,19 +109,25 @@ struct StepPairs {
 
   template <class Step>
   StepPairs(const Step& step, const Array& series_m, const Array& series_n)
-      : count(series_m.size() > 0 ? series_m.size() - 1 : 0),
-        m(series_m.tail(count) - series_m.head(count)),
-        n(series_n.tail(count) - series_n.head(count)) {
-    step.apply(m);
-    step.apply(n);
-  }
+      : count(series_m.size() > 0 ? series_m.size() - 1 : 0), m(steps(step, series_m)), n(steps(step, series_n)) {}
 
   /// Adds dL/d series_m, given dL/d step_m.
   template <class Step, class Derivative>
   void add_gradient(const Step& step, const Eigen::ArrayBase<Derivative>& by_step, Array& gradient) const {
     const Array slope = by_step.derived() * step.slope(m);
-    gradient.tail(count) += slope;
-    gradient.head(count) -= slope;
+    gradient.tail(count) += slope.head(count);
+    gradient.head(count) -= slope.head(count);
+  }
+
+ private:
+  template <class Step>
+  Array steps(const Step& step, const Array& series) const {
+    alignas(64) Scalar values[static_cast<std::size_t>(Array::MaxSizeAtCompileTime)];
+    Eigen::Map<Array, Eigen::Aligned64> differences(values, series.size());
+    differences.setZero();
+    differences.head(count) = series.tail(count) - series.head(count);
+    step.apply(differences);
+    return differences;
   }
 };
 }  // namespace detail
@@ -140,7 +144,7 @@ typename Array::Scalar local_monotonicity(const Step& step, const Array& m, cons
   if (steps.count < 1) return Scalar(0);
   const auto pairs = static_cast<Scalar>(steps.count);
   steps.add_gradient(step, (-weight / pairs) * steps.n, gradient);
-  return (Scalar(1) - steps.m * steps.n).sum() / pairs;
+  return (Scalar(1) - steps.m * steps.n).head(steps.count).sum() / pairs;
 }
 
 /// Form of the loss, default: both series divided by their standard deviations in the training set, mean over the pairs
@@ -182,7 +186,7 @@ struct Match {
     if (steps.count < 1) return Scalar(0);
     const auto pairs = static_cast<Scalar>(steps.count);
     steps.add_gradient(step, (Scalar(2) * weight / pairs) * (steps.m - steps.n), gradient);
-    return (steps.m - steps.n).square().sum() / pairs;
+    return (steps.m - steps.n).square().head(steps.count).sum() / pairs;
   }
 };
 
