@@ -32,7 +32,7 @@ struct SignedCommandSum {
   Array angular_acceleration;  ///< n: standardised, as the network is given it
 
   SignedCommandSum(const Context& context, const Batch& batch, Scalar divisor)
-      : commands(Array::Zero(batch.prediction.cols())), slope(Slope::Zero(Map::size, batch.prediction.cols())) {
+      : commands(batch.prediction.cols()), slope(Map::size, batch.prediction.cols()) {
     std::array<Scalar, rotor_count> signs = context.template signs<Axis, Scalar>();
     for (Scalar& sign : signs) sign /= divisor;
     Scalar scale[Map::size], mean[Map::size];
@@ -54,13 +54,16 @@ struct SignedCommandSum {
       const Scalar* features = Map::takes_features ? static_cast<const Scalar*>(x) : nullptr;
       Map::commands(features, static_cast<const Scalar*>(outputs), setting, u);
       Map::slopes(features, static_cast<const Scalar*>(outputs), setting, by_outputs);
+      Scalar sum(0), by_prediction[Map::size] = {};
       for (int i = 0; i < rotor_count; ++i) {
         const Scalar sign = signs[static_cast<std::size_t>(i)];
-        commands[sample] += sign * u[i];
+        sum += sign * u[i];
         for (int k = Map::first_output(i); k < Map::last_output(i); ++k) {
-          slope(k, sample) += sign * scale[k] * by_outputs[Map::slope_index(i, k)];
+          by_prediction[k] += sign * scale[k] * by_outputs[Map::slope_index(i, k)];
         }
       }
+      commands[sample] = sum;
+      for (int k = 0; k < Map::size; ++k) slope(k, sample) = by_prediction[k];
     }
     angular_acceleration = batch.features.row(Context::Features::angular_acceleration + Axis::axis).transpose().array();
   }
