@@ -4,6 +4,7 @@
 #pragma once
 
 #include "pinnquad/nn/batch_norm.hpp"
+#include "pinnquad/nn/kernel/register_layer.hpp"
 #include "pinnquad/training/backward.hpp"
 
 namespace pinnquad {
@@ -12,6 +13,23 @@ namespace pinnquad {
 inline constexpr double batch_norm_momentum = 0.1;
 
 namespace detail {
+
+/// The sum of a pack's lanes: those of a block of rows, added as a layer in registers adds them.
+template <class Pack>
+PINNQUAD_ALWAYS_INLINE typename Pack::Scalar sum_of_lanes(const Pack& v) noexcept {
+  if constexpr (keeps_layers_in_registers<Pack>) {
+    Pack blocks[Pack::blocks_per_register];
+    for (Pack& block : blocks) block = Pack::broadcast(typename Pack::Scalar(0));
+    blocks[0] = v;
+    return Pack::collect(blocks).sum_of_values().first_value();
+  } else {
+    alignas(64) typename Pack::Scalar lane[Pack::width];
+    v.store(lane);
+    typename Pack::Scalar sum = lane[0];
+    for (int i = 1; i < Pack::width; ++i) sum += lane[i];
+    return sum;
+  }
+}
 
 /// Forward: xhat = (x - mean) / sqrt(var + 1e-5), y = gamma xhat + beta; mean and var (divisor N) of the N samples.
 /// Backward: dbeta = sum dy, dgamma = sum dy xhat, dx = gamma / sqrt(var + 1e-5) (dy - dbeta / N - xhat dgamma / N).
@@ -96,10 +114,11 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
     const Lanes lanes(samples);
     const auto distance = [&](int neuron, int i)
                               PINNQUAD_INLINE_LAMBDA { return Pack::load(x + i) - Pack::broadcast(mean[neuron]); };
-    Scalar* const beta_gradient = gradient + neurons;
-    lanes.sums(beta_gradient, [&](int, int i, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum + Pack::load(delta + i); });
-    lanes.sums(gradient, [&](int neuron, int i, Pack sum) PINNQUAD_INLINE_LAMBDA {
-      return Pack::multiply_add(Pack::load(delta + i), distance(neuron, i), sum);
+    const Scalar* const beta_gradient = gradient + neurons;
+    lanes.sums(gradient, [&](int neuron, int i, Pack& gamma_sum, Pack& beta_sum) PINNQUAD_INLINE_LAMBDA {
+      const Pack dy = Pack::load(delta + i);
+      gamma_sum = Pack::multiply_add(dy, distance(neuron, i), gamma_sum);
+      beta_sum = beta_sum + dy;
     });
     for (int i = 0; i < neurons; i += Pack::width) {
       (Pack::load(gradient + i) * Pack::load(inverse_deviation + i)).store(gradient + i);
@@ -145,44 +164,48 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
         });
       }
     }
-    /// result[neuron] = the sum over the samples; add(neuron, index of the pack, sum) gives the sum with that pack.
+    /// Two sums over the samples of each neuron, to result[neuron] and behind the neurons; add(neuron, index of the
+    /// pack, first, second) adds that pack.
     template <class Add>
     PINNQUAD_ALWAYS_INLINE void sums(Scalar* result, const Add& add) const noexcept {
-      alignas(64) Scalar by_lane[neurons * Pack::width];
       const Pack zero = Pack::broadcast(Scalar(0));
       for (int neuron = 0; neuron < Size; ++neuron) {
-        Pack sum[vectors];
-        for (Pack& s : sum) s = zero;
+        Pack first[2] = {zero, zero}, second[2] = {zero, zero};
         int i = neuron * stride;
         for (; i < neuron * stride + whole; i += block) {
-          unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA { sum[v] = add(neuron, i + v * Pack::width, sum[v]); });
+          unroll<vectors>([&](auto v)
+                              PINNQUAD_INLINE_LAMBDA { add(neuron, i + v * Pack::width, first[v], second[v]); });
         }
         if (samples > whole) {
           unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
-            const Pack seen = add(neuron, i + v * Pack::width, zero);
-            sum[v] = sum[v] + Pack::where_positive(Pack::load(used + v * Pack::width), seen);
+            const Pack counts = Pack::load(used + v * Pack::width);
+            Pack seen[2] = {zero, zero};
+            add(neuron, i + v * Pack::width, seen[0], seen[1]);
+            first[v] = first[v] + Pack::where_positive(counts, seen[0]);
+            second[v] = second[v] + Pack::where_positive(counts, seen[1]);
           });
         }
-        if constexpr (vectors > 1) sum[0] = sum[0] + sum[1];
-        sum[0].store(by_lane + neuron * Pack::width);
+        result[neuron] = sum_of_lanes(first[0] + first[1]);
+        result[neurons + neuron] = sum_of_lanes(second[0] + second[1]);
       }
-      add_lanes<Pack>(by_lane, Size, result);
     }
   };
 
+  /// By the distances from the batch's first sample: one pass, and nothing is lost where the mean is large.
   void take_statistics(const Scalar* x, int samples) noexcept {
-    const Lanes lanes(samples);
-    const Pack share = Pack::broadcast(Scalar(1) / Scalar(samples));
-    const auto divide = [&](Scalar* sums) PINNQUAD_INLINE_LAMBDA {
-      for (int i = 0; i < neurons; i += Pack::width) (share * Pack::load(sums + i)).store(sums + i);
-    };
-    lanes.sums(mean, [&](int, int i, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum + Pack::load(x + i); });
-    divide(mean);
-    lanes.sums(variance, [&](int neuron, int i, Pack sum) PINNQUAD_INLINE_LAMBDA {
-      const Pack distance = Pack::load(x + i) - Pack::broadcast(mean[neuron]);
-      return Pack::multiply_add(distance, distance, sum);
+    alignas(64) Scalar sums[2 * neurons] = {}, origin[neurons] = {};
+    for (int neuron = 0; neuron < Size; ++neuron) origin[neuron] = x[neuron * stride];
+    Lanes(samples).sums(sums, [&](int neuron, int i, Pack& sum, Pack& squares) PINNQUAD_INLINE_LAMBDA {
+      const Pack distance = Pack::load(x + i) - Pack::broadcast(origin[neuron]);
+      sum = sum + distance;
+      squares = Pack::multiply_add(distance, distance, squares);
     });
-    divide(variance);
+    const Pack share = Pack::broadcast(Scalar(1) / Scalar(samples));
+    for (int i = 0; i < neurons; i += Pack::width) {
+      const Pack distance = share * Pack::load(sums + i);
+      (Pack::load(origin + i) + distance).store(mean + i);
+      Pack::positive_part(share * Pack::load(sums + neurons + i) - distance * distance).store(variance + i);
+    }
     invert_deviation();
   }
   void copy_running_statistics() noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Transposes a matrix of any size, and adds up its rows, a pack of rows by four columns at a time where the pack can.
+// Transposes a matrix of any size, a pack of rows by four columns at a time where the pack can.
 #pragma once
 
 #include <utility>
@@ -35,29 +35,6 @@ PINNQUAD_ALWAYS_INLINE void transpose(const typename Pack::Scalar* from, int fro
   }
   for (int column = done; column < columns; ++column) {
     for (int row = 0; row < rows; ++row) to[column * to_stride + row] = from[row * from_stride + column];
-  }
-}
-
-/// sum[row] = the sum of x[row][0, width) for whole packs of rows that stand one behind the other.
-template <class Pack>
-PINNQUAD_ALWAYS_INLINE void add_lanes(const typename Pack::Scalar* x, int rows, typename Pack::Scalar* sum) noexcept {
-  constexpr int width = Pack::width;
-  if constexpr (is_detected<FourColumnsOf, Pack>) {
-    for (int row = 0; row < rows; row += width) {
-      Pack total[4];
-      Pack::four_columns(x + row * width, width, total);
-      for (int column = 4; column < width; column += 4) {
-        Pack four[4];
-        Pack::four_columns(x + row * width + column, width, four);
-        unroll<4>([&](auto c) PINNQUAD_INLINE_LAMBDA { total[c] = total[c] + four[c]; });
-      }
-      ((total[0] + total[1]) + (total[2] + total[3])).store(sum + row);
-    }
-  } else {
-    for (int row = 0; row < rows; ++row) {
-      sum[row] = x[row * width];
-      for (int column = 1; column < width; ++column) sum[row] += x[row * width + column];
-    }
   }
 }
 
