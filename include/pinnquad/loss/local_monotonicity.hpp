@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <type_traits>
 
 #include "pinnquad/core/detected.hpp"
@@ -125,12 +126,23 @@ struct StepPairs {
  private:
   template <class Step>
   Array steps(const Step& step, const Array& series) const {
-    alignas(64) Scalar values[static_cast<std::size_t>(Array::MaxSizeAtCompileTime)];
-    Eigen::Map<Array, Eigen::Aligned64> differences(values, series.size());
+    constexpr int most = Array::MaxSizeAtCompileTime;
+    Array result(series.size());
+    if constexpr (most == Eigen::Dynamic) {
+      take(step, series, result);
+    } else {
+      alignas(64) Scalar values[std::size_t(most)];
+      Eigen::Map<Array, Eigen::Aligned64> aligned(values, series.size());
+      take(step, series, aligned);
+      result = aligned;
+    }
+    return result;
+  }
+  template <class Step, class Differences>
+  void take(const Step& step, const Array& series, Differences& differences) const {
     differences.setZero();
     differences.head(count) = series.tail(count) - series.head(count);
     step.apply(differences);
-    return differences;
   }
 };
 }  // namespace detail

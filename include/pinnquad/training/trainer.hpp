@@ -35,7 +35,7 @@ struct TimeOrderedBatches {
   void arrange(std::vector<int>&, Engine&) const {}
 };
 
-/// Owns the network's parameters, the optimiser's moments and the work space of one batch (about 0.5 MB for the
+/// Owns the network's parameters, the optimiser's moments and the work space of one batch (about 0.25 MB for the
 /// paper's network: put it on the heap or a large stack).
 template <class NetworkType, class LossType, class OptimizerType, class ContextType, class Order = ShuffledBatches,
           int BatchSize = 64>
