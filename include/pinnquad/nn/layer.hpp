@@ -7,7 +7,7 @@
 // computed inside the layer before it where it has forms for a whole pack too (relu.hpp), or says that they are those
 // of each lane: `static constexpr bool lane_by_lane = true` (gelu.hpp). Layers are types without data: a network owns
 // all parameters in one flat array, as the exported header does. forward(), activate() and the slope are noexcept. They
-// see samples alone: a batch that is padded to whole packs repeats a sample, or leaves the padding out (training).
+// see samples alone: a batch that is padded to whole packs repeats a sample.
 // Lanes past the last neuron may hold anything, NaN too: they are not read.
 //
 // A layer has no memory. A recurrent cell is a layer from [new inputs, state] to [outputs, next state]; forward()

@@ -3,9 +3,9 @@
 //   static void backward(const Scalar* parameters, const Scalar* x, const Scalar* y, const Scalar* dy, Scalar* dx,
 //                        Scalar* parameter_gradient) noexcept;
 // dx is set, parameter_gradient is added to. Dense needs none, and an element-wise layer has its slope (nn/layer.hpp).
-// Over a mini-batch activations are [feature][sample], a sample per lane, each row as long as the largest batch in whole
-// blocks. A forward pass runs over whole packs: lanes behind the last sample hold copies of it. A backward pass may leave
-// anything there, and no sum over samples takes it in.
+// Over a mini-batch activations are [feature][sample], a sample per lane, each row as long as the largest batch in
+// whole blocks. A forward pass runs over whole packs: lanes behind the last sample hold copies of it. A backward pass
+// may leave anything there, and no sum over samples takes it in.
 #pragma once
 
 #include <cstddef>
@@ -110,9 +110,9 @@ struct BatchLayer : BatchParameters<typename Layer::Scalar, padded<Pack>(Layer::
   }
 };
 
-/// Dense: dx = W^T dy, dW = dy x^T, db = dy, by register tiles. A row of `stored` is that of an output: its weights, its
-/// bias, padding. The gradient is the product of dy with the samples' inputs, transposed, each with a 1 for the bias
-/// behind.
+/// Dense: dx = W^T dy, dW = dy x^T, db = dy, by register tiles. A row of `stored` is that of an output: its weights,
+/// its bias, padding. The gradient is the product of dy with the samples' inputs, transposed, each with a 1 for the
+/// bias behind.
 template <class Scalar, int In, int Out, bool HasBias, class Pack, int BatchSize>
 struct BatchDense : BatchParameters<Scalar, Out * padded<Pack>(In + (HasBias ? 1 : 0))> {
   static constexpr bool fuses_activation = true;

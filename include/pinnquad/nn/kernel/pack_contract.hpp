@@ -8,8 +8,8 @@
 //   settle(): is worked out here (an empty function, or an empty `asm` that reads and writes the register)
 //   tile_rows, tile_vectors: rows and packs of the tile of sums that fits the registers (tile.hpp)
 //
-// One that has four_columns(const Scalar* x, int stride, Pack (&column)[4]), lane `row` of column[c] = x[row * stride + c],
-// transposes faster than one by one (transpose.hpp).
+// One that has four_columns(const Scalar* x, int stride, Pack (&column)[4]), lane `row` of column[c] =
+// x[row * stride + c], transposes faster than one by one (transpose.hpp).
 //
 // The second contract: how a dense layer lies in registers (register_layer.hpp). A pack that states `blocks_at_once`
 // takes part.
