@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "airframe/airframe_command.hpp"
+#include "command_line/best_build.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/interrupt.hpp"
 #include "convert/convert_command.hpp"
@@ -49,5 +50,8 @@ int run(int argument_count, char** arguments, std::string& name) {
 int main(int argument_count, char** arguments) {
   programs::catch_interrupt();
   std::string name = "pinnquad";
-  return programs::run_program(name, [&] { return run(argument_count, arguments, name); });
+  return programs::run_program(name, [&] {
+    programs::become_best_build(arguments);
+    return run(argument_count, arguments, name);
+  });
 }

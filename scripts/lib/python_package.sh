@@ -4,12 +4,13 @@
 # The Python package of this tree in a fresh venv. Sourced, never run; needs stage.sh and packages.sh.
 
 # install_python_package: builds the wheel and installs it without network, for Debian's Python, whatever python3 comes first
-# in PATH: the packages are for this one. Sets venv. What was compiled before is not compiled again.
+# in PATH: the packages are for this one. Sets venv. What was compiled before is not compiled again. For any x86-64 alone:
+# PINNQUAD_INSTRUCTION_SETS adds to it what is shipped.
 install_python_package() {
   require_packages g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libtomlplusplus-dev pybind11-dev python3-dev \
     python3-venv python3-pip python3-setuptools python3-wheel python3-numpy
   unset PYTHONHOME PYTHONPATH # nothing of the caller's own gets in
-  export PYTHONDONTWRITEBYTECODE=1 PYTHONNOUSERSITE=1
+  export PYTHONDONTWRITEBYTECODE=1 PYTHONNOUSERSITE=1 PINNQUAD_INSTRUCTION_SETS=${PINNQUAD_INSTRUCTION_SETS-}
   local build=$PWD/build/python
   venv=$build/venv
   rm -rf "$venv" "$build/wheels"

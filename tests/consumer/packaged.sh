@@ -58,9 +58,11 @@ fi
 # A build tree where the program is built, and then its page: a stand-in that says so.
 if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null && [ -x "$program" ]; then
   tree=$work/with_program
-  cmake -S "$root" -B "$tree" -G Ninja "${off[@]}" -DPINNQUAD_BUILD_TOOLS=ON -DCMAKE_CXX_COMPILER="${CXX:-g++}" >/dev/null
-  mkdir -p "$tree/bin" "$tree/share/pinnquad"
+  cmake -S "$root" -B "$tree" -G Ninja "${off[@]}" -DPINNQUAD_BUILD_TOOLS=ON -DPINNQUAD_INSTRUCTION_SETS=x86-64-v3 \
+    -DCMAKE_CXX_COMPILER="${CXX:-g++}" >/dev/null
+  mkdir -p "$tree/bin" "$tree/libexec" "$tree/share/pinnquad"
   cp -- "$program" "$tree/bin/"
+  cp -- "$program" "$tree/libexec/pinnquad-x86-64-v3"
   watch() { # <program>: flies with a page
     rm -f -- "$work/flight.html"
     "$1" fly --samples 20 --out "$work/flight.csv" --watch "$work/flight.html" 2>&1
@@ -71,6 +73,7 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null && [ -
   (cd "$tree" && cpack >/dev/null)
   dpkg-deb -x "$tree"/pinnquad_*.deb "$work/installed"
   mv -- "$work/installed" "$work/moved"
+  if [ "$(uname -m)" = x86_64 ] && [ ! -x "$work/moved/usr/libexec/pinnquad-x86-64-v3" ]; then echo ".deb: no build for AVX2"; exit 1; fi
   for here in "$tree" "$work/moved/usr"; do
     if ! said=$(watch "$here/bin/pinnquad") || ! grep -q "the stand-in" "$work/flight.html"; then echo "$here: no page: $said"; exit 1; fi
   done

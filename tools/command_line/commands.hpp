@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line/build_facts.hpp"
 #include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/help.hpp"
@@ -74,7 +75,7 @@ inline int run_chosen(const std::vector<Command>& commands) {
 /// who asks for a command that there is not, which program has it.
 inline std::optional<int> choose_command(CLI::App& program, int argument_count, char** arguments, std::string& name,
                                          const std::string& elsewhere = {}) {
-  detail::complete(program, program.get_name() + " " + PINNQUAD_VERSION);
+  detail::complete(program, program.get_name() + " " + PINNQUAD_VERSION + "\ninstruction set: " + instruction_set());
   program
       .add_option_function<std::string>(
           "--config", [&program](const std::string& path) { take_settings(program, path); },

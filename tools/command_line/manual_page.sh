@@ -127,6 +127,15 @@ A fault of the program itself: one line on standard error says which; please rep
 .B 130
 Interrupted by Ctrl\\-C; what is finished is kept, as the command says.
 TEXT
+  if [ "$name" = pinnquad ]; then
+    cat <<'TEXT'
+
+[ENVIRONMENT]
+.TP
+.B PINNQUAD_INSTRUCTION_SET
+x86\-64, x86\-64\-v3 or x86\-64\-v4: the build of the program that runs, in place of the best that the processor can run.
+TEXT
+  fi
 } >"$work/include"
 
 # what help2man reads: commands and exit codes stand in sections of their own
@@ -134,5 +143,6 @@ printf '#!/bin/sh\n"%s" "$@" | sed "/^Commands:/,/^$/d; /^pinnquad[-a-z]* COMMAN
 chmod +x "$work/$name"
 what="from a quadrotor's flight to a network that may fly"
 [ "$name" = pinnquad ] || what="the paper's study of pinnquad: its models trained and judged, seed by seed"
-(cd -- "$work" && help2man --no-info --section 1 --name "$what" --include include "./$name" >page)
+version=$("$program" --version | sed -n '1s/.* //p') # without this machine's instruction set
+(cd -- "$work" && help2man --no-info --version-string "$version" --section 1 --name "$what" --include include "./$name" >page)
 mv -- "$work/page" "$page"

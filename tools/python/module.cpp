@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "command_line/build_facts.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/version.hpp"
 #include "python/bindings.hpp"
@@ -104,6 +105,7 @@ void bind_status(py::module_& module) {
 
 PYBIND11_MODULE(_core, module) {
   module.attr("__version__") = PINNQUAD_VERSION;
+  module.attr("instruction_set") = programs::instruction_set();
   python::bind_errors(module);
   python::bind_status(module);
   python::bind_airframes(module);

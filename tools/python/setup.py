@@ -28,15 +28,18 @@ class CMakeBuild(build_ext):
         build = Path(self.build_temp).resolve()
         parts = {"TESTS": "OFF", "EXAMPLES": "OFF", "TOOLS": "OFF", "BENCH": "OFF", "LOGS": "ON", "PYTHON": "ON",
                  "AT_ONCE": "ON"}
+        sets = os.environ.get("PINNQUAD_INSTRUCTION_SETS", "x86-64-v3;x86-64-v4")  # docs/packages.md
         subprocess.run(
             ["cmake", "-S", str(ROOT), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-             "-DCMAKE_POSITION_INDEPENDENT_CODE=ON", f"-DPython_EXECUTABLE={sys.executable}",
+             "-DCMAKE_POSITION_INDEPENDENT_CODE=ON", f"-DPINNQUAD_INSTRUCTION_SETS={sets}",
+             f"-DPython_EXECUTABLE={sys.executable}",
              *[f"-DPINNQUAD_BUILD_{part}={value}" for part, value in parts.items()]], check=True)
         jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1))
-        subprocess.run(["cmake", "--build", str(build), "-j", jobs, "--target", "pinnquad_python"], check=True)
+        subprocess.run(["cmake", "--build", str(build)], check=True, env={**os.environ, "CMAKE_BUILD_PARALLEL_LEVEL": jobs})
         module = Path(self.get_ext_fullpath(ext.name))
         module.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(next((build / "python").glob("_core*.so")), module)
+        for built in (build / "python").glob("_core*.so"):
+            shutil.copy(built, module.parent)
 
 
 (ROOT / "build").mkdir(exist_ok=True)

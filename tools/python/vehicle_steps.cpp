@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-// Compiled once per instruction set, with its table's name as PINNQUAD_STEPS. It may emit nothing that another object
-// could take: templates are on Lanes, which are named by the instruction set, and the rest is in this file alone.
 #include "python/vehicle_steps.hpp"
 
 #include <cstring>
@@ -108,8 +106,12 @@ std::unique_ptr<VehicleSteps> steps_of(const Site<double>& site, double step_s, 
   return std::unique_ptr<VehicleSteps>(new StepsOf<Effects...>(site, step_s, effects...));
 }
 
-std::unique_ptr<VehicleSteps> with_paper_effects(const Site<double>& site, double step_s, const PaperEffects& effects,
-                                                 GroundEffectModel ground_effect) {
+}  // namespace
+
+VehicleSteps::~VehicleSteps() = default;
+
+std::unique_ptr<VehicleSteps> steps_in_lanes(const Site<double>& site, double step_s, const PaperEffects& effects,
+                                             GroundEffectModel ground_effect) {
   const auto& [air, wind, gust, drag] = effects;
   switch (ground_effect) {
     case GroundEffectModel::cheeseman_bennett:
@@ -120,12 +122,8 @@ std::unique_ptr<VehicleSteps> with_paper_effects(const Site<double>& site, doubl
   return steps_of(site, step_s, air, wind, gust, drag);
 }
 
-std::unique_ptr<VehicleSteps> with_all_effects(const Site<double>& site, double step_s, const AllEffects& effects) {
+std::unique_ptr<VehicleSteps> steps_in_lanes(const Site<double>& site, double step_s, const AllEffects& effects) {
   return std::apply([&](const auto&... each) { return steps_of(site, step_s, each...); }, effects);
 }
-
-}  // namespace
-
-const CompiledSteps PINNQUAD_STEPS = {detail::instruction_set.data(), with_paper_effects, with_all_effects};
 
 }  // namespace python

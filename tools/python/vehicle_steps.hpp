@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Steps of many vehicles in lanes, compiled once per instruction set (vehicle_steps.cpp); the one that runs here is
-// taken when the module is loaded. Each vehicle has the bits of its step alone.
+// Steps of many vehicles in lanes: each has the bits of its step alone.
 #pragma once
 
 #include <cstddef>
@@ -34,15 +33,10 @@ class VehicleSteps {
   virtual std::size_t lanes() const noexcept = 0;
 };
 
-/// The table of an object compiled for an instruction set.
-struct CompiledSteps {
-  const char* instruction_set;
-  std::unique_ptr<VehicleSteps> (*with_paper_effects)(const pinnquad::Site<double>& site, double step_s,
-                                                      const PaperEffects& effects,
-                                                      pinnquad::GroundEffectModel ground_effect);
-  std::unique_ptr<VehicleSteps> (*with_all_effects)(const pinnquad::Site<double>& site, double step_s,
-                                                    const AllEffects& effects);
-};
-extern const CompiledSteps steps_avx2, steps_avx512;
+/// Under the effects of the paper's flights, and under all. Airframes are set before the first step.
+std::unique_ptr<VehicleSteps> steps_in_lanes(const pinnquad::Site<double>& site, double step_s,
+                                             const PaperEffects& effects, pinnquad::GroundEffectModel ground_effect);
+std::unique_ptr<VehicleSteps> steps_in_lanes(const pinnquad::Site<double>& site, double step_s,
+                                             const AllEffects& effects);
 
 }  // namespace python

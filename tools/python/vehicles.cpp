@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "pinnquad/control/feed_forward.hpp"
-#include "pinnquad/core/processor.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 #include "python/effects.hpp"
@@ -23,21 +22,6 @@ using OneState = VehicleState<double>;
 
 static_assert(sizeof(OneState) == state_numbers * sizeof(double),
               "pinnquad: vehicles are shown to Python as rows of 18 numbers");
-
-#if defined(PINNQUAD_STEPS_IN_LANES)
-/// The fastest that runs here, or null.
-const CompiledSteps* steps_in_lanes() {
-  static const CompiledSteps* const chosen = []() -> const CompiledSteps* {
-    for (const CompiledSteps* candidate : {&steps_avx512, &steps_avx2}) {
-      if (runs_on_this_processor(candidate->instruction_set)) return candidate;
-    }
-    return nullptr;
-  }();
-  return chosen;
-}
-#else
-const CompiledSteps* steps_in_lanes() { return nullptr; }
-#endif
 
 /// Parts of a state.
 constexpr std::array<RowPart, 7> parts = {
@@ -236,17 +220,10 @@ class Vehicles {
     return vehicles;
   }
 
-  /// All of them, where processor and airframes allow it.
+  /// All of them, where their rotors allow it.
   void put_in_lanes() {
-    lanes_.reset();
-    const CompiledSteps* const compiled = steps_in_lanes();
-    if (compiled == nullptr) return;
     lanes_ = vehicle_.with_effects([&](const auto& effects, auto... ground_effect) {
-      if constexpr (sizeof...(ground_effect) > 0) {
-        return compiled->with_paper_effects(vehicle_.site(), physics_step_s_, effects, ground_effect...);
-      } else {
-        return compiled->with_all_effects(vehicle_.site(), physics_step_s_, effects);
-      }
+      return steps_in_lanes(vehicle_.site(), physics_step_s_, effects, ground_effect...);
     });
     if (airframes_.size() == 1) {
       lanes_->set_airframe(airframes_[0].value);
@@ -307,13 +284,11 @@ class Vehicles {
   double physics_step_s_;
   SwitchedQuadrotor vehicle_;  ///< whose effects all have
   std::vector<OneState> states_;
-  std::unique_ptr<VehicleSteps> lanes_;  ///< null where processor or rotors are not those of lanes
+  std::unique_ptr<VehicleSteps> lanes_;  ///< null where rotors are not those of lanes
   bool busy_ = false;
 };
 
 }  // namespace
-
-VehicleSteps::~VehicleSteps() = default;
 
 void bind_vehicles(py::module_& module) {
   py::class_<Vehicles> vehicles(module, "Vehicles",

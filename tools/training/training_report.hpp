@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/build_facts.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/csv_table.hpp"
@@ -182,6 +183,7 @@ class TrainingReport {
     json_ = {{"format", report_format},
              {"settings",
               {{"version", PINNQUAD_VERSION},
+               {"instruction_set", instruction_set()},
                {"selection", plan.selection},
                {"models", std::move(kinds)},
                {"airframe", plan.airframe.name},

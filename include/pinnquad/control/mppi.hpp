@@ -29,7 +29,8 @@ struct MppiSettings {
   float attitude_cost = 4;          ///< of 1 - (q . q_wanted)^2, a quarter of the squared angle
   float rate_cost_s2 = 0.02f;       ///< of the planned rates' distance from the trajectory's
   float thrust_cost_s4_m2 = 0.01f;  ///< of the planned thrust's
-  float most_off_m = 6;      ///< a trajectory further off is moved so near; by plans of 0.8 s it is flown to at 8 m/s
+  /// A trajectory further off is moved so near: by plans of 0.8 s it is flown to at 8 m/s. Shorter plans want less.
+  float most_off_m = 6;
   float rate_gain_1_s = 22;  ///< angular acceleration per body rate error, roll and pitch
   float yaw_rate_gain_1_s = 8;
   std::uint32_t seed = 1;

@@ -4,11 +4,12 @@
 Rotors: front right, rear left, front left, rear right; a command is 0 to 1. docs/python.md shows the whole way.
 """
 from ._core import (Airframe, Dataset, Error, Flight, FlightEnded, Identification, Model, Rotor, Simulator, Spin, Status,
-                    Training, Vehicles, __version__, airframe_names, certify, evaluate, ground_effects, identify, train)
+                    Training, Vehicles, __version__, airframe_names, certify, evaluate, ground_effects, identify,
+                    instruction_set, train)
 from .effects import Effects
 from .environment import HoverEnv, VectorHoverEnv
 from .flights import fly
 
 __all__ = ["Airframe", "Dataset", "Effects", "Error", "Flight", "FlightEnded", "HoverEnv", "Identification", "Model",
            "Rotor", "Simulator", "Spin", "Status", "Training", "VectorHoverEnv", "Vehicles", "airframe_names", "certify",
-           "evaluate", "fly", "ground_effects", "identify", "train"]
+           "evaluate", "fly", "ground_effects", "identify", "instruction_set", "train"]

@@ -16,6 +16,7 @@ Flights = Union["Dataset", "Flight", Sequence["Flight"]]
 Triple = Union[Sequence[float], Numbers]
 
 __version__: str
+instruction_set: str
 ground_effects: tuple[str, ...]
 
 class Error(Exception): ...
