@@ -104,7 +104,7 @@ class RegressionSums {
 
 namespace detail {
 
-/// A B. Each other form of a product of Eigen's takes each translation unit that fits a ridge up to half a second longer to
+/// A B. Each other form of Eigen's products takes each translation unit that fits a ridge up to half a second longer to
 /// compile.
 inline Eigen::MatrixXd matrix_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return a * b; }
 
