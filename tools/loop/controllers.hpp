@@ -137,7 +137,8 @@ class MppiPolicy {
   }
   static pinnquad::MppiSettings settings(const LoopGains& gains, double speed_m_s) {
     pinnquad::MppiSettings result;
-    result.most_off_m = static_cast<float>(speed_m_s / 1.5);
+    constexpr double speed_per_distance_1_s = 1.5;  // 8 m/s at 6 m by these plans, and a margin
+    result.most_off_m = static_cast<float>(speed_m_s / speed_per_distance_1_s);
     result.position_cost_1_m2 *= static_cast<float>(gains.outer);
     result.velocity_cost_s2_m2 *= static_cast<float>(gains.outer);
     result.rate_gain_1_s *= static_cast<float>(gains.inner);
