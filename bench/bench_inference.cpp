@@ -43,18 +43,6 @@ void register_eigen(const PaperNetwork& network) {
   register_model("naive_eigen_rowmajor", naive_rowmajor, network);
 }
 
-/// A predictor as an exported model runs it: what of it is a network on the vector unit.
-template <class Predictor>
-struct PackedPredictor {
-  explicit PackedPredictor(const Predictor& predictor)
-      : parameters(predictor.parameters), packed(detail::packed_inner<Predictor>(parameters.data())) {}
-  void forward(const float* x, float* y) const noexcept {
-    detail::forward_packed<Predictor>(parameters.data(), packed, x, y);
-  }
-  typename Predictor::Parameters parameters;
-  detail::PackedInner<Predictor> packed;
-};
-
 /// Latency of a predictor under a name: as many outputs as there are inputs to take them are fed back.
 template <class Net>
 void register_network(const std::string& name) {
@@ -64,13 +52,10 @@ void register_network(const std::string& name) {
     for (float& p : drawn.parameters) p = static_cast<float>(uniform(engine, -1.0, 1.0)) / 8.0F;
     return drawn;
   }();
-  using Packed = std::conditional_t<is_network<Net>, PackedNetwork<Net>, PackedPredictor<Net>>;
-  static const Packed packed = [] {
-    if constexpr (is_network<Net>) {
-      return Packed(network.parameters);
-    } else {
-      return Packed(network);
-    }
+  static const auto packed = [] {  // as an exported model runs it
+    detail::PackedPredictor<Net> made;
+    made.assign(network.parameters.data());
+    return made;
   }();
   static const std::array<float, Net::inputs> start = [] {
     std::mt19937_64 engine(4);

@@ -46,12 +46,12 @@ struct ModelScales {
   ModelRecords<Scalar> records{};
 };
 
-/// A network's weights as the vector unit's kernel reads them, and where a view finds them; nothing without a vector
-/// unit, and for a predictor without a network.
-template <class Answer, bool Packs = has_vector_unit<typename Answer::Scalar>&& InnerNetwork<Answer>::exists>
+/// A predictor's weights as the vector unit's kernel reads them, and where a view finds them; nothing without a vector
+/// unit, and for a predictor that it can't run.
+template <class Answer, bool Packs = has_vector_unit<typename Answer::Scalar>&& is_packable<Answer>>
 struct PackedWeights {
   static constexpr bool exist = true;
-  using type = PackedInner<Answer>;
+  using type = PackedPredictor<Answer>;
   const type* packed = nullptr;
 };
 template <class Answer>
@@ -80,8 +80,8 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
   using typename Scales::Features;
   using typename Scales::Network;
   using typename Scales::Scalar;
-  /// Memory for the weights as the vector unit wants them: a PackedNetwork, about as large as they are and aligned to
-  /// 64 bytes; empty where there is no vector unit, and for a predictor without a network.
+  /// Memory for the weights as the vector unit wants them: about as large as they are and aligned to 64 bytes; empty
+  /// where there is no vector unit, and for a predictor that it can't run.
   using Packed = typename Place::type;
 
   /// Rows of scalars in the block. As made, one row of zeros.
@@ -155,7 +155,7 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
     const Status status = open(block, length, view);
     if constexpr (Place::exist) {
       if (status == Status::ok) {
-        memory.assign(view.parameters_ + detail::InnerNetwork<Network>::first);
+        memory.assign(view.parameters_);
         view.Place::packed = &memory;
       }
     }
@@ -172,7 +172,7 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
     }
     if constexpr (Place::exist) {
       if (Place::packed != nullptr) {
-        return detail::forward_packed<Network>(parameters_, *Place::packed, standardised, outputs);
+        return Place::packed->forward(standardised, outputs);
       }
     }
     Network::forward(parameters_, standardised, outputs);

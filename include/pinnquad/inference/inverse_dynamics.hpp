@@ -18,17 +18,19 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// The model's weights as the vector unit wants them, packed by the compiler.
 template <class Model>
-inline constexpr PackedInner<typename Model::Network> packed_model =
-    packed_inner<typename Model::Network>(Model::parameters.data());
+inline constexpr PackedPredictor<typename Model::Network> packed_model = [] {
+  PackedPredictor<typename Model::Network> packed;
+  packed.assign(Model::parameters.data());
+  return packed;
+}();
 
 /// True for a model whose packed_weights() may be those of the vector unit's kernel: a header's always are, a view's if
 /// it was opened so; else they are null.
 template <class Model>
-inline constexpr bool may_be_packed =
-    has_vector_unit<typename Model::Scalar>&& InnerNetwork<typename Model::Network>::exists &&
-    (model_kind<Model> == ModelKind::header || model_kind<Model> == ModelKind::view);
+inline constexpr bool may_be_packed = has_vector_unit<typename Model::Scalar>&& is_packable<typename Model::Network> &&
+                                      (model_kind<Model> == ModelKind::header || model_kind<Model> == ModelKind::view);
 template <class Model>
-PINNQUAD_ALWAYS_INLINE const PackedInner<typename Model::Network>* packed_weights(const Model& model) noexcept {
+PINNQUAD_ALWAYS_INLINE const PackedPredictor<typename Model::Network>* packed_weights(const Model& model) noexcept {
   if constexpr (model_kind<Model> == ModelKind::view) {
     return model.packed();
   } else {
@@ -213,8 +215,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     if constexpr (model_kind<Model> != ModelKind::header) {
       model().forward(standardised, outputs);
     } else if constexpr (detail::may_be_packed<Model>) {
-      constexpr const Scalar* weights = Model::parameters.data();
-      detail::forward_packed<Network>(weights, detail::packed_model<Model>, standardised, outputs);
+      detail::packed_model<Model>.forward(standardised, outputs);
     } else {
       constexpr const Scalar* weights = Model::parameters.data();
       Network::forward(weights, standardised, outputs);

@@ -56,6 +56,9 @@ struct Triples {
   struct InPlace {
     const Scalar* x;
     PINNQUAD_ALWAYS_INLINE Scalar operator[](int n) const noexcept { return x[other(n)]; }
+    /// For a PackedNetwork: where the n-th stands, and whether the next one stands behind it.
+    PINNQUAD_ALWAYS_INLINE const Scalar* at(int n) const noexcept { return x + other(n); }
+    static constexpr bool adjoins_next(int n) noexcept { return other(n + 1) == other(n) + 1; }
   };
   /// Calls `visit(place, n)` for the n-th three.
   template <class Visit>
@@ -93,13 +96,6 @@ struct Masked : detail::PredictorBase<Masked<Inner, FeatureCount, First...>, typ
       Inner::forward(parameters, static_cast<const Scalar*>(seen), y);
     }
   }
-  template <class Run>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, Scalar* y,
-                                         const Run& run) noexcept {
-    Scalar seen[Threes::others];
-    Threes::copy_others(x, static_cast<Scalar*>(seen));
-    detail::run_predictor<Inner>(parameters, static_cast<const Scalar*>(seen), y, run);
-  }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     Scalar seen[Threes::others], by_seen[Inner::outputs * Threes::others];
     Threes::copy_others(x, static_cast<Scalar*>(seen));
@@ -109,6 +105,24 @@ struct Masked : detail::PredictorBase<Masked<Inner, FeatureCount, First...>, typ
       for (int i = 0; i < Inner::outputs; ++i) by_x[i * FeatureCount + feature] = by_seen[i * Threes::others + n];
     });
   }
+
+  class Packed {
+   public:
+    constexpr void assign(const Scalar* parameters) noexcept { inner_.assign(parameters); }
+    PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+      if constexpr (is_network<Inner>) {
+        inner_.forward_of(typename Threes::template InPlace<Scalar>{x}, y);
+      } else {
+        Scalar seen[Threes::others];
+        Threes::copy_others(x, static_cast<Scalar*>(seen));
+        inner_.forward(static_cast<const Scalar*>(seen), y);
+      }
+    }
+    bool finite() const noexcept { return inner_.finite(); }
+
+   private:
+    detail::PackedPredictor<Inner> inner_;
+  };
 };
 
 /// `First...`: place of the angular acceleration of each tap, that of the present first. Parameters: slopes tap by tap,
@@ -148,6 +162,25 @@ struct AxisAligned
   }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     forward(parameters, x, y);
+    copy_slopes(parameters, by_x);
+  }
+
+  /// A layer of all features: most of its slopes by the angular accelerations are 0, and add nothing.
+  class Packed : public PackedNetwork<Network<Scalar, InputSize<FeatureCount>, Dense<4>>> {
+    using Layer = PackedNetwork<Network<Scalar, InputSize<FeatureCount>, Dense<4>>>;
+
+   public:
+    constexpr void assign(const Scalar* parameters) noexcept {
+      Scalar all[4 * FeatureCount + 4] = {};
+      copy_slopes(parameters, all);
+      for (int i = 0; i < 4; ++i) all[4 * FeatureCount + i] = parameters[intercepts + i];
+      Layer::assign(all);
+    }
+  };
+
+ private:
+  /// dy/dx, row-major.
+  static PINNQUAD_ALWAYS_INLINE constexpr void copy_slopes(const Scalar* parameters, Scalar* by_x) noexcept {
     for (int i = 0; i < 4 * FeatureCount; ++i) by_x[i] = Scalar(0);
     Threes::each_other([&](int feature, int n) PINNQUAD_INLINE_LAMBDA {
       for (int i = 0; i < 4; ++i) by_x[i * FeatureCount + feature] = parameters[weights + i * Threes::others + n];
@@ -161,13 +194,6 @@ struct AxisAligned
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-
-namespace detail {
-inline namespace PINNQUAD_INSTRUCTION_SET {
-template <class Inner, int FeatureCount, int... First>
-struct InnerNetwork<Masked<Inner, FeatureCount, First...>, false> : InnerNetworkOf<Inner, 0> {};
-}  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
 
 namespace detail {
 

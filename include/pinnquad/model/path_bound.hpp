@@ -147,14 +147,11 @@ struct PathBounded : detail::PredictorBase<PathBounded<NetworkType>, typename Ne
                 "says nothing (docs/certificate.md)");
   using Scalar = typename NetworkType::Scalar;
   using PathBounded::PredictorBase::forward;
+  using Packed = PackedNetwork<NetworkType>;
   static constexpr detail::TemplateText<NetworkType> description{"pinnquad::PathBounded"};
 
   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
     NetworkType::forward(parameters, x, y);
-  }
-  template <class Run>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar*, const Scalar* x, Scalar* y, const Run& run) noexcept {
-    run(x, y);
   }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     predictor_jacobian<NetworkType>(parameters, x, y, by_x);
@@ -173,13 +170,6 @@ struct PathBounded : detail::PredictorBase<PathBounded<NetworkType>, typename Ne
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-
-namespace detail {
-inline namespace PINNQUAD_INSTRUCTION_SET {
-template <class NetworkType>
-struct InnerNetwork<PathBounded<NetworkType>, false> : InnerNetworkOf<NetworkType, 0> {};
-}  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
 
 /// The affine part and a network that is shown all features. Where its path bound is below the slopes, each axis
 /// command rises with the angular acceleration about its axis.

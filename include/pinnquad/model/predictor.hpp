@@ -5,9 +5,8 @@
 //   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept
 //   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept
 // by_x: outputs x inputs, row-major. A Network's Jacobian is JacobianPass (nn/jacobian.hpp). A Network runs on the
-// vector unit, any other predictor as it is written, unless it says what of it is one (detail::InnerNetwork) and has
-//   template <class Run> static void run(const Scalar* parameters, const Scalar* x, Scalar* y, const Run& run) noexcept
-// which is forward() with run(x, y) for that network.
+// vector unit, any other predictor as it is written, unless it has a class `Packed`, its parameters as the vector unit
+// wants them, with assign(parameters), forward(x, y) and finite() of a PackedNetwork (nn/packed_network.hpp).
 #pragma once
 
 #include <array>
@@ -62,51 +61,45 @@ struct Scales {
   const Scalar* upper;
 };
 
-/// The network inside a predictor, and where its parameters begin among all; none, unless specialised.
-template <class Predictor, bool IsNetwork = is_network<Predictor>>
-struct InnerNetwork {
-  static constexpr bool exists = false;
-};
+/// A predictor inside another one's Packed that has none itself: as it is written.
 template <class Predictor>
-struct InnerNetwork<Predictor, true> {
-  static constexpr bool exists = true;
-  using type = Predictor;
-  static constexpr int first = 0;
-};
-/// Of a predictor around another one, whose parameters stand behind `Before` of its own.
-template <class Predictor, int Before, bool Exists = InnerNetwork<Predictor>::exists>
-struct InnerNetworkOf : InnerNetwork<Predictor> {
-  static constexpr int first = Before + InnerNetwork<Predictor>::first;
-};
-template <class Predictor, int Before>
-struct InnerNetworkOf<Predictor, Before, false> : InnerNetwork<Predictor> {};
+class AsWritten {
+  using Scalar = typename Predictor::Scalar;
 
-/// A predictor with run(x, y) for its inner network.
-template <class Predictor, class Scalar, class Run>
-PINNQUAD_ALWAYS_INLINE void run_predictor(const Scalar* parameters, const Scalar* x, Scalar* y,
-                                          const Run& run) noexcept {
-  if constexpr (is_network<Predictor>) {
-    run(x, y);
-  } else {
-    Predictor::run(parameters, x, y, run);
+ public:
+  constexpr void assign(const Scalar* parameters) noexcept {
+    for (int i = 0; i < Predictor::parameter_count; ++i) parameters_[i] = parameters[i];
   }
-}
+  PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+    Predictor::forward(static_cast<const Scalar*>(parameters_), x, y);
+  }
+  bool finite() const noexcept { return all_finite(parameters_, Predictor::parameter_count); }
 
-/// The inner network as the vector unit wants it, of all parameters.
+ private:
+  Scalar parameters_[static_cast<unsigned>(Predictor::parameter_count)] = {};
+};
+
+template <class Predictor, class = void>
+struct PackedForm {
+  static constexpr bool is_own = false;
+  using type = AsWritten<Predictor>;
+};
 template <class Predictor>
-using PackedInner = PackedNetwork<typename InnerNetwork<Predictor>::type>;
-template <class Predictor, class Scalar>
-constexpr PackedInner<Predictor> packed_inner(const Scalar* parameters) noexcept {
-  return PackedInner<Predictor>(parameters + InnerNetwork<Predictor>::first);
-}
-/// y = predictor(x), its network on the vector unit.
-template <class Predictor, class Scalar>
-PINNQUAD_ALWAYS_INLINE void forward_packed(const Scalar* parameters, const PackedInner<Predictor>& packed,
-                                           const Scalar* x, Scalar* y) noexcept {
-  run_predictor<Predictor>(parameters, x, y, [&packed](const Scalar* seen, Scalar* made) PINNQUAD_INLINE_LAMBDA {
-    packed.forward(seen, made);
-  });
-}
+struct PackedForm<Predictor, std::enable_if_t<is_network<Predictor>>> {
+  static constexpr bool is_own = true;
+  using type = PackedNetwork<Predictor>;
+};
+template <class Predictor>
+struct PackedForm<Predictor, std::void_t<typename Predictor::Packed>> {
+  static constexpr bool is_own = true;
+  using type = typename Predictor::Packed;
+};
+/// True for a predictor that the vector unit may run.
+template <class Predictor>
+inline constexpr bool is_packable = PackedForm<Predictor>::is_own;
+/// A predictor as the vector unit wants it.
+template <class Predictor>
+using PackedPredictor = typename PackedForm<Predictor>::type;
 
 /// A standardised input no further out than its range of the training rows.
 template <class Scalar>
@@ -158,14 +151,6 @@ struct Sum : detail::PredictorBase<Sum<First, Second>, typename First::Scalar, F
     Second::forward(parameters + First::parameter_count, x, y);
     add_first(parameters, x, y);
   }
-  template <class Run>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, Scalar* y,
-                                         const Run& run) noexcept {
-    Scalar one[First::outputs];  // first: its chains fill what the network's leave idle
-    First::forward(parameters, x, static_cast<Scalar*>(one));
-    detail::run_predictor<Second>(parameters + First::parameter_count, x, y, run);
-    for (int i = 0; i < First::outputs; ++i) y[i] += one[i];
-  }
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     Scalar other[Second::outputs], slopes[Second::outputs * Second::inputs];
     predictor_jacobian<First>(parameters, x, y, by_x);
@@ -174,6 +159,25 @@ struct Sum : detail::PredictorBase<Sum<First, Second>, typename First::Scalar, F
     for (int i = 0; i < Second::outputs; ++i) y[i] += other[i];
     for (int i = 0; i < Second::outputs * Second::inputs; ++i) by_x[i] += slopes[i];
   }
+
+  class Packed {
+   public:
+    constexpr void assign(const Scalar* parameters) noexcept {
+      first_.assign(parameters);
+      second_.assign(parameters + First::parameter_count);
+    }
+    PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+      Scalar one[First::outputs];  // first: its chains fill what the network's leave idle
+      first_.forward(x, static_cast<Scalar*>(one));
+      second_.forward(x, y);
+      for (int i = 0; i < First::outputs; ++i) y[i] += one[i];
+    }
+    bool finite() const noexcept { return first_.finite() && second_.finite(); }
+
+   private:
+    detail::PackedPredictor<First> first_;
+    detail::PackedPredictor<Second> second_;
+  };
 
  private:
   /// Out of line: its numbers are not on the stack beside a second predictor that needs much of it.
@@ -201,12 +205,6 @@ struct Saturated : detail::PredictorBase<Saturated<Inner>, typename Inner::Scala
     Inner::forward(parameters + own, x, y);
     clip(parameters, y);
   }
-  template <class Run>
-  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, Scalar* y,
-                                         const Run& run) noexcept {
-    detail::run_predictor<Inner>(parameters + own, x, y, run);
-    clip(parameters, y);
-  }
   /// The derivative of an output that is clipped, or on its bound, is 0.
   static void jacobian(const Scalar* parameters, const Scalar* x, Scalar* y, Scalar* by_x) noexcept {
     predictor_jacobian<Inner>(parameters + own, x, y, by_x);
@@ -216,6 +214,23 @@ struct Saturated : detail::PredictorBase<Saturated<Inner>, typename Inner::Scala
     }
     clip(parameters, y);
   }
+
+  class Packed {
+   public:
+    constexpr void assign(const Scalar* parameters) noexcept {
+      for (int i = 0; i < own; ++i) bounds_[i] = parameters[i];
+      inner_.assign(parameters + own);
+    }
+    PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+      inner_.forward(x, y);
+      clip(bounds_, y);
+    }
+    bool finite() const noexcept { return all_finite(bounds_, own) && inner_.finite(); }
+
+   private:
+    detail::PackedPredictor<Inner> inner_;
+    Scalar bounds_[own] = {};
+  };
 
  private:
   static PINNQUAD_ALWAYS_INLINE void clip(const Scalar* parameters, Scalar* y) noexcept {
@@ -227,14 +242,5 @@ struct Saturated : detail::PredictorBase<Saturated<Inner>, typename Inner::Scala
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-
-namespace detail {
-inline namespace PINNQUAD_INSTRUCTION_SET {
-template <class First, class Second>
-struct InnerNetwork<Sum<First, Second>, false> : InnerNetworkOf<Second, First::parameter_count> {};
-template <class Inner>
-struct InnerNetwork<Saturated<Inner>, false> : InnerNetworkOf<Inner, Saturated<Inner>::own> {};
-}  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
 
 }  // namespace pinnquad

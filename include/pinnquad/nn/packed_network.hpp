@@ -97,6 +97,18 @@ struct MemoryRun {
   static constexpr void pack(const Scalar* parameters, Scalar* packed) noexcept {
     walk_forward<Network, Kernel>(Arrange{{}, parameters}, packed);
   }
+  template <class X, class Keep>
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const X& x, Scalar* y, const Keep& keep) noexcept {
+    if constexpr (std::is_same_v<X, InRow<Scalar>>) {
+      forward(packed, x.x, y, keep);
+    } else {
+      Scalar row[static_cast<unsigned>(Network::inputs)];
+      for (int i = 0; i < Network::inputs; ++i) row[i] = x[i];
+      forward(packed, static_cast<const Scalar*>(row), y, keep);
+    }
+  }
+
+ private:
   template <class Keep>
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const Scalar* x, Scalar* y,
                                              const Keep& keep) noexcept {
@@ -106,7 +118,6 @@ struct MemoryRun {
     for (int i = 0; i < Network::outputs; ++i) y[i] = end.x[i];
   }
 
- private:
   struct CountSize : StepByStep {
     template <class Step>
     constexpr int visit(int size) const noexcept {
@@ -169,14 +180,13 @@ struct RegisterRun {
   static constexpr void pack(const Scalar* parameters, Scalar* packed) noexcept {
     walk_forward<Network, Kernel>(Arrange{{}, parameters}, Place<FirstValues>{packed});
   }
-  template <class Keep>
-  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const Scalar* x, Scalar* y,
-                                             const Keep& keep) noexcept {
-    run<0>(packed, FirstValues{x}, y, keep);
+  template <class X, class Keep>
+  static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const X& x, Scalar* y, const Keep& keep) noexcept {
+    run<0>(packed, MemoryValues<Pack, Network::inputs, X>{x}, y, keep);
   }
 
  private:
-  using FirstValues = MemoryValues<Pack, Network::inputs>;
+  using FirstValues = MemoryValues<Pack, Network::inputs, InRow<Scalar>>;
   template <class Step, class State>
   using Dense = RegisterLayer<Pack, Step::Layer::outputs, typename State::Values>;
 
@@ -320,12 +330,17 @@ class PackedNetwork {
 
   /// y[0, outputs) = network(x[0, inputs)).
   PINNQUAD_ALWAYS_INLINE void forward(const Scalar* x, Scalar* y) const noexcept {
+    forward_of(detail::InRow<Scalar>{x}, y);
+  }
+  /// The same for inputs that stand anywhere: `X` is as InRow (nn/kernel/register_layer.hpp).
+  template <class X>
+  PINNQUAD_ALWAYS_INLINE void forward_of(const X& x, Scalar* y) const noexcept {
     Run::forward(packed_, x, y, detail::KeepNothing{});
   }
   /// The same; each layer's outputs are left in `kept`, layer by layer as Sizes::outputs_before() counts them. The
   /// outputs of a layer whose activation is fused into it are written only where the activation slopes_from_input.
   PINNQUAD_ALWAYS_INLINE void forward_keeping(const Scalar* x, Scalar* y, Scalar* kept) const noexcept {
-    Run::forward(packed_, x, y, detail::KeepOutputs<Scalar>{kept});
+    Run::forward(packed_, detail::InRow<Scalar>{x}, y, detail::KeepOutputs<Scalar>{kept});
   }
 
   /// True if no weight is NaN or infinite, on the bits.

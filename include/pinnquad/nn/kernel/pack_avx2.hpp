@@ -82,6 +82,9 @@ struct PackAvx2 {
     __builtin_memcpy(&both, x, sizeof both);
     return {_mm256_castpd_ps(_mm256_set1_pd(both))};
   }
+  static PINNQUAD_ALWAYS_INLINE PackAvx2 repeat(float a, float b) noexcept {
+    return {_mm256_castpd_ps(_mm256_broadcastsd_pd(_mm_castps_pd(_mm_unpacklo_ps(_mm_set_ss(a), _mm_set_ss(b)))))};
+  }
   /// `v`, the last of an odd count, and 1 in turn.
   static PINNQUAD_ALWAYS_INLINE PackAvx2 repeat_last(PackAvx2 v) noexcept {
     return PackAvx2{_mm256_broadcastss_ps(_mm256_castps256_ps128(v.value))}.with_one();

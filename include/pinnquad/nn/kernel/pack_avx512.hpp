@@ -92,6 +92,10 @@ struct PackAvx512 {
     __builtin_memcpy(&both, x, sizeof both);
     return {_mm512_castpd_ps(_mm512_set1_pd(both))};
   }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512 repeat(float a, float b) noexcept {
+    return {_mm512_castpd_ps(
+        _mm512_maskz_broadcastsd_pd(0xff, _mm_castps_pd(_mm_unpacklo_ps(_mm_set_ss(a), _mm_set_ss(b)))))};
+  }
   /// `v`, the last of an odd count, and 1 in turn.
   static PINNQUAD_ALWAYS_INLINE PackAvx512 repeat_last(PackAvx512 v) noexcept {
     return {_mm512_mask_broadcastss_ps(_mm512_set1_ps(1.0f), 0x5555, v.lowest_four())};
@@ -194,8 +198,12 @@ struct PackAvx512Double {
   PINNQUAD_ALWAYS_INLINE PackAvx512Double repeat() const noexcept {
     return {_mm512_maskz_shuffle_f64x2(all, value, value, First / 2 * 0x55)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackAvx512Double repeat(const double* x) noexcept {
-    return {_mm512_castps_pd(_mm512_maskz_broadcast_f32x4(0xffff, _mm_castpd_ps(_mm_loadu_pd(x))))};
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double repeat(const double* x) noexcept { return repeat(_mm_loadu_pd(x)); }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double repeat(double a, double b) noexcept {
+    return repeat(_mm_set_pd(b, a));
+  }
+  static PINNQUAD_ALWAYS_INLINE PackAvx512Double repeat(__m128d both) noexcept {
+    return {_mm512_castps_pd(_mm512_maskz_broadcast_f32x4(0xffff, _mm_castpd_ps(both)))};
   }
   /// `v`, the last of an odd count, and 1 in turn.
   static PINNQUAD_ALWAYS_INLINE PackAvx512Double repeat_last(PackAvx512Double v) noexcept {

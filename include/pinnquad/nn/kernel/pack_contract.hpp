@@ -19,7 +19,8 @@
 //   blocks_at_once: blocks worked on side by side; chains: sums per block that hide the multiply-add's latency
 //   lane_of_value(i): the lane where value i of a register stands
 //   row_of_pair(block, pair): the row whose products stand in that pair, such that collect() puts it in its place
-//   repeat<First>(): values First, ..., First + columns - 1 in every row; repeat(const Scalar*): the same from memory
+//   repeat<First>(): values First, ..., First + columns - 1 in every row; repeat(const Scalar*): the same from memory;
+//   repeat(a, b): two of them that don't stand side by side (two columns)
 //   repeat_last(v): the first lane of v in every row and, with two columns, a 1 behind it
 //   with_one(): a 1 in each row's last lane (two columns)
 //   from_scalar(v): v in the first lane; first_value(): the first lane
@@ -64,7 +65,9 @@ template <class P> using PlacesOf = std::enable_if_t<(P::lane_of_value(0) == 0 &
 template <class P> using RepeatOf = std::void_t<
     decltype(std::declval<const P&>().template repeat<0>()), decltype(P::repeat_last(std::declval<P>())),
     decltype(P::repeat(std::declval<const typename P::Scalar*>()))>;
-template <class P> using WithOneOf = decltype(std::declval<const P&>().with_one());
+template <class P> using OfTwoColumns = std::void_t<
+    decltype(std::declval<const P&>().with_one()),
+    decltype(P::repeat(std::declval<typename P::Scalar>(), std::declval<typename P::Scalar>()))>;
 template <class P> using FirstValueOf = std::void_t<
     decltype(P::from_scalar(std::declval<typename P::Scalar>())), decltype(std::declval<const P&>().first_value())>;
 template <class P> using CollectOf = decltype(P::collect(std::declval<const P*>()));
@@ -103,8 +106,8 @@ constexpr bool require_register_layout() noexcept {
   static_assert(is_detected<RepeatOf, Pack>,
                 "pinnquad: this pack lacks repeat<First>(), repeat(const Scalar*) or repeat_last(v) "
                 "(pack_contract.hpp)");
-  static_assert(is_detected<WithOneOf, Pack> || Pack::columns == 1,
-                "pinnquad: this pack lacks with_one() (pack_contract.hpp)");
+  static_assert(is_detected<OfTwoColumns, Pack> || Pack::columns == 1,
+                "pinnquad: this pack lacks with_one() or repeat(a, b) (pack_contract.hpp)");
   static_assert(is_detected<FirstValueOf, Pack>,
                 "pinnquad: this pack lacks from_scalar(v) or first_value() (pack_contract.hpp)");
   static_assert(is_detected<CollectOf, Pack>, "pinnquad: this pack lacks collect(const Pack*) (pack_contract.hpp)");

@@ -71,22 +71,33 @@ struct RegisterValues {
   }
 };
 
+/// Inputs in a row.
+template <class Scalar>
+struct InRow {
+  const Scalar* x;
+  PINNQUAD_ALWAYS_INLINE Scalar operator[](int i) const noexcept { return x[i]; }
+  PINNQUAD_ALWAYS_INLINE const Scalar* at(int i) const noexcept { return x + i; }
+  static constexpr bool adjoins_next(int) noexcept { return true; }
+};
+
 /// Inputs of a network, in memory: the same steps. Narrow loads, because a wide one would wait for the narrow stores
-/// before it.
-template <class Pack, int Size>
+/// before it. `X`: InRow, or anything else with its members.
+template <class Pack, int Size, class X>
 struct MemoryValues {
   static constexpr int size = Size;
   static constexpr int registers = 0;
 
-  const typename Pack::Scalar* x;
+  X x;
 
   template <int Step>
   PINNQUAD_ALWAYS_INLINE Pack repeat() const noexcept {
     constexpr int first = Step * Pack::columns;
     if constexpr (first + Pack::columns > Size) {
       return Pack::repeat_last(Pack::from_scalar(x[first]));
+    } else if constexpr (Pack::columns == 1 || X::adjoins_next(first)) {
+      return Pack::repeat(x.at(first));
     } else {
-      return Pack::repeat(x + first);
+      return Pack::repeat(x[first], x[first + 1]);
     }
   }
 };
