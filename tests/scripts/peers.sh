@@ -10,8 +10,7 @@ echo '#include <benchmark/benchmark.h>' | "$compiler" -E -x c++ - >/dev/null 2>&
 rm -rf "$work"
 mkdir -p "$work/peers" "$work/results"
 cp "$root/tests/scripts/peers/plain_eigen.cpp" "$work/peers"
-# reaches the program as a user's libraries do
-echo 'target_compile_options(bench_peers PRIVATE ${wrong})' >"$work/peers/peers.cmake"
+echo 'set_source_files_properties(${peers} PROPERTIES COMPILE_OPTIONS "${wrong}")' >"$work/peers/peers.cmake"
 
 build() {
   cmake -S "$root" -B "$work/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release \

@@ -116,7 +116,8 @@ bool read_window(const Window& window, const FlightRows& rows, std::size_t row, 
 }
 }  // namespace detail
 
-/// Windows about a row, which is their present instant.
+/// Windows about a row, which is their present instant. Windows in a row share most of their rows: what was read of one
+/// is kept for the next, so one of these is for one thread.
 template <class Tap, class Scalar, class Window>
 class FlightInputs<detail::WindowInputs<Tap, Scalar, Window>> {
  public:
@@ -128,15 +129,31 @@ class FlightInputs<detail::WindowInputs<Tap, Scalar, Window>> {
     Inputs read;
     if (!taps_.read(row, read)) return false;
     read.complete = detail::read_window<Scalar>(
-        Window{}, rows_, row, [this](std::size_t i, Tap& tap) { return taps_.read(i, tap); }, read.others.data());
+        Window{}, rows_, row, [this](std::size_t i, Tap& tap) { return read_tap(i, tap); }, read.others.data());
     if (!read.complete) return false;
     inputs = read;
     return true;
   }
 
  private:
+  struct Kept {
+    std::size_t row = static_cast<std::size_t>(-1);
+    Tap tap{};
+  };
+
+  bool read_tap(std::size_t row, Tap& tap) const {
+    Kept& kept = kept_[row % kept_.size()];
+    if (kept.row != row) {
+      if (!taps_.read(row, kept.tap)) return false;
+      kept.row = row;
+    }
+    tap = kept.tap;
+    return true;
+  }
+
   FlightRows rows_;
   FlightInputs<Tap> taps_;
+  mutable std::vector<Kept> kept_ = std::vector<Kept>(128);
 };
 
 /// The extra columns that a feature set needs of a flight: what to ask of read_flight_csv().

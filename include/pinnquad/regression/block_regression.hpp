@@ -93,27 +93,23 @@ class BlockRegression {
       throw std::invalid_argument("block regression: expected an unknown, a block, an instrument per unknown");
     }
     const Eigen::Index zz = by_instruments_ ? instruments_ : 0;
-    blocks_.assign(blocks, {Eigen::MatrixXd::Zero(instruments_, unknowns_), Eigen::VectorXd::Zero(instruments_),
-                            Eigen::MatrixXd::Zero(zz, zz), 0});
+    blocks_.assign(blocks, {RowMajor::Zero(instruments_, unknowns_), Eigen::VectorXd::Zero(instruments_),
+                            RowMajor::Zero(zz, zz), 0});
   }
 
-  /// A row: y, `unknowns` regressors and, unless it is least squares, as many instruments as there are. Zeros cost
-  /// nothing: rows of several equations with unknowns of their own are one regression.
+  /// A row: y, `unknowns` regressors and, unless it is least squares, as many instruments as there are. Zeros in front
+  /// and behind cost nothing: rows of several equations with unknowns of their own are one regression.
   void add(std::size_t block, const double* regressors, double y, const double* instruments = nullptr) {
     Sums& sums = blocks_.at(block);
     const double* const z = by_instruments_ ? instruments : regressors;
-    used_.clear();
-    for (Eigen::Index i = 0; i < unknowns_; ++i) {
-      if (regressors[i] != 0) used_.push_back(i);
-    }
-    for (Eigen::Index k = 0; k < instruments_; ++k) {
-      if (z[k] == 0) continue;
-      for (const Eigen::Index i : used_) sums.zx(k, i) += z[k] * regressors[i];
+    const Range of_x = without_zeros(regressors, unknowns_), of_z = without_zeros(z, instruments_);
+    const Eigen::Map<const Eigen::RowVectorXd> x(regressors + of_x.first, of_x.count), all_z(z, instruments_);
+    for (Eigen::Index k = of_z.first; k < of_z.first + of_z.count; ++k) {
+      sums.zx.row(k).segment(of_x.first, of_x.count) += z[k] * x;
       sums.zy[k] += z[k] * y;
       if (!by_instruments_) continue;
-      for (Eigen::Index j = 0; j <= k; ++j) {
-        if (z[j] != 0) sums.zz(k, j) += z[k] * z[j];
-      }
+      const Eigen::Index count = k - of_z.first + 1;
+      sums.zz.row(k).segment(of_z.first, count) += z[k] * all_z.segment(of_z.first, count);
     }
     ++sums.rows;
   }
@@ -140,12 +136,22 @@ class BlockRegression {
   }
 
  private:
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   struct Sums {
-    Eigen::MatrixXd zx;
+    RowMajor zx;
     Eigen::VectorXd zy;
-    Eigen::MatrixXd zz;  ///< lower triangle
+    RowMajor zz;  ///< lower triangle
     std::size_t rows = 0;
   };
+  struct Range {
+    Eigen::Index first, count;
+  };
+  static Range without_zeros(const double* values, Eigen::Index count) noexcept {
+    Eigen::Index first = 0;
+    while (first < count && values[first] == 0) ++first;
+    while (count > first && values[count - 1] == 0) --count;
+    return {first, count - first};
+  }
   /// a theta = b, symmetric; `scale` brings the diagonal of a to 1, or 0 where it is 0.
   struct Normal {
     Eigen::MatrixXd a;
@@ -213,7 +219,6 @@ class BlockRegression {
   Eigen::Index unknowns_, instruments_;
   bool by_instruments_;
   std::vector<Sums> blocks_;
-  std::vector<Eigen::Index> used_;
 };
 
 }  // namespace pinnquad

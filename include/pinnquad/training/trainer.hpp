@@ -168,25 +168,31 @@ class Trainer {
   /// Errors of the network as trained so far on other rows, standardised by the same context; nothing is changed. No
   /// data: NaN, which a Checkpoint never takes. Throws std::invalid_argument unless the data are whole rows.
   ValidationErrors validate(const Data& data) {
+    double squared = 0, absolute = 0;
+    each_prediction(data, [&](int row, int k, double said) {
+      const double difference = said - static_cast<double>(data.outputs_of(row)[k]);
+      squared += difference * difference;
+      absolute += std::abs(difference) * context_.output.standard_deviation[std::size_t(k)];
+    });
+    const double count = static_cast<double>(data.size()) * Network::outputs;
+    return {squared / count, absolute / count};
+  }
+
+  /// What the network as trained so far says of each row: calls `visit(row, output, said)`.
+  template <class Visit>
+  void each_prediction(const Data& data, const Visit& visit) {
     check_data(data);
     const FlushDenormals flush;
-    double squared = 0, absolute = 0;
     for (int first = 0; first < data.size(); first += BatchSize) {
       const int size = data.size() - first < BatchSize ? data.size() - first : BatchSize;
       gradient_.put(data.features_of(first), size);
       gradient_.predict(size);
       for (int i = 0; i < size; ++i) {
-        const Scalar* y = data.outputs_of(first + i);
-        for (std::size_t k = 0; k < std::size_t(Network::outputs); ++k) {
-          const double difference =
-              static_cast<double>(gradient_.output(static_cast<int>(k), i)) - static_cast<double>(y[k]);
-          squared += difference * difference;
-          absolute += std::abs(difference) * context_.output.standard_deviation[k];
+        for (int k = 0; k < Network::outputs; ++k) {
+          visit(first + i, k, static_cast<double>(gradient_.output(k, i)));
         }
       }
     }
-    const double count = static_cast<double>(data.size()) * Network::outputs;
-    return {squared / count, absolute / count};
   }
 
   /// The network as trained so far, running statistics of batch norm included.

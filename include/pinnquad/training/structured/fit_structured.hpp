@@ -270,8 +270,8 @@ class StructuredFitter {
     bool finished = true;
     each_left_out([&](const RowSet& others, const AffineMap& map, const RowSet& group) {
       const auto unseen = left_by(map, group);
-      finished = finished && train(map, others, epochs, seed, goes_on, [&](const auto& trainer, int epoch) {
-                   agree(by_epoch[static_cast<std::size_t>(epoch)], trainer.network(), unseen);
+      finished = finished && train(map, others, epochs, seed, goes_on, [&](auto& trainer, int epoch) {
+                   agree(by_epoch[static_cast<std::size_t>(epoch)], trainer, unseen);
                  });
     });
     if (!finished) return {};
@@ -293,17 +293,13 @@ class StructuredFitter {
                 error);
   }
 
-  template <class Data>
-  void agree(Agreement& agreement, const Residual& residual, const Data& unseen) const {
+  template <class Trainer, class Data>
+  void agree(Agreement& agreement, Trainer& trainer, const Data& unseen) const {
     agreement.begin_group();
-    for (int row = 0; row < unseen.size(); ++row) {
-      float said[Residual::outputs] = {};
-      residual.forward(unseen.features_of(row), said);
-      for (int k = 0; k < Residual::outputs; ++k) {
-        const double unit = context_.output.standard_deviation[static_cast<std::size_t>(k)];
-        agreement.add(k, unit * static_cast<double>(said[k]), unit * static_cast<double>(unseen.outputs_of(row)[k]));
-      }
-    }
+    trainer.each_prediction(unseen, [&](int row, int k, double said) {
+      const double unit = context_.output.standard_deviation[static_cast<std::size_t>(k)];
+      agreement.add(k, unit * said, unit * static_cast<double>(unseen.outputs_of(row)[k]));
+    });
   }
 
   /// In the last layer, which is affine: weights by output, then biases.

@@ -1,33 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# kernels.sh <aarch64 | avx2> <repository> <Eigen's include folder> <doctest's include folder> <working folder>: the tests
-# of what runs on a vector unit, forward and back, for units that a preset need not have: NEON under emulation, AVX2. (The
-# presets asan and native have them for the unit of the machine at hand, AVX-512 where it has that.) Returns 77 where a tool
-# or the unit is missing.
+# neon_kernels.sh <repository> <Eigen's include folder> <doctest's include folder> <working folder>: the tests of what
+# runs on a vector unit, forward and back, with NEON under emulation. Returns 77 where a tool is missing.
 set -euo pipefail
-machine=$1 root=$2 eigen=$3 doctest=$4 work=$5
+root=$1 eigen=$2 doctest=$3 work=$4
+skip() { echo "skipped: $*"; exit 77; }
+compiler=$(command -v aarch64-linux-gnu-g++) || skip "no aarch64-linux-gnu-g++"
+emulator=$(command -v qemu-aarch64 || command -v qemu-aarch64-static) || skip "no qemu-aarch64"
 # doctest's folder alone: beside it may stand the headers of the host's C library
 rm -rf "$work"
 mkdir -p "$work/include"
 ln -s "$doctest/doctest" "$work/include/doctest"
-
-skip() { echo "skipped: $*"; exit 77; }
 # unoptimised, as the presets compile these tests: optimising kernels that are unrolled when compiled takes minutes
-flags=(-std=c++17 -O0 -DPINNQUAD_INLINE_AS_COMPILER_LIKES "-I$root/include" "-I$root/tests" "-I$work/include" -isystem "$eigen")
-compiler=g++ emulator=env
-case $machine in
-  aarch64)
-    compiler=aarch64-linux-gnu-g++
-    emulator=$(command -v qemu-aarch64 || command -v qemu-aarch64-static) || skip "no qemu-aarch64"
-    flags+=(-static)
-    ;;
-  avx2)
-    grep -qw avx2 /proc/cpuinfo || skip "this machine has no AVX2"
-    flags+=(-march=x86-64-v3)
-    ;;
-esac
-command -v "$compiler" >/dev/null || skip "no $compiler"
+flags=(-std=c++17 -O0 -static -DPINNQUAD_INLINE_AS_COMPILER_LIKES "-I$root/include" "-I$root/tests" "-I$work/include"
+  -isystem "$eigen")
 
 # every test of these rooms that names a pack or what runs on one
 mapfile -t sources < <(grep -lE 'Pack|JacobianPass' "$root"/tests/nn/*.cpp "$root"/tests/training/network_gradient.cpp)
