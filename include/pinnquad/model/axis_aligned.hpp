@@ -166,10 +166,12 @@ struct AxisAligned
   }
 
   /// A layer of all features: most of its slopes by the angular accelerations are 0, and add nothing.
-  class Packed : public PackedNetwork<Network<Scalar, InputSize<FeatureCount>, Dense<4>>> {
+  class Packed : PackedNetwork<Network<Scalar, InputSize<FeatureCount>, Dense<4>>> {
     using Layer = PackedNetwork<Network<Scalar, InputSize<FeatureCount>, Dense<4>>>;
 
    public:
+    using Layer::finite;
+    using Layer::forward;
     constexpr void assign(const Scalar* parameters) noexcept {
       Scalar all[4 * FeatureCount + 4] = {};
       copy_slopes(parameters, all);
