@@ -178,7 +178,7 @@ class Trainer {
     return {squared / count, absolute / count};
   }
 
-  /// What the network as trained so far says of each row: calls `visit(row, output, said)`.
+  /// Calls `visit(row, output, said)` for each row: the answer of the network as trained so far.
   template <class Visit>
   void each_prediction(const Data& data, const Visit& visit) {
     check_data(data);
