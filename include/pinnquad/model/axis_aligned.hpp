@@ -106,6 +106,7 @@ struct Masked : detail::PredictorBase<Masked<Inner, FeatureCount, First...>, typ
     });
   }
 
+  /// `Inner` on the vector unit; a network reads its inputs where they stand.
   class Packed {
    public:
     constexpr void assign(const Scalar* parameters) noexcept { inner_.assign(parameters); }

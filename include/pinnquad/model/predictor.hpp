@@ -160,6 +160,7 @@ struct Sum : detail::PredictorBase<Sum<First, Second>, typename First::Scalar, F
     for (int i = 0; i < Second::outputs * Second::inputs; ++i) by_x[i] += slopes[i];
   }
 
+  /// Both on the vector unit.
   class Packed {
    public:
     constexpr void assign(const Scalar* parameters) noexcept {
@@ -215,6 +216,7 @@ struct Saturated : detail::PredictorBase<Saturated<Inner>, typename Inner::Scala
     clip(parameters, y);
   }
 
+  /// `Inner` on the vector unit, between the same bounds.
   class Packed {
    public:
     constexpr void assign(const Scalar* parameters) noexcept {
