@@ -97,20 +97,17 @@ endif()
 _pinnquad_add_stack_gate(flight_stacks.gate.crazyflie_past.host-O2 "${crazyflie_source}" "${CMAKE_CXX_COMPILER}" "${CMAKE_NM}"
   "-O2 ${crazyflie_flags} -I${CMAKE_CURRENT_SOURCE_DIR}/crazyflie_past")
 pinnquad_thorough(flight_stacks.gate.crazyflie_past.host-O2)
-# the Crazyflie's firmware is built -Os, PX4's for most boards -O2
-set(px4_optimisation -O2)
-set(crazyflie_optimisation -Os)
+# for the microcontroller as both firmwares are built
 foreach(stack IN ITEMS px4 crazyflie)
   _pinnquad_add_stack_gate("flight_stacks.gate.${stack}.host-O2" "${${stack}_source}" "${CMAKE_CXX_COMPILER}" "${CMAKE_NM}"
     "-O2 ${${stack}_flags}")
   if(NOT compiler_free_tests)
     continue()
   endif()
-  set(optimisation ${${stack}_optimisation})
-  set(name "flight_stacks.gate.${stack}.cortex_m${optimisation}")
+  set(name "flight_stacks.gate.${stack}.cortex_m-Os")
   if(PINNQUAD_ARM_CXX AND PINNQUAD_ARM_NM)
     _pinnquad_add_stack_gate("${name}" "${${stack}_source}" "${PINNQUAD_ARM_CXX}" "${PINNQUAD_ARM_NM}"
-      "${optimisation} ${${stack}_flags} ${${stack}_machine}")
+      "-Os ${${stack}_flags} ${${stack}_machine}")
   else()
     add_test(NAME "${name}" COMMAND bash -c "echo 'skipped: no arm-none-eabi-g++ (Debian: gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib)'; exit 77")
     set_tests_properties("${name}" PROPERTIES LABELS flight_stacks SKIP_RETURN_CODE 77)

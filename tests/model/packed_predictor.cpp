@@ -87,7 +87,7 @@ TEST_CASE_TEMPLATE("on the vector unit as it is written", Predictor, Structured,
     }
   }
   CHECK(clipped == is_sum);
-  x.fill(std::numeric_limits<float>::quiet_NaN());
+  x[0] = std::numeric_limits<float>::quiet_NaN();  // all are shown it
   packed->forward(x.data(), y.data());
   for (const float v : y) CHECK(std::isnan(v));
   for (const std::size_t broken : {std::size_t(0), predictor.parameters.size() - 1}) {
