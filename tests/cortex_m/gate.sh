@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# gate.sh <repository> <working folder> <Eigen> <target>: the paper's network on one processor at -Os, -O2 and -O3: same
+# gate.sh <repository> <working folder> <Eigen> <target>: the paper's network on one processor at -Os and -O2: same
 # bits as the host, within its limits of instructions, stack, code and RAM; predict() beside it.
 set -euo pipefail
 root=$1 work=$2 eigen=$3 target=$4
@@ -10,7 +10,7 @@ source "$root/tests/cortex_m/machine.sh"
 need_tools
 [ -f "$work/prepared" ] || { echo "SKIPPED: the host's results are not there (cortex_m.prepare)"; exit 77; }
 
-for optimisation in -Os -O2 -O3; do
+for optimisation in -Os -O2; do
   name=$work/$target$optimisation
   build_target "$target" "$optimisation" forward "$name.forward.elf"
   run_image "$target" "$name.forward.elf" "$name.forward.txt"

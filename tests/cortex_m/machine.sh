@@ -25,7 +25,6 @@ need_tools() {
 target_flags() {
   case $1 in
     m4f) echo "-mcpu=cortex-m4 -mfpu=fpv4-sp-d16" ;;
-    m7_sp) echo "-mcpu=cortex-m7 -mfpu=fpv5-sp-d16" ;;
     m7_dp) echo "-mcpu=cortex-m7 -mfpu=fpv5-d16" ;;
     *) echo "no target '$1'" >&2; return 1 ;;
   esac
