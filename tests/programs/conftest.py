@@ -256,13 +256,12 @@ def compiler(request):
 
 @pytest.fixture(scope="session")
 def fly_export(compiler, flags):
-    """fly_export(header, folder): the program that flies this export, compiled in that folder; `optimised` for less time
-    at the compiler."""
+    """fly_export(header, folder): the program that flies this export, compiled in that folder."""
 
-    def build(header, folder="fly_export", optimised="-O3 -DNDEBUG"):
+    def build(header, folder="fly_export"):
         Program("cmake")("-G Ninja -DCMAKE_BUILD_TYPE=Release -S", SOURCE / "tools/fly_export", "-B", folder,
                          f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_CXX_FLAGS={' '.join(flags)}",
-                         f"-DCMAKE_CXX_FLAGS_RELEASE={optimised}",
+                         "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG",
                          f"-DPINNQUAD_MODEL_HEADER={Path(header).resolve()}")
         Program("cmake")("--build", folder)
         return Program(Path(folder, "fly_export").resolve())

@@ -102,7 +102,7 @@ def test_window_and_battery(two_models, fly_cores, fly_export, pinnquad, dataset
     done = pinnquad("replay gap.csv --model one/model.block --model other/model.block")
     assert re.search(r"^same +as logged, in all 2000 ticks compared", done.out, re.M), done
 
-    program = fly_export("one/model.hpp", optimised="-O1 -DNDEBUG")
+    program = fly_export("one/model.hpp")
     said = program("--replay one/replay.txt", code=None).out
     assert re.search("self test .*: ok", said) and ": agrees" in said, said
     middle = float(re.search("battery_voltage held at ([0-9.]+) V", said).group(1))
@@ -145,6 +145,6 @@ def test_real_logs(logs, two_models, fly_cores, fly_export, recorded):
             assert ticks["model"] >= share * asked > 0.8 * share * ticks["ticks"], ticks
     if logs != "sih":
         return
-    said = fly_export("one/model.hpp", optimised="-O1 -DNDEBUG")("--replay one/replay.txt", code=None).out
+    said = fly_export("one/model.hpp")("--replay one/replay.txt", code=None).out
     assert re.search("self test .*: ok", said) and ": agrees" in said, said
     assert "battery_voltage held at" in said, said
