@@ -42,8 +42,8 @@ ExportedPart part_of(const RunTimePart& from, const Scalar* at) {
     part.lower = take(outputs);
     part.upper = take(outputs);
   }
-  for (int i = 0; i < from.inputs && from.three_count > 0; ++i) {
-    if (!from.in_three(i)) part.shown.push_back(std::size_t(i));
+  if (from.three_count > 0) {
+    from.each_shown([&part](int feature) { part.shown.push_back(std::size_t(feature)); });
   }
   if (from.axis_aligned) {
     const std::size_t others = part.shown.size();

@@ -26,6 +26,35 @@ void low_pass_without_phase(std::vector<double>& series, double period_s, double
   }
 }
 
+/// Sets the sums of products of `Count` columns, the `First` and those behind it, with all columns. How many rows.
+template <std::size_t First, std::size_t Count>
+std::size_t set_products(const std::vector<LagSeries>& all, std::size_t ahead, std::size_t behind, int lag,
+                         std::size_t step, LagMoments& moments) {
+  using Columns = Eigen::Array<double, static_cast<int>(lag_columns), 1>;
+  std::array<Columns, Count> sums;
+  sums.fill(Columns::Zero());
+  std::size_t rows = 0;
+  for (const LagSeries& one : all) {
+    for (std::size_t row = ahead; row + behind < one.size(); row += step) {
+      Columns x;
+      Eigen::Index column = 0;
+      x[column++] = 1;
+      const auto commanded = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(row) - lag);
+      for (const auto& series : one.commands) x[column++] = series[commanded];
+      for (const auto& series : one.rates) x[column++] = series[row];
+      for (const auto& series : one.motions) x[column++] = series[row];
+      for (std::size_t k = 0; k < Count; ++k) sums[k] += x[static_cast<Eigen::Index>(First + k)] * x;
+      ++rows;
+    }
+  }
+  for (std::size_t k = 0; k < Count; ++k) {
+    for (std::size_t j = 0; j < lag_columns; ++j) {
+      moments[First + k][j] = moments[j][First + k] = sums[k][static_cast<Eigen::Index>(j)];
+    }
+  }
+  return rows;
+}
+
 /// R^2 of each motion by the commands, beyond what a constant and the body rates explain.
 using Explained = std::array<double, lag_motions>;
 
@@ -69,8 +98,9 @@ std::vector<Explained> explained_by_lag(const std::vector<LagSeries>& all, const
   for (const LagSeries& one : all) whole += one.size() > ahead + behind ? one.size() - ahead - behind : 0;
   const std::size_t step = std::max<std::size_t>(1, whole / most_rows);
   std::vector<Explained> result;
+  LagMoments moments = lag_moments(all, ahead, behind, 0, step, rows);
   for (int lag = grid.first; lag <= grid.last; lag += grid.stride) {
-    const LagMoments moments = lag_moments(all, ahead, behind, lag, step, rows);
+    set_products<1, rotor_count>(all, ahead, behind, lag, step, moments);  // the others are those of any lag
     result.push_back(rows > lag_columns ? explained_beyond_rates(moments) : Explained{});
   }
   return result;
@@ -174,25 +204,7 @@ std::vector<LagSeries> low_passed(std::vector<LagSeries> all, double period_s, d
 LagMoments lag_moments(const std::vector<LagSeries>& all, std::size_t ahead, std::size_t behind, int lag,
                        std::size_t step, std::size_t& rows) {
   LagMoments moments{};
-  rows = 0;
-  for (const LagSeries& one : all) {
-    for (std::size_t row = ahead; row + behind < one.size(); row += step) {
-      std::array<double, lag_columns> x{};
-      std::size_t column = 0;
-      x[column++] = 1;
-      const auto commanded = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(row) - lag);
-      for (const auto& series : one.commands) x[column++] = series[commanded];
-      for (const auto& series : one.rates) x[column++] = series[row];
-      for (const auto& series : one.motions) x[column++] = series[row];
-      for (std::size_t i = 0; i < lag_columns; ++i) {
-        for (std::size_t j = i; j < lag_columns; ++j) moments[i][j] += x[i] * x[j];
-      }
-      rows += 1;
-    }
-  }
-  for (std::size_t i = 0; i < lag_columns; ++i) {
-    for (std::size_t j = 0; j < i; ++j) moments[i][j] = moments[j][i];
-  }
+  rows = set_products<0, lag_columns>(all, ahead, behind, lag, step, moments);
   return moments;
 }
 

@@ -120,9 +120,8 @@ class Import {
     remove_lag();
     drop_rows();
     make_flights();
-    report("comparing the flights", 0);
     check_vehicle(dataset_, airframe_ ? airframe_->value : airframe_value<PaperQuadrotor, double>(),
-                  !settings_.airframe.empty());
+                  !settings_.airframe.empty(), settings_.on_progress);
     return std::move(dataset_);
   }
 

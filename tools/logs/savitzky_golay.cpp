@@ -161,11 +161,12 @@ NoiseFloor noise_floor(const PowerSpectrum& spectrum) {
 }
 
 /// Real factor by which a centred filter multiplies (i omega)^d / |omega|^d at a bin; the ideal is |omega|^d.
-double gain(const std::vector<double>& weights, int half_window, int derivative, double radians_per_row) {
+/// `wave`: of the first derivative the sine, else the cosine, of each row from the window's middle on.
+double gain(const std::vector<double>& weights, int half_window, int derivative, const std::vector<double>& wave) {
   double sum = 0;
   for (int i = -half_window; i <= half_window; ++i) {
-    const double weight = weights[static_cast<std::size_t>(i + half_window)];
-    sum += weight * (derivative == 1 ? std::sin(radians_per_row * i) : std::cos(radians_per_row * i));
+    const double at = wave[static_cast<std::size_t>(std::abs(i))];
+    sum += weights[static_cast<std::size_t>(i + half_window)] * (derivative == 1 && i < 0 ? -at : at);
   }
   return derivative == 2 ? -sum : sum;
 }
@@ -290,6 +291,16 @@ SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& series, con
   choice.noise = std::sqrt(noise);
   const std::size_t most =
       std::min({most_half_window, longest / 8, static_cast<std::size_t>(longest_half_window_s / period_s) + 1});
+  const auto angle_of = [&spectrum](std::size_t bin) {
+    return pi * static_cast<double>(bin) / static_cast<double>(spectrum.power.size() - 1);
+  };
+  std::vector<std::vector<double>> waves(spectrum.power.size());
+  for (std::size_t bin = 0; bin < waves.size(); ++bin) {
+    for (std::size_t i = 0; i <= most; ++i) {
+      const double phase = angle_of(bin) * static_cast<double>(i);
+      waves[bin].push_back(derivative == 1 ? std::sin(phase) : std::cos(phase));
+    }
+  }
   double least = std::numeric_limits<double>::infinity();
   for (const int order : {2, 4}) {
     for (std::size_t half = static_cast<std::size_t>(order) / 2; half <= most; ++half) {
@@ -297,9 +308,8 @@ SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& series, con
       const std::vector<double> weights = savitzky_golay_weights(filter, derivative);
       double error = 0;
       for (std::size_t bin = 0; bin < spectrum.power.size(); ++bin) {
-        const double angle = pi * static_cast<double>(bin) / static_cast<double>(spectrum.power.size() - 1);
-        const double h = gain(weights, filter.half_window, derivative, angle);
-        const double bias = h - std::pow(angle, derivative);
+        const double h = gain(weights, filter.half_window, derivative, waves[bin]);
+        const double bias = h - std::pow(angle_of(bin), derivative);
         error += bias * bias * floor.signal[bin] + h * h * floor.noise[bin];
       }
       if (!(error < least)) continue;

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "logs/command_lag.hpp"
 #include "logs/log_checks.hpp"
 #include "logs/motor_order_check.hpp"
+#include "logs/parallel.hpp"
 #include "logs/row_checks.hpp"
 #include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/dynamics/allocation.hpp"
@@ -315,11 +318,19 @@ class VehicleCheck {
 
 }  // namespace
 
-void check_vehicle(ImportedDataset& dataset, const Airframe<double>& airframe, bool known) {
-  std::vector<Judged> judged;
-  for (const Flight& flight : dataset.flights.flights()) {
-    judged.push_back(judge(flight, airframe, dataset.lag_removed_s));
-  }
+void check_vehicle(ImportedDataset& dataset, const Airframe<double>& airframe, bool known,
+                   const OnProgress& on_progress) {
+  const auto& flights = dataset.flights.flights();
+  std::vector<Judged> judged(flights.size());
+  std::atomic<std::size_t> done{0};
+  const auto meanwhile = [&] {
+    const double share = static_cast<double>(done.load()) / static_cast<double>(flights.size());
+    if (on_progress) on_progress("comparing the flights", share);
+  };
+  each_in_parallel(flights.size(), std::max(1u, std::thread::hardware_concurrency()), meanwhile, [&](std::size_t i) {
+    judged[i] = judge(flights[i], airframe, dataset.lag_removed_s);
+    done.fetch_add(1);
+  });
   for (const VehicleFinding& finding : VehicleCheck(std::move(judged), airframe, known).run()) {
     dataset.warnings.push_back(finding.sentence);
     if (!finding.contradicts) continue;

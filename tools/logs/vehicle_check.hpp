@@ -18,7 +18,8 @@ namespace pinnquad::logs {
 /// 0.06 s off the other flights'.
 /// Limits: calm flights tell little, and are compared in what they tell. Rates and attitude are taken as right
 /// (find_turning_mistake()).
-void check_vehicle(ImportedDataset& dataset, const Airframe<double>& airframe, bool known);
+void check_vehicle(ImportedDataset& dataset, const Airframe<double>& airframe, bool known,
+                   const OnProgress& on_progress = {});
 
 /// Throws std::invalid_argument, one line, where there is a contradiction: nothing should be learned from such flights.
 void require_one_vehicle(const ImportedDataset& dataset);

@@ -103,9 +103,7 @@ void respond(const pinnquad::RunTimePart& base, const Scalar* parameters, std::s
     response.base_most[k] += slope * (slope < 0 ? scaled.least[i] : scaled.most[i]);
   };
   const Scalar* weights = parameters + 3 * base.three_count + static_cast<int>(k) * base.shown();
-  for (int feature = 0; feature < base.inputs; ++feature) {
-    if (!base.in_three(feature)) add(*weights++, feature);
-  }
+  base.each_shown([&](int feature) { add(*weights++, feature); });
   for (int tap = 0; k > 0 && tap < base.three_count; ++tap) {
     const int axis = static_cast<int>(k) - 1;
     add(parameters[3 * tap + axis], base.threes[tap] + axis);
@@ -141,11 +139,10 @@ Response response_along(const Direction& direction, const pinnquad::RunTimeNetwo
     return response;
   }
   Direction shown(0);
-  for (std::size_t i = 0; i < features; ++i) {
-    if (residual.in_three(static_cast<int>(i))) continue;
-    shown.least.push_back(scaled.least[i]);
-    shown.most.push_back(scaled.most[i]);
-  }
+  residual.each_shown([&](int feature) {
+    shown.least.push_back(scaled.least[std::size_t(feature)]);
+    shown.most.push_back(scaled.most[std::size_t(feature)]);
+  });
   std::vector<double> work(pinnquad::path_workspace(residual));
   pinnquad::path_bound_along(parameters + base.parameter_count + (residual.bounded ? 8 : 0), residual.shown(),
                              static_cast<const int*>(widths), layers, shown.least.data(), shown.most.data(),

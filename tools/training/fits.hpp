@@ -11,8 +11,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "command_line/interrupt.hpp"
@@ -105,14 +108,17 @@ inline pinnquad::PastRows past_of(pinnquad::PastRows past, double looks_ahead_s)
   return past;
 }
 
-inline Predictions predictions_of(const ModelKind& kind, const TrainedNetwork& model, const pinnquad::RowSet& rows) {
-  Predictions predictions = model.predictions(rows);
-  if (predictions.size() != rows.size()) {
-    throw std::logic_error(std::string(kind.key) + ": " + std::to_string(predictions.size()) + " predictions of " +
-                           std::to_string(rows.size()) + " rows");
-  }
-  return predictions;
+inline void require_all(const ModelKind& kind, const Predictions& predictions, const pinnquad::RowSet& rows) {
+  if (predictions.size() == rows.size()) return;
+  throw std::logic_error(std::string(kind.key) + ": " + std::to_string(predictions.size()) + " predictions of " +
+                         std::to_string(rows.size()) + " rows");
 }
+
+/// Says that a fit has ended, whatever ended it.
+struct Ended {
+  std::atomic<double>& share;
+  ~Ended() { share.store(1); }
+};
 
 }  // namespace detail
 
@@ -123,7 +129,8 @@ inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) 
   const ModelKind& kind = plan.kinds[job.kind];
   const Fold& fold = plan.folds[job.fold];
   const auto error_of = [&](const TrainedNetwork& model) {
-    const Predictions predictions = detail::predictions_of(kind, model, fold.split.validation);
+    const Predictions predictions = model.predictions(fold.split.validation);
+    detail::require_all(kind, predictions, fold.split.validation);
     job.biases = pinnquad::try_biases(fold.split.validation, predictions, plan.airframe.value,
                                       detail::past_of(plan.past, model.looks_ahead_s()));
     return detail::mean_absolute_error(fold.split.validation, predictions);
@@ -143,9 +150,11 @@ inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) 
     job.validation_mae = error_of(*kind.fit(without));
   }
   if (fold.split.test.empty()) return;  // to be exported
-  job.held_out = detail::predictions_of(kind, *job.model, fold.split.test);
-  job.derivatives = job.model->derivatives(fold.split.test);
-  job.guard = job.model->guard_counts(fold.split.test);
+  Answers answers = job.model->answers(fold.split.test);
+  detail::require_all(kind, answers.predictions, fold.split.test);
+  job.held_out = std::move(answers.predictions);
+  job.derivatives = answers.derivatives;
+  job.guard = std::move(answers.guard);
 }
 
 /// A fit that is known from an earlier run, once more: the same rows, seed and altitude give the same model.
@@ -155,7 +164,8 @@ inline void fit_again(const FitPlan& plan, FinishedFit& job) {
   fit_one(plan, job, task);
 }
 
-/// All of a plan. Where the first seed's fit chooses whether a kind is shown the altitude, the other seeds' follow it.
+/// All of a plan. Where the first seed's fit chooses whether a kind is shown the altitude, the other seeds' follow it:
+/// a kind's are begun when that fit has ended.
 inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{}) {
   Fits fits;
   fits.not_applicable.assign(plan.kinds.size(), std::vector<std::string>(plan.folds.size()));
@@ -165,7 +175,6 @@ inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{})
     }
   }
   std::vector<FinishedFit> jobs;
-  std::size_t of_first_seed = 0;
   for (int i = 0; i < plan.seeds; ++i) {  // a seed whole before the next: what an interruption leaves can be compared
     for (std::size_t fold = 0; fold < plan.folds.size(); ++fold) {
       for (std::size_t kind = 0; kind < plan.kinds.size(); ++kind) {
@@ -177,47 +186,46 @@ inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{})
         jobs.push_back(std::move(job));
       }
     }
-    if (i == 0) of_first_seed = jobs.size();
   }
   fits.wanted = jobs.size();
   std::vector<char> done(jobs.size(), 0);
   std::vector<std::string> refused(jobs.size());
-  std::vector<std::atomic<double>> shares(jobs.size());
+  std::vector<std::atomic<double>> shares(jobs.size());  // 1: it has ended
   std::atomic<std::size_t> known{0};
   const auto fit = [&](std::size_t i) {
+    const auto first = static_cast<std::size_t>(
+        std::find_if(jobs.begin(), jobs.end(),
+                     [&](const FinishedFit& job) { return job.kind == jobs[i].kind && job.fold == jobs[i].fold; }) -
+        jobs.begin());
+    while (first != i && shares[first].load() < 1) {
+      stop_if_interrupted();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     stop_if_interrupted();
     if (earlier.load(jobs[i])) {
       done[i] = 1;
       known.fetch_add(1);
-    } else {
-      FitTask task = plan.task(plan.folds[jobs[i].fold], jobs[i].seed);
-      task.share_done = [&shares, i](double share) { shares[i].store(share); };
-      for (std::size_t first = 0; first < of_first_seed && i >= of_first_seed; ++first) {
-        if (jobs[first].kind == jobs[i].kind && jobs[first].fold == jobs[i].fold && jobs[first].altitude.applies) {
-          task.settings.altitude = jobs[first].altitude.taken;
-        }
-      }
-      try {
-        fit_one(plan, jobs[i], task);
-        earlier.keep(jobs[i]);
-        done[i] = 1;
-      } catch (const std::invalid_argument& without_answer) {
-        refused[i] = without_answer.what();
-      }
+      return;
     }
-    shares[i].store(1);
+    FitTask task = plan.task(plan.folds[jobs[i].fold], jobs[i].seed);
+    task.share_done = [&shares, i](double share) { shares[i].store(std::min(share, 0.99)); };
+    if (first != i && jobs[first].altitude.applies) task.settings.altitude = jobs[first].altitude.taken;
+    try {
+      fit_one(plan, jobs[i], task);
+      earlier.keep(jobs[i]);
+      done[i] = 1;
+    } catch (const std::invalid_argument& without_answer) {
+      refused[i] = without_answer.what();
+    }
   };
-  const auto run = [&](std::size_t begin, std::size_t end) {
-    const auto share_done = [&] {
-      double sum = 0;
-      for (std::size_t i = begin; i < end; ++i) sum += shares[i].load();
-      return sum / static_cast<double>(end - begin);
-    };
-    const std::string job = plan.shows_progress ? "fitting " + std::to_string(end - begin) + " models" : "";
-    run_parallel(job, end - begin, plan.threads, share_done, [&](std::size_t i) { fit(begin + i); });
+  const auto share_done = [&shares] {
+    return std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size());
   };
-  run(0, of_first_seed);
-  if (of_first_seed < jobs.size()) run(of_first_seed, jobs.size());
+  const std::string job = plan.shows_progress ? "fitting " + std::to_string(jobs.size()) + " models" : "";
+  run_parallel(job, jobs.size(), plan.threads, share_done, [&](std::size_t i) {
+    const detail::Ended ended{shares[i]};
+    fit(i);
+  });
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (!refused[i].empty()) fits.not_applicable[jobs[i].kind][jobs[i].fold] = refused[i];
     if (done[i] != 0) fits.finished.push_back(std::move(jobs[i]));

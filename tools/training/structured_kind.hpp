@@ -42,6 +42,11 @@ class StructuredNetwork : public ExportedStructured<Model> {
         [&](std::size_t row, const std::vector<double>& x) { result[row] = this->block()->commands(x); });
     return result;
   }
+  Answers answers(const pinnquad::RowSet& rows) const override {
+    Answers result = ExportedStructured<Model>::answers(rows);
+    if (slopes_.by_instruments()) result.predictions = predictions(rows);
+    return result;
+  }
   AltitudeChoice altitude() const override { return altitude_; }
   pinnquad::SlopesOfSums slopes() const override { return slopes_.of; }
   /// Limits are found by rows that it was not fitted to.

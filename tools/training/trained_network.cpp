@@ -35,6 +35,11 @@ bool is_finite(const pinnquad::Commands<double>& commands) {
   return std::all_of(commands.begin(), commands.end(), [](double u) { return std::isfinite(u); });
 }
 
+Predictions without_answer(const pinnquad::RowSet& rows) {
+  constexpr double none = pinnquad::not_a_number;
+  return Predictions(rows.size(), {none, none, none, none});
+}
+
 }  // namespace
 
 GuardCounts& GuardCounts::operator+=(const GuardCounts& other) {
@@ -47,14 +52,14 @@ GuardCounts& GuardCounts::operator+=(const GuardCounts& other) {
   return *this;
 }
 
-GuardCounts TrainedNetwork::guard_counts(const pinnquad::RowSet& rows) const {
-  GuardCounts counts;
-  for (const pinnquad::Commands<double>& commands : predictions(rows)) {
-    ++counts.rows;
-    if (!is_finite(commands)) ++counts.warming_up;
-    if (is_finite(commands) && beyond_limits(commands)) ++counts.beyond_limits;
+Answers TrainedNetwork::answers(const pinnquad::RowSet& rows) const {
+  Answers result{predictions(rows), derivatives(rows), {}};
+  for (const pinnquad::Commands<double>& commands : result.predictions) {
+    ++result.guard.rows;
+    if (!is_finite(commands)) ++result.guard.warming_up;
+    if (is_finite(commands) && beyond_limits(commands)) ++result.guard.beyond_limits;
   }
-  return counts;
+  return result;
 }
 
 std::optional<pinnquad::Certificate> TrainedNetwork::certificate() const {
@@ -65,17 +70,22 @@ bool TrainedNetwork::is_proven() const { return block() != nullptr && block()->p
 
 BlockNetwork::BlockNetwork(const std::vector<unsigned char>& block) : block_("a trained model", block) {}
 
-Predictions BlockNetwork::predictions(const pinnquad::RowSet& rows) const { return answers(rows, false); }
+Predictions BlockNetwork::predictions(const pinnquad::RowSet& rows) const { return commands(rows, false); }
 
-Predictions BlockNetwork::guarded_predictions(const pinnquad::RowSet& rows) const { return answers(rows, true); }
+Predictions BlockNetwork::guarded_predictions(const pinnquad::RowSet& rows) const { return commands(rows, true); }
 
-GuardCounts BlockNetwork::guard_counts(const pinnquad::RowSet& rows) const {
+Answers BlockNetwork::answers(const pinnquad::RowSet& rows) const {
   const std::vector<double> lower = block_.envelope_lower(), upper = block_.envelope_upper();
   const std::vector<std::string> names = block_.feature_names();
-  GuardCounts counts;
+  Answers result;
+  result.predictions = without_answer(rows);
+  GuardCounts& counts = result.guard;
   counts.rows = rows.size();
   counts.warming_up = rows.size();
-  const auto take = [&](std::size_t, const pinnquad::AnsweredRow& answer) {
+  DerivativeSigns signs;
+  const auto take = [&](std::size_t row, const pinnquad::AnsweredRow& answer) {
+    result.predictions[row] = answer.commands;
+    signs.add(answer.derivatives);
     --counts.warming_up;
     if (!answer.inside_envelope) {
       ++counts.outside_envelope;
@@ -96,20 +106,14 @@ GuardCounts BlockNetwork::guard_counts(const pinnquad::RowSet& rows) const {
       ++counts.beyond_limits;
     }
   };
-  block_.answer(rows, take, false);
-  return counts;
-}
-
-DerivativeFigures BlockNetwork::derivatives(const pinnquad::RowSet& rows) const {
-  DerivativeSigns signs;
-  block_.answer(rows, [&signs](std::size_t, const pinnquad::AnsweredRow& row) { signs.add(row.derivatives); });
-  return signs.figures();
+  block_.answer(rows, take);
+  result.derivatives = signs.figures();
+  return result;
 }
 
 /// NaN for a row without features and, if `guarded`, for one outside the training envelope.
-Predictions BlockNetwork::answers(const pinnquad::RowSet& rows, bool guarded) const {
-  constexpr double none = pinnquad::not_a_number;
-  Predictions result(rows.size(), {none, none, none, none});
+Predictions BlockNetwork::commands(const pinnquad::RowSet& rows, bool guarded) const {
+  Predictions result = without_answer(rows);
   const auto take = [&](std::size_t row, const pinnquad::AnsweredRow& answer) {
     if (answer.inside_envelope || !guarded) result[row] = answer.commands;
   };

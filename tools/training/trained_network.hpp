@@ -46,6 +46,13 @@ struct GuardCounts {
   GuardCounts& operator+=(const GuardCounts& other);
 };
 
+/// Of rows that a model was not trained on.
+struct Answers {
+  Predictions predictions;
+  DerivativeFigures derivatives;  ///< see derivative_figures()
+  GuardCounts guard;
+};
+
 class TrainedNetwork {
  public:
   virtual ~TrainedNetwork() = default;
@@ -53,10 +60,10 @@ class TrainedNetwork {
   virtual Predictions predictions(const pinnquad::RowSet& rows) const = 0;
   /// The same, NaN where the guard of its export declines: for a row outside the training envelope.
   virtual Predictions guarded_predictions(const pinnquad::RowSet& rows) const { return predictions(rows); }
-  /// The same, counted; of a model to be compared with alone, which has no guard, by what it predicts.
-  virtual GuardCounts guard_counts(const pinnquad::RowSet& rows) const;
   /// See derivative_figures().
   virtual DerivativeFigures derivatives(const pinnquad::RowSet& rows) const = 0;
+  /// All of it; of a model to be compared with alone, which has no guard, the counts are by what it predicts.
+  virtual Answers answers(const pinnquad::RowSet& rows) const;
   /// How far beyond a row's own time it reads, s: of a window that is centred.
   virtual double looks_ahead_s() const { return 0; }
   virtual AltitudeChoice altitude() const { return {}; }
@@ -115,13 +122,13 @@ class BlockNetwork : public TrainedNetwork {
 
   Predictions predictions(const pinnquad::RowSet& rows) const override;
   Predictions guarded_predictions(const pinnquad::RowSet& rows) const override;
-  GuardCounts guard_counts(const pinnquad::RowSet& rows) const override;
-  DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override;
+  DerivativeFigures derivatives(const pinnquad::RowSet& rows) const override { return answers(rows).derivatives; }
+  Answers answers(const pinnquad::RowSet& rows) const override;
   double looks_ahead_s() const override { return block_.features().window().latest_s; }
   const pinnquad::BlockModel* block() const override { return &block_; }
 
  private:
-  Predictions answers(const pinnquad::RowSet& rows, bool guarded) const;
+  Predictions commands(const pinnquad::RowSet& rows, bool guarded) const;
 
   pinnquad::BlockModel block_;
 };

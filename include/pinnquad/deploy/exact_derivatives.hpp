@@ -9,6 +9,7 @@
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/exported/run_time_model.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"
+#include "pinnquad/nn/kernel/pack.hpp"
 
 namespace pinnquad {
 
@@ -63,7 +64,9 @@ class ExactDerivatives {
   /// Of features in physical units. `held`: of a window the angular acceleration of all taps is moved; else the present
   /// alone. At the kink of a ReLU it is the derivative from below, as in nn/jacobian.hpp.
   AxisDerivatives operator()(const double* features, bool held = true) const {
-    using Entry = RunTimeNetwork::Values<double, 4>;  // a value, and its derivatives by three angular accelerations
+    // a value, its derivatives by three angular accelerations, and zeros that fill a pack
+    constexpr int numbers = padded<NativePack<double>>(4);
+    using Entry = RunTimeNetwork::Values<double, numbers>;
     const int inputs = network_.inputs(), outputs = network_.outputs();
     std::vector<Entry> work(std::size_t(inputs + outputs) + network_.workspace());
     Entry* const x = work.data();
@@ -71,7 +74,7 @@ class ExactDerivatives {
     for (std::size_t i = 0; i < input_mean_.size(); ++i) x[i] = {(features[i] - input_mean_[i]) / input_deviation_[i]};
     each_angular_acceleration(
         held, [&](std::size_t axis, std::size_t feature) { x[feature][axis + 1] = 1 / input_deviation_[feature]; });
-    network_.forward<double, 4>(parameters_.data(), static_cast<const Entry*>(x), y, y + outputs);
+    network_.forward<double, numbers>(parameters_.data(), static_cast<const Entry*>(x), y, y + outputs);
     std::vector<double> made(output_mean_.size()), by_outputs(std::size_t(rotor_count) * output_mean_.size());
     for (std::size_t k = 0; k < made.size(); ++k) made[k] = y[k][0] * output_deviation_[k] + output_mean_[k];
     constexpr std::size_t read = RunTimeOutputs<double>::base_features;

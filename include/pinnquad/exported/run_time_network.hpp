@@ -45,12 +45,14 @@ struct RunTimePart {
 
   /// Features that all of it is shown.
   constexpr int shown() const noexcept { return inputs - 3 * three_count; }
-  /// True for one of the features that it is not shown, or one per axis.
-  constexpr bool in_three(int feature) const noexcept {
-    for (int i = 0; i < three_count; ++i) {
-      if (feature >= threes[i] && feature < threes[i] + 3) return true;
+  /// Calls visit(feature) for each of them, ascending.
+  template <class Visit>
+  constexpr void each_shown(const Visit& visit) const noexcept {
+    int feature = 0;
+    for (int i = 0; i < three_count; ++i, feature += 3) {
+      while (feature < threes[i]) visit(feature++);
     }
-    return false;
+    while (feature < inputs) visit(feature++);
   }
 };
 
@@ -262,9 +264,7 @@ class RunTimeNetwork {
     const Scalar* const bounds = own;
     if (part.bounded) own += 2 * part.outputs;
     int width = 0;
-    for (int feature = 0; feature < part.inputs; ++feature) {
-      if (!part.in_three(feature)) work[width++] = x[feature];
-    }
+    part.each_shown([&](int feature) { work[width++] = x[feature]; });
     for (int i = 0; i < part.layer_count; ++i) {
       const RunTimeLayer& layer = part.layers[i];
       if (layer.outputs == 0) {
@@ -276,7 +276,7 @@ class RunTimeNetwork {
         spare[row] = {};
         if (layer.has_bias) begin<Kind>(static_cast<Number>(biases[row]), spare[row]);
       }
-      add_rows<Kind>(own, layer.outputs, width, work, spare);
+      detail::add_lane_rows(own, layer.outputs, width, work, spare);
       own = biases + (layer.has_bias ? layer.outputs : 0);
       width = layer.outputs;
       Values<Number, Count>* const before = work;
@@ -296,10 +296,8 @@ class RunTimeNetwork {
     for (int row = 0; row < 4; ++row) {
       Values<Number, Count> sum{};
       begin<Kind>(static_cast<Number>(weights[4 * others + row]), sum);
-      int other = 0;
-      for (int feature = 0; feature < part.inputs; ++feature) {
-        if (!part.in_three(feature)) add_product(weights[row * others + other++], x[feature], sum);
-      }
+      const Scalar* weight = weights + row * others;
+      part.each_shown([&](int feature) { add_product(*weight++, x[feature], sum); });
       for (int tap = 0; row > 0 && tap < part.three_count; ++tap) {
         add_product(slopes[3 * tap + row - 1], x[part.threes[tap] + row - 1], sum);
       }
@@ -312,18 +310,6 @@ class RunTimeNetwork {
   static void begin(Number bias, std::array<Number, Count>& sum) noexcept {
     constexpr std::size_t values = Kind == RunTimeEntry::lanes ? Count : 1;
     for (std::size_t c = 0; c < values; ++c) sum[c] = bias;
-  }
-
-  template <RunTimeEntry Kind, class Scalar, class Number, std::size_t Count>
-  static void add_rows(const Scalar* weights, int rows, int width, const std::array<Number, Count>* x,
-                       std::array<Number, Count>* sums) noexcept {
-    if constexpr (Kind == RunTimeEntry::lanes || Count == 1) {
-      detail::add_lane_rows(weights, rows, width, x, sums);
-    } else {
-      for (int row = 0; row < rows; ++row) {
-        for (int column = 0; column < width; ++column) add_product(*weights++, x[column], sums[row]);
-      }
-    }
   }
 
   template <class Scalar, class Number, std::size_t Count>

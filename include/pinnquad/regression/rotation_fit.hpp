@@ -121,7 +121,7 @@ class RotationFit {
     std::array<double, 3> effectiveness{}, weights = {1, 1, 1};
     for (int step = 0; step < most_steps; ++step) {
       const Fractions s = rows_.flights().thrust_fractions(curve_, response);
-      const BlockSolution found = linearized(response, parts, effectiveness, weights).solve(false);
+      const BlockSolution found = linearized(s, response, parts, effectiveness, weights).solve(false);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         effectiveness[axis] = found.values()[axis * of_axis];
         weights[axis] = 1 / deviation(s, axis, found, axis * of_axis);
@@ -138,7 +138,8 @@ class RotationFit {
       }
       if (step >= least_steps && moved < close_s) break;
     }
-    return linearized(response, parts, effectiveness, weights).solve();
+    const Fractions s = rows_.flights().thrust_fractions(curve_, response);
+    return linearized(s, response, parts, effectiveness, weights).solve();
   }
 
  private:
@@ -168,10 +169,9 @@ class RotationFit {
     return result;
   }
 
-  /// The three axes, linear about `response`, each row by its axis' weight.
-  BlockRegression linearized(const RotorResponse& response, const std::vector<Part>& parts,
+  /// The three axes, linear about `response`, each row by its axis' weight; `s`: fractions under it.
+  BlockRegression linearized(const Fractions& s, const RotorResponse& response, const std::vector<Part>& parts,
                              const std::array<double, 3>& effectiveness, const std::array<double, 3>& weights) const {
-    const Fractions s = rows_.flights().thrust_fractions(curve_, response);
     std::vector<Fractions> slopes;
     slopes.reserve(parts.size());
     for (const Part& part : parts) slopes.push_back(slope(response, part));

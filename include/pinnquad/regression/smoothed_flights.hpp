@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "pinnquad/core/lanes.hpp"
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/actuator.hpp"
@@ -77,40 +78,46 @@ class SmoothedFlights {
     const double step = 1 / static_cast<double>(parts);  // in rows
     // what is left of a distance at the end of a step, and in the mean over it
     struct Approach {
-      double end, mean;
+      AllRotors end, mean;
     };
     const auto approach = [step_s = period_s_ * step](double lag_s) {
       const double end = lag_factor(lag_s, step_s);
-      return Approach{end, (1 - end) * lag_s / step_s};
+      return Approach{AllRotors(end), AllRotors((1 - end) * lag_s / step_s)};
     };
     const Approach rise = approach(response.rise_s), fall = approach(response.fall_s);
     const double late = response.delay_s / period_s_;
-    Series thrust;
+    std::vector<AllRotors> thrust;
     for (const Stretch& stretch : stretches_) {
-      for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
-        const Series& u = stretch.commands[rotor];
-        thrust.resize(u.size() - 1);
-        double now = thrust_fraction(curve, clip_command(at_row(u, -late)));
-        for (std::size_t row = 0; row < thrust.size(); ++row) {
-          double sum = 0;
-          for (std::size_t part = 0; part < parts; ++part) {
-            const double at = static_cast<double>(row) + (static_cast<double>(part) + 0.5) * step - late;
-            const double wanted = thrust_fraction(curve, clip_command(at_row(u, at)));
-            const Approach& by = wanted >= now ? rise : fall;
-            sum += wanted + by.mean * (now - wanted);
-            now = wanted + by.end * (now - wanted);
-          }
-          thrust[row] = sum * step;
+      const auto wanted_at = [&](double row) {
+        return thrust_fraction(AllRotors(curve), clip_command(at_row(stretch.commands, row - late)));
+      };
+      thrust.resize(stretch.commands.size() - 1);
+      AllRotors now = wanted_at(0);
+      for (std::size_t row = 0; row < thrust.size(); ++row) {
+        AllRotors sum(0);
+        for (std::size_t part = 0; part < parts; ++part) {
+          const AllRotors wanted = wanted_at(static_cast<double>(row) + (static_cast<double>(part) + 0.5) * step);
+          const auto rising = wanted >= now;
+          sum += wanted + select(rising, rise.mean, fall.mean) * (now - wanted);
+          now = wanted + select(rising, rise.end, fall.end) * (now - wanted);
         }
-        smooth(thrust, stretch.instants, stretch.first, result[rotor]);
+        thrust[row] = sum * AllRotors(step);
       }
+      smooth(thrust, stretch.instants, stretch.first, [&result](const AllRotors& fractions) {
+        for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+          result[rotor].push_back(fractions.lane(static_cast<int>(rotor)));
+        }
+      });
     }
     return result;
   }
 
  private:
+  /// A number of each rotor, and of none in the lanes that are left.
+  using AllRotors = Lanes<double, std::max(static_cast<int>(rotor_count), native_lanes<double>)>;
+
   struct Stretch {
-    std::array<Series, rotor_count> commands;
+    std::vector<AllRotors> commands;
     std::size_t first = 0;  ///< row of the first instant
     std::size_t instants = 0;
   };
@@ -125,17 +132,18 @@ class SmoothedFlights {
   }
 
   /// At a row with its fraction, on a cubic through four rows (Catmull and Rom).
-  static double at_row(const Series& u, double row) noexcept {
+  static AllRotors at_row(const std::vector<AllRotors>& u, double row) noexcept {
     const auto last = static_cast<double>(u.size() - 1);
     if (row <= 0) return u.front();
     if (row >= last) return u.back();
     const auto i = static_cast<std::size_t>(row);
-    const double s = row - static_cast<double>(i);
+    const AllRotors s(row - static_cast<double>(i)), two(2), three(3), four(4), five(5);
     const auto [a, b, c, d] = around(u, i);
-    return b + 0.5 * s * (c - a + s * (2 * a - 5 * b + 4 * c - d + s * (3 * (b - c) + d - a)));
+    return b + AllRotors(0.5) * s * (c - a + s * (two * a - five * b + four * c - d + s * (three * (b - c) + d - a)));
   }
   /// Rows i - 1 to i + 2, the ends repeated.
-  static std::array<double, 4> around(const Series& u, std::size_t i) noexcept {
+  template <class Value>
+  static std::array<Value, 4> around(const std::vector<Value>& u, std::size_t i) noexcept {
     const std::size_t last = u.size() - 1;
     return {u[i > 0 ? i - 1 : 0], u[i], u[std::min(i + 1, last)], u[std::min(i + 2, last)]};
   }
@@ -154,13 +162,14 @@ class SmoothedFlights {
     return result;
   }
 
-  /// Appends the weighted sums around each instant.
-  void smooth(const Series& intervals, std::size_t instants, std::size_t first, Series& result) const {
+  /// Calls take(weighted sum) of each instant.
+  template <class Value, class Take>
+  void smooth(const std::vector<Value>& intervals, std::size_t instants, std::size_t first, const Take& take) const {
     for (std::size_t i = 0; i < instants; ++i) {
-      const double* const from = &intervals[first + i * stride_ - half_];
-      double sum = 0;
-      for (std::size_t k = 0; k < weights_.size(); ++k) sum += weights_[k] * from[k];
-      result.push_back(sum);
+      const Value* const from = &intervals[first + i * stride_ - half_];
+      Value sum(0);
+      for (std::size_t k = 0; k < weights_.size(); ++k) sum += Value(weights_[k]) * from[k];
+      take(sum);
     }
   }
 
@@ -186,7 +195,9 @@ class SmoothedFlights {
     Series voltage;
     for (std::size_t row = rows.begin; row < rows.end; ++row) {
       const Sample& sample = flight[row];
-      for (std::size_t k = 0; k < rotor_count; ++k) stretch.commands[k].push_back(sample.commands[k]);
+      AllRotors commands(0);
+      for (std::size_t k = 0; k < rotor_count; ++k) commands.set_lane(static_cast<int>(k), sample.commands[k]);
+      stretch.commands.push_back(commands);
       const MotionInputs<double> motion = sample_inputs<MotionInputs<double>>(sample);
       const Vector3<double> force = SpecificForce::of(motion);
       const Vector3<double>& w = sample.body_rates_rad_s;
@@ -204,7 +215,7 @@ class SmoothedFlights {
       if (battery != nullptr) voltage.push_back(battery->values[row]);
     }
     const auto add = [&](const Series& intervals, Series& result) {
-      smooth(intervals, stretch.instants, first, result);
+      smooth(intervals, stretch.instants, first, [&result](double sum) { result.push_back(sum); });
     };
     for (std::size_t axis = 0; axis < 3; ++axis) {
       add(means(series[axis]), rates_[axis]);
