@@ -35,8 +35,7 @@ class StructuredNetwork : public ExportedStructured<Model> {
         fits_validation_(fits_validation) {}
   Predictions predictions(const pinnquad::RowSet& rows) const override {
     if (!slopes_.by_instruments()) return ExportedStructured<Model>::predictions(rows);
-    constexpr double none = pinnquad::not_a_number;
-    Predictions result(rows.size(), {none, none, none, none});
+    Predictions result = without_answer(rows);
     pinnquad::each_denoised<typename Model::Features>(
         input_, slopes_, rows,
         [&](std::size_t row, const std::vector<double>& x) { result[row] = this->block()->commands(x); });

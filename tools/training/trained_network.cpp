@@ -35,11 +35,6 @@ bool is_finite(const pinnquad::Commands<double>& commands) {
   return std::all_of(commands.begin(), commands.end(), [](double u) { return std::isfinite(u); });
 }
 
-Predictions without_answer(const pinnquad::RowSet& rows) {
-  constexpr double none = pinnquad::not_a_number;
-  return Predictions(rows.size(), {none, none, none, none});
-}
-
 }  // namespace
 
 GuardCounts& GuardCounts::operator+=(const GuardCounts& other) {

@@ -46,6 +46,12 @@ struct GuardCounts {
   GuardCounts& operator+=(const GuardCounts& other);
 };
 
+/// NaN for every row.
+inline Predictions without_answer(const pinnquad::RowSet& rows) {
+  constexpr double none = pinnquad::not_a_number;
+  return Predictions(rows.size(), {none, none, none, none});
+}
+
 /// Of rows that a model was not trained on.
 struct Answers {
   Predictions predictions;
