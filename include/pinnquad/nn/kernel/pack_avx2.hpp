@@ -65,13 +65,20 @@ struct PackAvx2 {
   static constexpr int columns = 2;
   static constexpr int values = 8;
   static constexpr int blocks_per_register = 2;
-  static constexpr int blocks_at_once = 2;
-  static constexpr int chains = 3;
+  static constexpr int blocks_at_once = 4;
+  static constexpr int chains = 2;
 
   static constexpr int lane_of_value(int value) noexcept { return value; }
   /// The row whose products stand in lanes 2 pair and 2 pair + 1 of a block, such that collect() puts it in its place.
   static constexpr int row_of_pair(int block, int pair) noexcept { return 4 * (pair / 2) + 2 * block + pair % 2; }
 
+  /// Each half meets its own four values first, then those of the other: halves are swapped once, not pair by pair.
+  static constexpr int column_met(int first, int pair) noexcept { return (first + 4 * (pair / 2)) % values; }
+  template <int First>
+  PINNQUAD_ALWAYS_INLINE PackAvx2 meet() const noexcept {
+    const __m256 halves = First < 4 ? value : _mm256_permute2f128_ps(value, value, 1);
+    return {_mm256_shuffle_ps(halves, halves, First % 4 == 0 ? 0x44 : 0xee)};
+  }
   /// Values First and First + 1, in turn.
   template <int First>
   PINNQUAD_ALWAYS_INLINE PackAvx2 repeat() const noexcept {

@@ -16,7 +16,8 @@
 //   value: its register
 //   columns: inputs that a step takes, 1 or 2; each row stands in `columns` neighbouring lanes (a "pair")
 //   values: outputs that one register holds; blocks_per_register: blocks (of width / columns rows) that make it
-//   blocks_at_once: blocks worked on side by side; chains: sums per block that hide the multiply-add's latency
+//   blocks_at_once: blocks worked on side by side; chains: sums per block that hide the multiply-add's latency (one
+//   more where fewer blocks are left)
 //   lane_of_value(i): the lane where value i of a register stands
 //   row_of_pair(block, pair): the row whose products stand in that pair, such that collect() puts it in its place
 //   repeat<First>(): values First, ..., First + columns - 1 in every row; repeat(const Scalar*): the same from memory;
@@ -27,6 +28,9 @@
 //   collect(sums): blocks_per_register blocks, the lanes of each row added, as values
 //   head<Count>(): the first Count values, 0 behind; sum_of_values(): their sum in the first lane
 //   store_values<Count>(y): the first Count values to y, nothing behind
+//
+// One whose pairs may take the values of a full register in different orders has, beside repeat(), meet<First>(): what
+// each pair takes in that step, column_met(First, pair) being the first of it. Over all steps a pair meets each once.
 #pragma once
 
 #include <type_traits>

@@ -16,6 +16,11 @@ using BlocksAtOnceOf = decltype(Pack::blocks_at_once);
 /// True for packs that say how a layer lies in their registers.
 template <class Pack>
 inline constexpr bool keeps_layers_in_registers = is_detected<BlocksAtOnceOf, Pack>;
+template <class Pack>
+using ColumnMetOf = decltype(Pack::column_met(0, 0));
+/// True for packs in whose full registers rows meet the values in an order of their own.
+template <class Pack>
+inline constexpr bool meets_in_own_order = is_detected<ColumnMetOf, Pack>;
 
 /// Outputs of a layer. One value past whole registers ("lone", 25 = 24 + 1) stands alone: a dot product is cheaper
 /// than a block for one row.
@@ -25,16 +30,29 @@ struct RegisterValues {
   static constexpr bool lone = Size > Pack::values&& Size % Pack::values == 1;
   static constexpr int in_registers = lone ? Size - 1 : Size;
   static constexpr int registers = (in_registers + Pack::values - 1) / Pack::values;
+  static constexpr int in_own_order = meets_in_own_order<Pack> ? in_registers / Pack::values * Pack::values : 0;
 
   Pack value[registers];
   Pack last;  ///< the lone value in the first lane; what the others hold means nothing
 
+  /// The first of the inputs that a pair of lanes takes in a step.
+  static constexpr int first_column(int step, int pair) noexcept {
+    const int first = step * Pack::columns;
+    if constexpr (in_own_order > 0) {
+      if (first < in_own_order) {
+        return first / Pack::values * Pack::values + Pack::column_met(first % Pack::values, pair);
+      }
+    }
+    return first;
+  }
   /// Inputs of one step in every row. Behind an odd count stands a 1: its weight is the bias.
   template <int Step>
   PINNQUAD_ALWAYS_INLINE Pack repeat() const noexcept {
     constexpr int first = Step * Pack::columns;
     if constexpr (lone && first == Size - 1) {
       return Pack::repeat_last(last);
+    } else if constexpr (first < in_own_order) {
+      return value[first / Pack::values].template meet<first % Pack::values>();
     } else {
       const Pack inputs = value[first / Pack::values].template repeat<first % Pack::values>();
       if constexpr (first + Pack::columns > Size) {
@@ -89,6 +107,7 @@ struct MemoryValues {
 
   X x;
 
+  static constexpr int first_column(int step, int) noexcept { return step * Pack::columns; }
   template <int Step>
   PINNQUAD_ALWAYS_INLINE Pack repeat() const noexcept {
     constexpr int first = Step * Pack::columns;
@@ -140,8 +159,11 @@ struct RegisterLayer {
         if (row >= rows) continue;
         const int lane = pair * Pack::columns;
         Scalar* const weights = packed + Pack::width * steps * block + lane;
-        for (int column = 0; column < in; ++column) {
-          weights[Pack::width * (column / Pack::columns) + column % Pack::columns] = weight[row * in + column];
+        for (int step = 0; step < steps; ++step) {
+          const int first = Values::first_column(step, pair);
+          for (int column = first; column < first + Pack::columns && column < in; ++column) {
+            weights[Pack::width * step + column - first] = weight[row * in + column];
+          }
         }
         (bias_in_step ? weights[Pack::width * (steps - 1) + 1] : packed[bias_start + Pack::width * block + lane]) =
             bias[row];
@@ -176,7 +198,8 @@ struct RegisterLayer {
   template <int First, int Count, class Activation>
   static PINNQUAD_ALWAYS_INLINE void multiply_blocks(const Scalar* packed, const Values& x,
                                                      const Activation& activation, Result& result) noexcept {
-    constexpr int chains = Pack::chains < steps ? Pack::chains : steps;
+    constexpr int most = Pack::chains + (Count < Pack::blocks_at_once ? 1 : 0);
+    constexpr int chains = most < steps ? most : steps;
     Pack sum[chains][Count];
     unroll<steps>([&](auto s) PINNQUAD_INLINE_LAMBDA {
       constexpr int step = decltype(s)::value;
