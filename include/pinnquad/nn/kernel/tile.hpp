@@ -69,17 +69,16 @@ PINNQUAD_ALWAYS_INLINE void in_even_tiles(const Body& body) noexcept {
   constexpr int tiles = (Rows + Largest - 1) / Largest;
   constexpr int height = Rows / tiles;
   constexpr int taller = Rows % tiles;  // the first `taller` tiles have one row more
-  unroll<tiles>([&](auto i) PINNQUAD_INLINE_LAMBDA {
-    constexpr int index = decltype(i)::value;
-    body(Index<index * height + (index < taller ? index : taller)>{}, Index<height + (index < taller ? 1 : 0)>{});
-  });
+  if constexpr (taller > 0) {
+    for (int first = 0; first < taller * (height + 1); first += height + 1) body(first, Index<height + 1>{});
+  }
+  for (int first = taller * (height + 1); first < Rows; first += height) body(first, Index<height>{});
 }
 
 /// The same into tiles of `Height`, and one of what is left.
 template <int Rows, int Height, class Body>
 PINNQUAD_ALWAYS_INLINE void in_full_tiles(const Body& body) noexcept {
-  unroll<Rows / Height>([&](auto i)
-                            PINNQUAD_INLINE_LAMBDA { body(Index<decltype(i)::value * Height>{}, Index<Height>{}); });
+  for (int first = 0; first + Height <= Rows; first += Height) body(first, Index<Height>{});
   if constexpr (Rows % Height > 0) {
     body(Index<Rows - Rows % Height>{}, Index<Rows % Height>{});
   }
@@ -120,8 +119,7 @@ PINNQUAD_ALWAYS_INLINE void multiply_rows(const typename Pack::Scalar* a, const 
         [](auto, auto) PINNQUAD_INLINE_LAMBDA { return Pack::broadcast(typename Pack::Scalar(0)); },
         [](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum; }, c + offset, Columns);
   };
-  unroll<blocks>([&](auto i)
-                     PINNQUAD_INLINE_LAMBDA { tile(Index<block>{}, decltype(i)::value * block * Pack::width); });
+  for (int i = 0; i < blocks; ++i) tile(Index<block>{}, i * block * Pack::width);
   if constexpr (rest > 0) tile(Index<rest>{}, blocks * block * Pack::width);
 }
 

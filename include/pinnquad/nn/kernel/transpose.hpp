@@ -17,8 +17,8 @@ using FourColumnsOf =
 
 /// to[column][row] = from[row][column]; nothing else is read or written.
 template <class Pack>
-PINNQUAD_ALWAYS_INLINE void transpose(const typename Pack::Scalar* from, int from_stride, int rows, int columns,
-                                      typename Pack::Scalar* to, int to_stride) noexcept {
+PINNQUAD_NOINLINE void transpose(const typename Pack::Scalar* from, int from_stride, int rows, int columns,
+                                 typename Pack::Scalar* to, int to_stride) noexcept {
   int done = 0;
   if constexpr (is_detected<FourColumnsOf, Pack>) {
     if (rows >= Pack::width) {
