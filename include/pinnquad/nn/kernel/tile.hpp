@@ -63,7 +63,7 @@ PINNQUAD_ALWAYS_INLINE void multiply_tile(const Scalar* a, const Scalar* b, int 
   });
 }
 
-/// Cuts `Rows` into tiles of nearly equal height, at most `Largest`: body(first, rows) with compile-time values.
+/// Cuts `Rows` into tiles of nearly equal height, at most `Largest`: body(first, rows), `rows` an Index.
 template <int Rows, int Largest, class Body>
 PINNQUAD_ALWAYS_INLINE void in_even_tiles(const Body& body) noexcept {
   constexpr int tiles = (Rows + Largest - 1) / Largest;
