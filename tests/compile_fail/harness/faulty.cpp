@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// The harness is tried on this source: each macro is one way in which a case can turn out.
+// Two of three cases are wrong: each macro is one way in which a case can turn out.
+// CASE GOOD: the rule, in plain words
+// CASE COMPILES: the rule, in plain words
+// CASE OTHER_REASON: the rule, in plain words
 int main() {
 #if defined(GOOD)
   static_assert(sizeof(int) == 0, "the rule, in plain words");
