@@ -6,6 +6,11 @@ add_library(pinnquad_warnings INTERFACE)
 target_compile_options(pinnquad_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow
   $<$<BOOL:${PINNQUAD_WARNINGS_AS_ERRORS}>:-Werror>)
+# for tests that call a compiler themselves
+set(pinnquad_werror "")
+if(PINNQUAD_WARNINGS_AS_ERRORS)
+  set(pinnquad_werror -Werror)
+endif()
 
 # The benches link the warnings alone: they measure what a user's flags give. All else is reproducible:
 add_library(pinnquad_development INTERFACE)
