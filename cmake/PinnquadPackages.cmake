@@ -21,6 +21,26 @@ macro(pinnquad_require_package name)
   endif()
 endmacro()
 
+# pinnquad_find_onnx(<variable>): the target of ONNX's messages, or nothing, with a line that says why. From ONNX 1.17 on it
+# is ONNX::onnx_proto.
+macro(pinnquad_find_onnx variable)
+  find_package(Protobuf QUIET MODULE)
+  find_package(ONNX QUIET CONFIG)
+  set(${variable} "")
+  if(NOT TARGET protobuf::libprotobuf OR NOT ONNX_FOUND)
+    set(_onnx_lacks "no libonnx-dev, libprotobuf-dev")
+  elseif(TARGET ONNX::onnx_proto)
+    set(${variable} ONNX::onnx_proto)
+  elseif(TARGET onnx_proto)
+    set(${variable} onnx_proto)
+  else()
+    set(_onnx_lacks "ONNX in ${ONNX_DIR} has no target onnx_proto")
+  endif()
+  if(NOT ${variable})
+    message(STATUS "pinnquad: pinnquad convert reads and writes no ONNX (${_onnx_lacks})")
+  endif()
+endmacro()
+
 # pinnquad_require_pytest(): sets PINNQUAD_TEST_PYTHON, the Python that has pytest; Debian's before another of the PATH.
 macro(pinnquad_require_pytest)
   find_program(PINNQUAD_TEST_PYTHON python3 HINTS /usr/bin DOC "Runs the tests of the programs; has pytest")
