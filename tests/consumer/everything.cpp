@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // All headers, those of an autopilot and the shipped models with them, for a compiler that warns of what users warn of. The
-// quickstart instantiates what flies.
+// quickstart, and its main(), instantiate what flies.
 #include <pinnquad/control/autopilot/recorded_controller.hpp>
 #include <pinnquad/control/autopilot/take_off.hpp>
 #include <pinnquad/pinnquad.hpp>
@@ -9,10 +9,3 @@
 #include "../../examples/quickstart.cpp"
 #include "crazyflie_2_1.hpp"
 #include "structured_quadrotor.hpp"
-
-pinnquad::Status tested();
-pinnquad::Status tested() {
-  const pinnquad::Status crazyflie = pinnquad::self_test(pinnquad::InverseDynamics<CrazyflieModel>{});
-  return crazyflie != pinnquad::Status::ok ? crazyflie
-                                           : pinnquad::self_test(pinnquad::InverseDynamics<StructuredQuadModel>{});
-}
