@@ -45,15 +45,10 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
     std::string name = make_option_name(option, is_positional) + make_option_opts(option);
     if (name.size() + 3 == name_column) name += ' ';
-    std::stringstream out;
-    CLI::detail::format_help(out, name, wrapped(make_option_desc(option), width - name_column), name_column);
-    return out.str();
+    return in_columns(name, make_option_desc(option));
   }
   std::string make_subcommand(const CLI::App* command) const override {
-    std::stringstream out;
-    CLI::detail::format_help(out, command->get_name(), wrapped(command->get_description(), width - name_column),
-                             name_column);
-    return out.str();
+    return in_columns(command->get_name(), command->get_description());
   }
   /// Lines of a footer are a paragraph until a sentence ends; examples, which begin with a space, stay as they are.
   std::string make_footer(const CLI::App* app) const override {
@@ -69,6 +64,21 @@ class HelpFormatter : public CLI::Formatter {
 
  private:
   static constexpr std::size_t width = 79, name_column = 28;
+
+  /// A name, and its description in a column of its own, below a name that is too long.
+  static std::string in_columns(const std::string& name, const std::string& description) {
+    std::string text = "  " + name;
+    const std::string indent(name_column, ' ');
+    if (!description.empty()) {
+      if (text.size() >= name_column) {
+        text += '\n' + indent;
+      } else {
+        text.resize(name_column, ' ');
+      }
+      for (const char c : wrapped(description, width - name_column)) text += c == '\n' ? c + indent : std::string(1, c);
+    }
+    return text + '\n';
+  }
 };
 
 }  // namespace programs
