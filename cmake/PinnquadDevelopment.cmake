@@ -28,6 +28,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(pinnquad_development INTERFACE -fno-tree-slp-vectorize --param=ggc-min-heapsize=1000000)
 endif()
 
+# gcc 16.2 dies at -O1 of the conjunction of lanes' truths in is_plain() (reassoc_stmt_dominates_stmt_p); of floating-point numbers
+# that pass changes nothing without fast-math.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 16)
+  target_compile_options(pinnquad_development INTERFACE -fno-tree-reassoc)
+endif()
+
 # gcc before 13 calls the deliberately undefined operands inside its own AVX-512 intrinsics uninitialised (Eigen uses
 # them); the warning stays on where no such instruction set is targeted.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13
