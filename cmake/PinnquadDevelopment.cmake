@@ -6,6 +6,11 @@ add_library(pinnquad_warnings INTERFACE)
 target_compile_options(pinnquad_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow
   $<$<BOOL:${PINNQUAD_WARNINGS_AS_ERRORS}>:-Werror>)
+# for tests that call a compiler themselves
+set(pinnquad_werror "")
+if(PINNQUAD_WARNINGS_AS_ERRORS)
+  set(pinnquad_werror -Werror)
+endif()
 
 # The benches link the warnings alone: they measure what a user's flags give. All else is reproducible:
 add_library(pinnquad_development INTERFACE)
@@ -21,6 +26,12 @@ target_compile_options(pinnquad_development INTERFACE
 # which needs no more memory without.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(pinnquad_development INTERFACE -fno-tree-slp-vectorize --param=ggc-min-heapsize=1000000)
+endif()
+
+# gcc 16.2 dies at -O1 of the conjunction of lanes' truths in is_plain() (reassoc_stmt_dominates_stmt_p); of floating-point numbers
+# that pass changes nothing without fast-math.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 16)
+  target_compile_options(pinnquad_development INTERFACE -fno-tree-reassoc)
 endif()
 
 # gcc before 13 calls the deliberately undefined operands inside its own AVX-512 intrinsics uninitialised (Eigen uses

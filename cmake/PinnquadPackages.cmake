@@ -1,14 +1,43 @@
 # SPDX-License-Identifier: MIT
 #
-# pinnquad_require_package(<name> DEBIAN <package> NEEDED_FOR <what> [VERSION <version>])
-# find_package in config mode that, when it fails, says what to install instead of where it looked.
+# pinnquad_require_package(<name> DEBIAN <package> NEEDED_FOR <what> [VERSION <least version>])
+# find_package in config mode that, when it fails, says what to install instead of where it looked. The version is compared
+# here: asked for 3.4, Eigen 5 calls itself incompatible, and Eigen 3.4 does so asked for a range.
 macro(pinnquad_require_package name)
   cmake_parse_arguments(_require "" "VERSION;DEBIAN;NEEDED_FOR" "" ${ARGN})
-  find_package(${name} ${_require_VERSION} QUIET NO_MODULE)
+  find_package(${name} QUIET NO_MODULE)
+  set(_require_what "${name}")
+  if(_require_VERSION)
+    string(APPEND _require_what " ${_require_VERSION} or newer")
+  endif()
   if(NOT ${name}_FOUND)
     message(FATAL_ERROR
-      "pinnquad: ${_require_NEEDED_FOR} need(s) ${name} ${_require_VERSION}, which was not found. "
+      "pinnquad: ${_require_NEEDED_FOR} need(s) ${_require_what}, which was not found. "
       "On Debian or Ubuntu, as root: apt-get install ${_require_DEBIAN}")
+  elseif(_require_VERSION AND ${name}_VERSION AND ${name}_VERSION VERSION_LESS _require_VERSION)
+    message(FATAL_ERROR
+      "pinnquad: ${_require_NEEDED_FOR} need(s) ${_require_what}; version ${${name}_VERSION} is too old, "
+      "found in ${${name}_DIR}")
+  endif()
+endmacro()
+
+# pinnquad_find_onnx(<variable>): the target of ONNX's messages, or nothing, with a line that says why. From ONNX 1.17 on it
+# is ONNX::onnx_proto.
+macro(pinnquad_find_onnx variable)
+  find_package(Protobuf QUIET MODULE)
+  find_package(ONNX QUIET CONFIG)
+  set(${variable} "")
+  if(NOT TARGET protobuf::libprotobuf OR NOT ONNX_FOUND)
+    set(_onnx_lacks "no libonnx-dev, libprotobuf-dev")
+  elseif(TARGET ONNX::onnx_proto)
+    set(${variable} ONNX::onnx_proto)
+  elseif(TARGET onnx_proto)
+    set(${variable} onnx_proto)
+  else()
+    set(_onnx_lacks "ONNX in ${ONNX_DIR} has no target onnx_proto")
+  endif()
+  if(NOT ${variable})
+    message(STATUS "pinnquad: pinnquad convert reads and writes no ONNX (${_onnx_lacks})")
   endif()
 endmacro()
 

@@ -22,21 +22,39 @@ program_of() {
 # package_present <package>
 package_present() {
   local program
+  if [[ $1 = *'|'* ]]; then
+    package_present "${1%%|*}" || package_present "${1#*|}"
+    return
+  fi
   program=$(program_of "$1")
   if [ -n "$program" ] && command -v "$program" >/dev/null; then return 0; fi
   [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
 }
 
+# one_of <name>[|<name>...]: names that a package has, or had, in different Debians. The first that apt can install; where
+# it knows none, the first.
+one_of() {
+  local names name
+  IFS='|' read -ra names <<<"$1"
+  for name in "${names[@]}"; do
+    if [[ $(LC_ALL=C apt-cache policy "$name" 2>/dev/null) =~ Candidate:\ [0-9] ]]; then
+      echo "$name"
+      return
+    fi
+  done
+  echo "${names[0]}"
+}
+
 # require_packages <package>...: installs those that are missing, as root or through sudo where it asks for no
-# password; otherwise prints the command to run and exits 1. Never removes a package. What apt-get says is in
-# build/packages.log.
+# password; otherwise prints the command to run and exits 1. `a|b`: one of them (one_of). Never removes a
+# package. What apt-get says is in build/packages.log.
 require_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "This is not a Debian machine: assuming that what these packages hold is present: $*"
     return
   fi
 
-  local missing=() package
+  local missing=() chosen=() package
   for package in "$@"; do
     package_present "$package" || missing+=("$package")
   done
@@ -47,18 +65,20 @@ require_packages() {
     if command -v sudo >/dev/null && sudo -n true 2>/dev/null; then
       as_root=(sudo -n)
     else
-      die 1 "packages are missing; as root, run: apt-get update && ${install[*]} ${missing[*]}"
+      for package in "${missing[@]}"; do chosen+=("$(one_of "$package")"); done
+      die 1 "packages are missing; as root, run: apt-get update && ${install[*]} ${chosen[*]}"
     fi
   fi
 
   local log
   log=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)/build/packages.log
   if ! mkdir -p -- "${log%/*}" || ! : >"$log"; then die 1 "cannot write $log"; fi
-  echo "Installing ${missing[*]}"
   # env: sudo drops the variables of its caller
   as_root+=(env DEBIAN_FRONTEND=noninteractive)
   "${as_root[@]}" apt-get update >>"$log" 2>&1 </dev/null ||
     echo "apt-get update failed (see $log); trying with the lists that are here"
-  "${as_root[@]}" "${install[@]}" -o DPkg::Lock::Timeout=120 "${missing[@]}" >>"$log" 2>&1 </dev/null ||
-    die 1 "could not install ${missing[*]}: $(grep '^E:' "$log" | tail -n 1); all of it in $log"
+  for package in "${missing[@]}"; do chosen+=("$(one_of "$package")"); done
+  echo "Installing ${chosen[*]}"
+  "${as_root[@]}" "${install[@]}" -o DPkg::Lock::Timeout=120 "${chosen[@]}" >>"$log" 2>&1 </dev/null ||
+    die 1 "could not install ${chosen[*]}: $(grep '^E:' "$log" | tail -n 1); all of it in $log"
 }

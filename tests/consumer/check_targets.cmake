@@ -22,6 +22,9 @@ if(NOT CMAKE_CXX_FLAGS STREQUAL "")
 endif()
 
 # pinnquad as a subproject: its two interface targets, no tests, benches, examples, and no install rules
+# Whatever a user warns of, headers of a subproject are silent, as installed ones are: they are system headers.
+set(user_warnings -Wall -Wextra -Wpedantic -Weffc++ -Wold-style-cast -Wfloat-equal -Wconversion -Wsign-conversion
+  -Wcast-align -Wundef -Wunused)
 function(check_subproject source_dir)
   get_property(targets DIRECTORY "${source_dir}" PROPERTY BUILDSYSTEM_TARGETS)
   list(SORT targets)

@@ -32,7 +32,7 @@ execute_process(COMMAND "${CMAKE_COMMAND}" -S "${SOURCE_DIR}" -B "${TREES}/asked
     "-DCMAKE_CXX_COMPILER=${COMPILER}" ${hidden} -DPINNQUAD_BUILD_BENCH=ON
   RESULT_VARIABLE code OUTPUT_QUIET ERROR_VARIABLE said)
 string(REGEX REPLACE "[ \n]+" " " said "${said}")
-if(code EQUAL 0 OR NOT said MATCHES "need\\(s\\) benchmark , which was not found.* as root: apt-get install libbenchmark-dev")
+if(code EQUAL 0 OR NOT said MATCHES "need\\(s\\) benchmark, which was not found.* as root: apt-get install libbenchmark-dev")
   message(FATAL_ERROR "PINNQUAD_BUILD_BENCH=ON without the package benchmark said:\n${said}")
 endif()
 

@@ -5,7 +5,7 @@
 # in a hidden comment (extract.awk), and its programs, options, targets and presets must at least exist.
 #   check.sh ROOT BUILD PREFIX WORK DOCUMENT
 # ROOT: the source tree; BUILD: its build tree with the programs; PREFIX: where it is installed; WORK: a folder to use up;
-# DOCUMENT: relative to ROOT, or absolute. Environment: CXX, EIGEN. Exit code 1 with document:line: message for each fault.
+# DOCUMENT: relative to ROOT, or absolute. Environment: CXX, EIGEN, WERROR (-Werror or nothing). Exit code 1 with document:line: message for each fault.
 set -euo pipefail
 root=$1 build=$2 prefix=$3 work=$4 document=$5
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
@@ -142,7 +142,7 @@ compile() {
   block "$1" >"$program.cpp"
   grep -q '^int main(' "$program.cpp" || what=(-fsyntax-only)
   # inlined by force nothing runs faster at -O0, and takes up to twice the time to compile
-  if ! "$cxx" -std=c++17 -O0 -DPINNQUAD_INLINE_AS_COMPILER_LIKES -Wall -Wextra -Werror -I"$root/include" -I"$root/examples" \
+  if ! "$cxx" -std=c++17 -O0 -DPINNQUAD_INLINE_AS_COMPILER_LIKES -Wall -Wextra ${WERROR:+"$WERROR"} -I"$root/include" -I"$root/examples" \
     -I"$root/examples/models" \
     -isystem "$eigen" "$program.cpp" "${what[@]}"; then
     fault "$1" "does not compile"

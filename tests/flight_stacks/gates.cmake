@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
 # The compile gates, through flight/check_symbols.cmake: -fno-exceptions -fno-rtti -Wall -Wextra -Wshadow -Wconversion
-# -Wdouble-promotion -Werror are always on. What is added are flags that the two projects publish (PX4 v1.16:
+# -Wdouble-promotion are always on. What is added are flags that the two projects publish (PX4 v1.16:
 # cmake/px4_add_common_flags.cmake; Crazyflie: its Makefile). Left out: -Wmissing-braces, which the Crazyflie sets for C.
 set(px4_flags "-fdata-sections -ffunction-sections -fomit-frame-pointer -funsafe-math-optimizations \
 -fno-strict-aliasing -fno-math-errno -fvisibility=hidden -fcheck-new -fno-threadsafe-statics -Warray-bounds -Wcast-align \
@@ -23,7 +23,7 @@ function(_pinnquad_add_stack_gate name source compiler nm flags)
     COMMAND "${CMAKE_COMMAND}"
       "-DCOMPILER=${compiler}" "-DNM=${nm}" "-DINCLUDE_DIR=${PROJECT_SOURCE_DIR}/include"
       "-DEIGEN_INCLUDE_DIR=${eigen_include}" "-DSOURCE=${source}" "-DOBJECT=${CMAKE_CURRENT_BINARY_DIR}/${name}.o"
-      "-DFLAGS=${flags} -I${PROJECT_SOURCE_DIR}/examples -I${PROJECT_SOURCE_DIR}/examples/crazyflie_app/src"
+      "-DFLAGS=${flags} ${pinnquad_werror} -I${PROJECT_SOURCE_DIR}/examples -I${PROJECT_SOURCE_DIR}/examples/crazyflie_app/src"
       -P "${PROJECT_SOURCE_DIR}/tests/flight/check_symbols.cmake")
   set_tests_properties(${name} PROPERTIES LABELS flight_stacks)
 endfunction()

@@ -105,7 +105,7 @@ foreach(model IN ITEMS "${PROJECT_SOURCE_DIR}/examples/models" none)
   add_test(NAME flight_stacks.ros2_build.${name} COMMAND "${CMAKE_CTEST_COMMAND}"
     --build-and-test "${CMAKE_CURRENT_SOURCE_DIR}/ros2_build" "${CMAKE_CURRENT_BINARY_DIR}/ros2_build_${name}"
     --build-generator "${CMAKE_GENERATOR}" --build-options "-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}"
-      "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror" "-DPINNQUAD_DIR=${PROJECT_SOURCE_DIR}" "-DPINNQUAD_MODEL_DIR=${model}"
+      "-DCMAKE_CXX_FLAGS=-Wall -Wextra ${pinnquad_werror}" "-DPINNQUAD_DIR=${PROJECT_SOURCE_DIR}" "-DPINNQUAD_MODEL_DIR=${model}"
       "-DPACKAGE_DIR=${PROJECT_SOURCE_DIR}/examples/ros2_package" "-DSTAND_IN=${CMAKE_CURRENT_SOURCE_DIR}/ros2"
     --test-command true)
   set_tests_properties(flight_stacks.ros2_build.${name} PROPERTIES LABELS flight_stacks)

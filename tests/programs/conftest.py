@@ -28,6 +28,7 @@ def pytest_addoption(parser):
                     help="a program that was built; its name finds it")
     group.addoption("--compiler", default="c++", help="what compiles exports (default: c++)")
     group.addoption("--flags", default="", help="with these flags, as the build")
+    group.addoption("--werror", default="-Werror", help="-Werror, or nothing where warnings are no errors")
     group.addoption("--reference", default=SOURCE.parent / "shared/reference", type=Path,
                     help="logs that others recorded")
 
@@ -103,6 +104,17 @@ class Program:
             process = subprocess.Popen(self._command(words), stdout=out, stderr=err, stdin=subprocess.DEVNULL,
                                        start_new_session=True, preexec_fn=deaf_to_nothing, **how)
         return process
+
+
+class Compiler(Program):
+    """A compiler, to which warnings are errors where the build says so."""
+
+    def __init__(self, werror, *words):
+        super().__init__(*words)
+        self.werror = werror
+
+    def _command(self, words):
+        return [word for word in super()._command(words) if word != "-Werror" or self.werror]
 
 
 def deaf_to_nothing():
@@ -251,7 +263,7 @@ def compiler(request):
     except FileNotFoundError:
         found = ""
     eigen = next((path for path in (f"{found}/eigen3", "/usr/include/eigen3") if os.path.isdir(f"{path}/Eigen")), None)
-    return Program(name, "-std=c++17", f"-I{SOURCE}/include", "-isystem", eigen or pytest.skip("no Eigen"))
+    return Compiler(request.config.getoption("--werror"), name, "-std=c++17", f"-I{SOURCE}/include", "-isystem", eigen or pytest.skip("no Eigen"))
 
 
 @pytest.fixture(scope="session")
@@ -261,6 +273,7 @@ def fly_export(compiler, flags):
     def build(header, folder="fly_export"):
         Program("cmake")("-G Ninja -DCMAKE_BUILD_TYPE=Release -S", SOURCE / "tools/fly_export", "-B", folder,
                          f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_CXX_FLAGS={' '.join(flags)}",
+                         f"-DPINNQUAD_WARNINGS_AS_ERRORS={'ON' if compiler.werror else 'OFF'}",
                          "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG",
                          f"-DPINNQUAD_MODEL_HEADER={Path(header).resolve()}")
         Program("cmake")("--build", folder)

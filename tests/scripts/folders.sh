@@ -54,6 +54,11 @@ for taken in mine mine/ dangling ../repository/docs docs.log/x ''; do
   call 2 scripts/bare_machine --dir "$taken"
   [ "$(wc -l <../said.txt)" -eq 1 ] || fail "not one line"
 done
+call 2 scripts/bare_machine --suite ../mine
+[ "$(wc -l <../said.txt)" -eq 1 ] || fail "not one line"
+# a fault outside fails no continuous integration, and is said
+CI=1 call 0 scripts/heavy/newest_compilers
+grep -q 'SKIPPED.*debootstrap failed' ../said.txt || fail "newest_compilers does not say that it tried nothing"
 [ -d mine ] && [ -L dangling ] && [ -s ../repository/docs/start.md ] || fail "a folder that was there before is gone"
 
 call 1 bench/run --out figures # cmake fails

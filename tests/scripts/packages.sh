@@ -24,6 +24,7 @@ for name in bash cat dirname env grep mkdir tail true; do ln -s "$(type -P "$nam
 tool dpkg-query <<<'case ${!#} in installed-*) echo -n installed ;; *) exit 1 ;; esac'
 tool apt-get <<<'echo "apt-get $*" >>calls.txt; echo "apt-get speaks"
 case "$*" in *install*unwilling*) echo "E: Packages need to be removed but remove is disabled."; exit 100 ;; esac'
+tool apt-cache <<<'echo "$2:"; case $2 in new-name|lib-old-*) echo "  Candidate: 1.0" ;; gone-*) echo "  Candidate: (none)" ;; esac'
 tool id <<<'echo "${USER_ID:-0}"'
 
 # require <packages>...: calls.txt, said.txt, code
@@ -52,6 +53,10 @@ require lib-missing installed-one
 grep -qE '^apt-get install .*--no-remove.* lib-missing$' calls.txt || fail "called: $(cat calls.txt)"
 [ "$(cat said.txt)" = "Installing lib-missing" ] || fail "apt-get was not quiet"
 grep -q 'apt-get speaks' repository/build/packages.log || fail "no log"
+
+# a package by the name that it has in this Debian
+require 'new-name|old-name' 'gone-now|lib-old-name' 'unknown|unheard-of' 'not-here|installed-old'
+grep -qE '^apt-get install .* new-name lib-old-name unknown$' calls.txt || fail "alternatives: called: $(cat calls.txt)"
 
 require unwilling
 [ "$code" -eq 1 ] || fail "exit code $code"

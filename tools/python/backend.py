@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """setuptools as pyproject.toml calls it, with the setup.py that stands beside this file."""
+import shutil
+
 from setuptools.build_meta import _BuildMetaBackend
 
 
@@ -9,7 +11,15 @@ class _Backend(_BuildMetaBackend):
 
 
 _backend = _Backend()
-get_requires_for_build_wheel = _backend.get_requires_for_build_wheel
+
+
+def get_requires_for_build_wheel(config_settings=None):
+    """Asks pip for the programs too that are not in PATH."""
+    programs = {"cmake": "cmake>=3.22", "ninja": "ninja"}
+    return _backend.get_requires_for_build_wheel(config_settings) + [
+        wanted for name, wanted in programs.items() if not shutil.which(name)]
+
+
 get_requires_for_build_sdist = _backend.get_requires_for_build_sdist
 prepare_metadata_for_build_wheel = _backend.prepare_metadata_for_build_wheel
 build_wheel = _backend.build_wheel

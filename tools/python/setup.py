@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Builds the module of the Python package pinnquad by CMake; pyproject.toml says the rest."""
+import importlib.util
 import os
 import re
 import shutil
@@ -10,6 +11,8 @@ from pathlib import Path
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
+PACKAGES = ("All that it is built from, on Debian or Ubuntu, as root: apt-get install g++ cmake ninja-build libeigen3-dev "
+            "nlohmann-json3-dev libtomlplusplus-dev pybind11-dev python3-dev")
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -21,19 +24,29 @@ def version():
 
 class CMakeBuild(build_ext):
     def build_extension(self, ext):
-        for program, package in (("cmake", "cmake"), ("ninja", "ninja-build"), ("c++", "g++")):
-            if not shutil.which(program):
-                raise SystemExit(
-                    f"pinnquad: {program} is needed. On Debian or Ubuntu, as root: apt-get install {package}")
+        lacking = [program for program in ("cmake", "ninja", "c++") if not shutil.which(program)]
+        if lacking:
+            raise SystemExit(f"pinnquad: no {', '.join(lacking)} in PATH. {PACKAGES}")
         build = Path(self.build_temp).resolve()
         parts = {"TESTS": "OFF", "EXAMPLES": "OFF", "TOOLS": "OFF", "BENCH": "OFF", "LOGS": "ON", "PYTHON": "ON",
                  "AT_ONCE": "ON"}
         sets = os.environ.get("PINNQUAD_INSTRUCTION_SETS", "x86-64-v3;x86-64-v4")  # docs/packages.md
-        subprocess.run(
+        from_pip = []
+        if importlib.util.find_spec("pybind11"):
+            import pybind11
+            from_pip = [f"-Dpybind11_DIR={pybind11.get_cmake_dir()}"]
+        configured = subprocess.run(
             ["cmake", "-S", str(ROOT), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
              "-DCMAKE_POSITION_INDEPENDENT_CODE=ON", f"-DPINNQUAD_INSTRUCTION_SETS={sets}",
-             f"-DPython_EXECUTABLE={sys.executable}",
-             *[f"-DPINNQUAD_BUILD_{part}={value}" for part, value in parts.items()]], check=True)
+             f"-DPython_EXECUTABLE={sys.executable}", *from_pip,
+             *[f"-DPINNQUAD_BUILD_{part}={value}" for part, value in parts.items()]],
+            stderr=subprocess.PIPE, text=True)
+        sys.stderr.write(configured.stderr)
+        if configured.returncode:
+            # of CMake's error the sentence under "CMake Error at ..."
+            said = re.search(r"^CMake Error[^\n]*\n\s*(.+?)\s*(\n\n|\nCall Stack|On Debian|\Z)", configured.stderr, re.S | re.M)
+            why = re.sub(r"\s+", " ", said[1]).strip() if said else "CMake fails."
+            raise SystemExit(f"pinnquad: {why.removeprefix('pinnquad: ')} {PACKAGES}")
         jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1))
         subprocess.run(["cmake", "--build", str(build)], check=True, env={**os.environ, "CMAKE_BUILD_PARALLEL_LEVEL": jobs})
         module = Path(self.get_ext_fullpath(ext.name))
@@ -43,5 +56,5 @@ class CMakeBuild(build_ext):
 
 
 (ROOT / "build").mkdir(exist_ok=True)
-setup(version=version(), options={"egg_info": {"egg_base": "build"}}, cmdclass={"build_ext": CMakeBuild},
+setup(version=version(), license="MIT", options={"egg_info": {"egg_base": "build"}}, cmdclass={"build_ext": CMakeBuild},
       ext_modules=[Extension("pinnquad._core", [])])

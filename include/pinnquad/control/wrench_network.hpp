@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "pinnquad/control/wrench_inverse.hpp"
 #include "pinnquad/features/motion_parts.hpp"
@@ -68,7 +69,7 @@ class WrenchNetwork {
 
   template <class Scalar>
   Accelerations<Scalar> operator()(const WrenchInputs<Scalar>& in) const noexcept {
-    Number x[inputs], y[outputs];
+    Number x[static_cast<std::size_t>(inputs)], y[static_cast<std::size_t>(outputs)];
     standardise(in, x);
     Network::forward(parameters_, static_cast<const Number*>(x), static_cast<Number*>(y));
     Accelerations<Scalar> result;
@@ -82,7 +83,7 @@ class WrenchNetwork {
   /// The force / mass, and how it changes with the air's velocity, both body; flat beyond the envelope.
   template <class Scalar>
   Vector3<Scalar> force_and_slope(const WrenchInputs<Scalar>& in, Matrix<Scalar, 3, 3>& by_velocity) const noexcept {
-    Number x[inputs];
+    Number x[static_cast<std::size_t>(inputs)];
     const unsigned moved = standardise(in, static_cast<Number*>(x));
     Carried values[2][Network::widest] = {};
     for (int i = 0; i < inputs; ++i) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <type_traits>
 
@@ -65,7 +66,7 @@ template <class Scalar, int Count>
 struct LaneMask {
   using Types = detail::RegisterTypes<Scalar>;
   static constexpr int registers = Types::of(Count);
-  typename Types::Truths part[registers];
+  typename Types::Truths part[static_cast<std::size_t>(registers)];
 
   LaneMask() = default;
   /// In every lane.
@@ -115,7 +116,7 @@ struct Lanes {
   static constexpr int registers = Types::of(Count);
   static_assert(Count > 0 && Count % Types::width == 0,
                 "pinnquad: lanes fill whole registers: take native_lanes<Scalar> or a multiple of it");
-  typename Types::Register part[registers];
+  typename Types::Register part[static_cast<std::size_t>(registers)];
 
   Lanes() = default;
   // register by register: gcc copies an array of vectors by halves, through integers
@@ -211,7 +212,7 @@ struct Lanes {
     const Scalar first = a.lane(0);
     const Lanes same(first);
     if (all_of(a <= same && a >= same)) return Lanes(function(first));
-    Scalar value[Count];
+    Scalar value[static_cast<std::size_t>(Count)];
     for (int i = 0; i < Count; ++i) value[i] = function(a.lane(i));
     Lanes result;
     for (int i = 0; i < Count; ++i) result.set_lane(i, value[i]);

@@ -2,6 +2,8 @@
 // An exported model asked for many motions at once, as rollouts (MPPI) and evaluation do: a Status for each.
 #pragma once
 
+#include <cstddef>
+
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/nn/batched_network.hpp"
 
@@ -55,7 +57,7 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
   for (int first = 0; first < samples; first += lanes) {
     const int count = samples - first < lanes ? samples - first : lanes;
     alignas(64) Scalar answers[Model::Network::outputs * lanes];
-    int outside[lanes] = {};
+    int outside[static_cast<std::size_t>(lanes)] = {};
     for (int k = 0; k < size; ++k) {
       const Scalar* feature = x + k * samples + first;
       for (int s = 0; s < count; ++s) {
@@ -74,7 +76,7 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
       const Status checked = GuardType::check_commands(sample);
       Status status = outside[s] != 0 ? Status::outside_envelope : checked;
       if constexpr (GuardType::measures_distance) {
-        Scalar features[size], squared(0);
+        Scalar features[static_cast<std::size_t>(size)], squared(0);
         for (int k = 0; k < size; ++k) features[k] = x[k * samples + first + s];
         if (outside[s] == 0 && !inverse.inside_distribution(features, squared)) status = Status::outside_distribution;
       }

@@ -3,6 +3,8 @@
 // linear model of an MPC step.
 #pragma once
 
+#include <cstddef>
+
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/nn/jacobian.hpp"
 
@@ -32,7 +34,7 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
 
   const detail::Scales<Scalar> scales = detail::scales_of(inverse.model());
   Scalar outputs[Network::outputs] = {}, slopes[Network::outputs * size];
-  Scalar result[rotor_count], by_features[rotor_count * size];
+  Scalar result[static_cast<std::size_t>(rotor_count)], by_features[static_cast<std::size_t>(rotor_count * size)];
   const Scalar* weights = detail::row_major_weights(inverse.model());
   Pipeline::run(scales, x, outputs, result, [&](const Scalar* standardised, Scalar* made) PINNQUAD_INLINE_LAMBDA {
     if constexpr (detail::may_be_packed<Model> && is_network<Network>) {

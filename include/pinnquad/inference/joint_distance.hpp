@@ -87,7 +87,7 @@ PINNQUAD_NOINLINE Scalar squared_joint_distance(const Scalar* x) noexcept {
   constexpr int size = static_cast<int>(Distribution::distribution_mean.size());
   constexpr const Scalar* mean = Distribution::distribution_mean.data();
   constexpr const Scalar* whitening = Distribution::whitening.data();
-  Scalar white[size] = {};
+  Scalar white[static_cast<std::size_t>(size)] = {};
   const Scalar* column = whitening;
   for (int j = 0; j < size; ++j) {
     const Scalar difference = x[j] - mean[j];

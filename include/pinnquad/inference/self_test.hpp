@@ -2,6 +2,8 @@
 // Replays a model's golden vectors: at boot, before the first command goes to a motor.
 #pragma once
 
+#include <cstddef>
+
 #include "pinnquad/inference/inverse_dynamics.hpp"
 
 namespace pinnquad {
@@ -35,20 +37,20 @@ PINNQUAD_ALWAYS_INLINE int row_count(const AnyRows& rows) noexcept {
 }
 
 /// A golden vector, from the rows of a header or of a block.
-template <class Scalar, std::size_t Columns, std::size_t Rows, int Size>
+template <class Scalar, std::size_t Columns, std::size_t Rows, std::size_t Size>
 PINNQUAD_ALWAYS_INLINE void copy_row(const std::array<std::array<Scalar, Columns>, Rows>& rows, std::size_t row,
                                      Scalar (&to)[Size]) noexcept {
-  static_assert(Columns == static_cast<std::size_t>(Size));
+  static_assert(Columns == Size);
   if constexpr (Rows > 0) {
     const Scalar* from = first_of<Scalar>(rows) + row * Columns;
-    for (int i = 0; i < Size; ++i) to[i] = from[i];
+    for (std::size_t i = 0; i < Size; ++i) to[i] = from[i];
   }
 }
-template <class AnyRows, class Scalar, int Size>
+template <class AnyRows, class Scalar, std::size_t Size>
 PINNQUAD_ALWAYS_INLINE void copy_row(const AnyRows& rows, std::size_t row, Scalar (&to)[Size]) noexcept {
   const auto kept = rows[row];
   const Scalar* from = first_of<Scalar>(kept);
-  for (int i = 0; i < Size; ++i) to[i] = from[i];
+  for (std::size_t i = 0; i < Size; ++i) to[i] = from[i];
 }
 
 /// The model's first weight that is NaN or infinite, -1 if it has none or shows none.

@@ -7,6 +7,7 @@
 // r: all features but the angular accelerations.
 #pragma once
 
+#include <cstddef>
 #include <utility>
 
 #include "pinnquad/features/windowed.hpp"
@@ -174,7 +175,7 @@ struct AxisAligned
     using Layer::finite;
     using Layer::forward;
     constexpr void assign(const Scalar* parameters) noexcept {
-      Scalar all[4 * FeatureCount + 4] = {};
+      Scalar all[static_cast<std::size_t>(4 * FeatureCount + 4)] = {};
       copy_slopes(parameters, all);
       for (int i = 0; i < 4; ++i) all[4 * FeatureCount + i] = parameters[intercepts + i];
       Layer::assign(all);

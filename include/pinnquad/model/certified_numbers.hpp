@@ -3,6 +3,7 @@
 // vehicle, and the stored numbers of a model, in a header, a block or a trainer.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <string_view>
 
@@ -98,7 +99,7 @@ constexpr double larger(double a, double b) noexcept { return a > b ? a : b; }
 /// taps.
 template <int Size>
 struct ThrustPlaces {
-  int place[Size]{};
+  int place[static_cast<std::size_t>(Size)]{};
   int count = 0;
   int present = 0;
 };

@@ -4,6 +4,7 @@
 // network that is shown the angular acceleration and must not turn the sign of a slope.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 
 #include "pinnquad/model/axis_aligned.hpp"
@@ -30,8 +31,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// Lower and upper bounds of d(output)/d(input). The interval holds 0, the slope of an output that is clipped.
 template <int Outputs>
 struct PathBound {
-  double lower[Outputs]{};
-  double upper[Outputs]{};
+  double lower[static_cast<std::size_t>(Outputs)]{};
+  double upper[static_cast<std::size_t>(Outputs)]{};
 };
 
 /// The intervals of `outputs` weighted sums of `inputs` intervals, weights row by row. Intervals that hold 0 add up
@@ -161,7 +162,7 @@ struct PathBounded : detail::PredictorBase<PathBounded<NetworkType>, typename Ne
     int widths[Layers::dense_layers]{};
     for (int i = 0; i < Layers::dense_layers; ++i) widths[i] = NetworkType::Sizes::outputs[std::size_t(2 * i)];
     constexpr int widest = NetworkType::widest;
-    double work[4 * widest]{};
+    double work[static_cast<std::size_t>(4 * widest)]{};
     detail::PathBound<NetworkType::outputs> found;
     path_bound(parameters, NetworkType::inputs, widths, Layers::dense_layers, input, work, widest, found.lower,
                found.upper);

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <type_traits>
 
 #include "pinnquad/core/first_of.hpp"
@@ -231,7 +232,7 @@ struct Saturated : detail::PredictorBase<Saturated<Inner>, typename Inner::Scala
 
    private:
     detail::PackedPredictor<Inner> inner_;
-    Scalar bounds_[own] = {};
+    Scalar bounds_[static_cast<std::size_t>(own)] = {};
   };
 
  private:

@@ -3,6 +3,8 @@
 // Packing is done once: at compile time for an exported model, at construction otherwise.
 #pragma once
 
+#include <cstddef>
+
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/nn/kernel/column_broadcast.hpp"
 #include "pinnquad/nn/kernel/register_layer.hpp"
@@ -112,8 +114,8 @@ struct MemoryRun {
   template <class Keep>
   static PINNQUAD_ALWAYS_INLINE void forward(const Scalar* packed, const Scalar* x, Scalar* y,
                                              const Keep& keep) noexcept {
-    alignas(64) Scalar even[width];
-    alignas(64) Scalar odd[width];
+    alignas(64) Scalar even[static_cast<std::size_t>(width)];
+    alignas(64) Scalar odd[static_cast<std::size_t>(width)];
     const At end = walk_forward<Network, Kernel>(Forward<Keep>{{}, keep}, At{packed, x, even, odd});
     for (int i = 0; i < Network::outputs; ++i) y[i] = end.x[i];
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "pinnquad/core/attributes.hpp"
 
@@ -10,22 +11,22 @@ namespace pinnquad {
 
 namespace detail {
 template <class Scalar, int Size>
-constexpr std::array<Scalar, Size> all_ones() noexcept {
-  std::array<Scalar, Size> result{};
+constexpr std::array<Scalar, static_cast<std::size_t>(Size)> all_ones() noexcept {
+  std::array<Scalar, static_cast<std::size_t>(Size)> result{};
   for (Scalar& v : result) v = Scalar(1);
   return result;
 }
 /// Worked out by the compiler: copied, not filled, in an unoptimised build too.
 template <class Scalar, int Size>
-inline constexpr std::array<Scalar, Size> ones = all_ones<Scalar, Size>();
+inline constexpr std::array<Scalar, static_cast<std::size_t>(Size)> ones = all_ones<Scalar, Size>();
 }  // namespace detail
 
 /// Mean and standard deviation per entry. No standard deviation is zero.
 template <class Scalar, int Size>
 struct Scaler {
   static constexpr int size = Size;
-  std::array<Scalar, Size> mean{};
-  std::array<Scalar, Size> standard_deviation = detail::ones<Scalar, Size>;
+  std::array<Scalar, static_cast<std::size_t>(Size)> mean{};
+  std::array<Scalar, static_cast<std::size_t>(Size)> standard_deviation = detail::ones<Scalar, Size>;
 
   PINNQUAD_ALWAYS_INLINE void standardise(const Scalar* values, Scalar* standardised) const noexcept {
     for (int i = 0; i < Size; ++i) {

@@ -54,10 +54,10 @@ struct BatchTraits {
 template <class Scalar, int Size>
 struct BatchParameters : BatchTraits {
   static constexpr int size = Size;
-  alignas(64) Scalar stored[Size > 0 ? Size : 1] = {};
-  alignas(64) Scalar gradient[Size > 0 ? Size : 1] = {};
-  alignas(64) Scalar first_moment[Size > 0 ? Size : 1] = {};
-  alignas(64) Scalar second_moment[Size > 0 ? Size : 1] = {};
+  alignas(64) Scalar stored[static_cast<std::size_t>(Size > 0 ? Size : 1)] = {};
+  alignas(64) Scalar gradient[static_cast<std::size_t>(Size > 0 ? Size : 1)] = {};
+  alignas(64) Scalar first_moment[static_cast<std::size_t>(Size > 0 ? Size : 1)] = {};
+  alignas(64) Scalar second_moment[static_cast<std::size_t>(Size > 0 ? Size : 1)] = {};
 };
 
 /// Any layer: its BackwardRule sample by sample.
@@ -143,7 +143,7 @@ struct BatchDense : BatchParameters<Scalar, Out * padded<Pack>(In + (HasBias ? 1
   template <class Scale>
   PINNQUAD_NOINLINE void backward(const Scalar* x, const Scalar* delta, Scalar* previous, int samples,
                                   const Scale& scale) noexcept {
-    alignas(64) Scalar by_sample[stride * row];
+    alignas(64) Scalar by_sample[static_cast<std::size_t>(stride * row)];
     if constexpr (row > In) {
       constexpr int last = row - Pack::width;
       Scalar behind[Pack::width] = {};

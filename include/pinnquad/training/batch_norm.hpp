@@ -3,6 +3,8 @@
 // A neuron's samples stand side by side: sums go lane by lane, and the lanes of many neurons are added at once.
 #pragma once
 
+#include <cstddef>
+
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/kernel/register_layer.hpp"
 #include "pinnquad/training/backward.hpp"
@@ -47,11 +49,11 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
 
   using BatchParameters<Scalar, 2 * neurons>::stored;
   using BatchParameters<Scalar, 2 * neurons>::gradient;
-  alignas(64) Scalar running_mean[neurons] = {};
-  alignas(64) Scalar running_variance[neurons] = {};
-  alignas(64) Scalar mean[neurons] = {};               // of the last batch
-  alignas(64) Scalar variance[neurons] = {};           // of the last batch, divisor N
-  alignas(64) Scalar inverse_deviation[neurons] = {};  // 1 / sqrt(variance + epsilon) of the last batch
+  alignas(64) Scalar running_mean[static_cast<std::size_t>(neurons)] = {};
+  alignas(64) Scalar running_variance[static_cast<std::size_t>(neurons)] = {};
+  alignas(64) Scalar mean[static_cast<std::size_t>(neurons)] = {};      // of the last batch
+  alignas(64) Scalar variance[static_cast<std::size_t>(neurons)] = {};  // of the last batch, divisor N
+  alignas(64) Scalar inverse_deviation[static_cast<std::size_t>(neurons)] = {};  // 1 / sqrt(variance + epsilon)
   int batch_samples = 0;
 
   void load(const Scalar* parameters) noexcept {
@@ -148,7 +150,7 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
   struct Lanes {
     int whole;                            ///< samples in blocks that they fill
     int samples;                          ///< all
-    alignas(64) Scalar used[block] = {};  ///< of the last block: 1 for a sample, else 0
+    alignas(64) Scalar used[static_cast<std::size_t>(block)] = {};  ///< of the last block: 1 for a sample, else 0
 
     explicit Lanes(int count) noexcept : whole(count / block * block), samples(count) {
       for (int i = 0; i < samples - whole; ++i) used[i] = Scalar(1);
@@ -193,7 +195,7 @@ struct BatchLayer<BatchNorm::Bind<Scalar, Size>, Pack, BatchSize, void>
 
   /// By the distances from the batch's first sample: one pass, and nothing is lost where the mean is large.
   void take_statistics(const Scalar* x, int samples) noexcept {
-    alignas(64) Scalar sums[2 * neurons] = {}, origin[neurons] = {};
+    alignas(64) Scalar sums[static_cast<std::size_t>(2 * neurons)] = {}, origin[static_cast<std::size_t>(neurons)] = {};
     for (int neuron = 0; neuron < Size; ++neuron) origin[neuron] = x[neuron * stride];
     Lanes(samples).sums(sums, [&](int neuron, int i, Pack& sum, Pack& squares) PINNQUAD_INLINE_LAMBDA {
       const Pack distance = Pack::load(x + i) - Pack::broadcast(origin[neuron]);

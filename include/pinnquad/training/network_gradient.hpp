@@ -2,6 +2,7 @@
 // Forward and backward pass of a whole network over a mini-batch. No heap; holds its own activations.
 #pragma once
 
+#include <cstddef>
 #include <tuple>
 #include <utility>
 
@@ -16,7 +17,7 @@ namespace detail {
 /// Activations of one layer, [feature][sample]; empty for layers that work in the buffer of the layer before.
 template <class Scalar, int Size>
 struct ActivationBuffer {
-  alignas(64) Scalar values[Size] = {};
+  alignas(64) Scalar values[static_cast<std::size_t>(Size)] = {};
 };
 template <class Scalar>
 struct ActivationBuffer<Scalar, 0> {};

@@ -4,6 +4,8 @@
 // beyond its nearest cache: by groups of packs of rows, in a group column by column, the bias as last column.
 #pragma once
 
+#include <cstddef>
+
 #include "pinnquad/nn/kernel/pack.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
 
@@ -36,7 +38,7 @@ PINNQUAD_ALWAYS_INLINE void multiply_packed_rows(const typename Pack::Scalar* pa
                                                  typename Pack::Scalar* y, const Activation& activation) noexcept {
   constexpr int stride = Count * Pack::width;
   constexpr int chains = Count >= 4 ? 2 : 4;
-  Pack sum[chains][Count];
+  Pack sum[static_cast<std::size_t>(chains)][static_cast<std::size_t>(Count)];
   unroll<Count>([&](auto v) PINNQUAD_INLINE_LAMBDA {
     sum[0][v] = Pack::load(packed + Columns * stride + v * Pack::width);
     unroll<chains - 1>([&](auto c)

@@ -38,14 +38,14 @@ PINNQUAD_ALWAYS_INLINE void add_rows_together(const Scalar* weights, int columns
   if constexpr (lanes_fill_packs<Number, Lanes>) {
     using Pack = pinnquad::NativePack<Number>;
     constexpr int packs = static_cast<int>(Lanes) / Pack::width;
-    Pack sums[Rows][packs];
+    Pack sums[static_cast<std::size_t>(Rows)][static_cast<std::size_t>(packs)];
     const auto each = [](const auto& body) PINNQUAD_INLINE_LAMBDA {
       unroll<Rows>([&](auto r)
                        PINNQUAD_INLINE_LAMBDA { unroll<packs>([&](auto p) PINNQUAD_INLINE_LAMBDA { body(r, p); }); });
     };
     each([&](auto r, auto p) PINNQUAD_INLINE_LAMBDA { sums[r][p] = Pack::load(sum[r].data() + p * Pack::width); });
     for (int column = 0; column < columns; ++column) {
-      Pack values[packs];
+      Pack values[static_cast<std::size_t>(packs)];
       unroll<packs>([&](auto p) PINNQUAD_INLINE_LAMBDA { values[p] = Pack::load(x[column].data() + p * Pack::width); });
       unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA {
         const Pack weight = Pack::broadcast(static_cast<Number>(weights[r * columns + column]));

@@ -4,6 +4,8 @@
 // targeted.
 #pragma once
 
+#include <cstddef>
+
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/core/scalar_math.hpp"
@@ -21,7 +23,7 @@ struct GenericPack {
   static constexpr int tile_rows = 4;  ///< register tile of tile.hpp
   static constexpr int tile_vectors = 1;
 
-  Scalar lane[Width];
+  Scalar lane[static_cast<std::size_t>(Width)];
 
   static PINNQUAD_ALWAYS_INLINE GenericPack load(const Scalar* p) noexcept {
     GenericPack r;

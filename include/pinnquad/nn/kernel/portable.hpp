@@ -51,8 +51,9 @@ struct NoBias {
 
 /// y[0, Rows) = activate(start + weight x), one row or two; rows of `weight` are `stride` apart.
 template <int Rows, int Columns, class Scalar, class Start, class Activate>
-PINNQUAD_ALWAYS_INLINE void add_dots(const Scalar* weight, int stride, Start start, const Scalar (&x)[Columns],
-                                     Scalar* y, Activate activate) noexcept {
+PINNQUAD_ALWAYS_INLINE void add_dots(const Scalar* weight, int stride, Start start,
+                                     const Scalar (&x)[static_cast<std::size_t>(Columns)], Scalar* y,
+                                     Activate activate) noexcept {
   static_assert(Rows == 1 || Rows == rows_at_once);
   Scalar sum = start[0];
   Scalar below = Rows == 2 ? start[Rows - 1] : Scalar(0);

@@ -5,6 +5,8 @@
 // second contract of pack_contract.hpp.
 #pragma once
 
+#include <cstddef>
+
 #include "pinnquad/nn/kernel/pack.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
 
@@ -32,7 +34,7 @@ struct RegisterValues {
   static constexpr int registers = (in_registers + Pack::values - 1) / Pack::values;
   static constexpr int in_own_order = meets_in_own_order<Pack> ? in_registers / Pack::values * Pack::values : 0;
 
-  Pack value[registers];
+  Pack value[static_cast<std::size_t>(registers)];
   Pack last;  ///< the lone value in the first lane; what the others hold means nothing
 
   /// The first of the inputs that a pair of lanes takes in a step.
@@ -200,7 +202,7 @@ struct RegisterLayer {
                                                      const Activation& activation, Result& result) noexcept {
     constexpr int most = Pack::chains + (Count < Pack::blocks_at_once ? 1 : 0);
     constexpr int chains = most < steps ? most : steps;
-    Pack sum[chains][Count];
+    Pack sum[static_cast<std::size_t>(chains)][static_cast<std::size_t>(Count)];
     unroll<steps>([&](auto s) PINNQUAD_INLINE_LAMBDA {
       constexpr int step = decltype(s)::value;
       const Pack inputs = x.template repeat<step>();
@@ -223,7 +225,7 @@ struct RegisterLayer {
     constexpr int per_register = Pack::blocks_per_register;
     unroll<(Count + per_register - 1) / per_register>([&](auto r) PINNQUAD_INLINE_LAMBDA {
       constexpr int block = decltype(r)::value * per_register;
-      Pack together[per_register];
+      Pack together[static_cast<std::size_t>(per_register)];
       unroll<per_register>(
           [&](auto i) PINNQUAD_INLINE_LAMBDA { together[i] = sum[0][block + i < Count ? block + i : Count - 1]; });
       const Pack values = activation(Pack::collect(together));
@@ -239,7 +241,8 @@ struct RegisterLayer {
 
   /// sum[0][block] += the other chains, in pairs.
   template <int Chains, int Count, int Block>
-  static PINNQUAD_ALWAYS_INLINE void add_chains(Pack (&sum)[Chains][Count]) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void add_chains(
+      Pack (&sum)[static_cast<std::size_t>(Chains)][static_cast<std::size_t>(Count)]) noexcept {
     unroll<Chains / 2>([&](auto c)
                            PINNQUAD_INLINE_LAMBDA { sum[2 * c][Block] = sum[2 * c][Block] + sum[2 * c + 1][Block]; });
     unroll<(Chains - 1) / 2>([&](auto c)

@@ -3,6 +3,8 @@
 // whole tile. One routine for the three products of back-propagation; only the strides of A differ.
 #pragma once
 
+#include <cstddef>
+
 #include "pinnquad/nn/kernel/pack.hpp"
 #include "pinnquad/nn/kernel/unroll.hpp"
 
@@ -39,12 +41,12 @@ PINNQUAD_ALWAYS_INLINE void multiply_tile(const Scalar* a, const Scalar* b, int 
   using Pack = typename Columns::Pack;
   static_assert(require_pack<Pack>());
   constexpr int vectors = Columns::vectors;
-  Pack sum[Rows][vectors];
+  Pack sum[static_cast<std::size_t>(Rows)][static_cast<std::size_t>(vectors)];
   unroll<Rows>([&](auto r) PINNQUAD_INLINE_LAMBDA {
     unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA { sum[r][v] = start(r, v); });
   });
   for (int k = 0; k < depth; ++k) {
-    Pack row[vectors];
+    Pack row[static_cast<std::size_t>(vectors)];
     unroll<vectors>([&](auto v) PINNQUAD_INLINE_LAMBDA {
       row[v] = Pack::load(b + Columns::offset(v));
       row[v].settle();
