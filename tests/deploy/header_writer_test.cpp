@@ -17,7 +17,9 @@
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/model/predictor.hpp"
+#include "pinnquad/nn/elu.hpp"
 #include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
 #include "pinnquad/nn/sine.hpp"
@@ -96,9 +98,9 @@ TEST_CASE("type names are those that another translation unit can write") {
   CHECK(type_name<float>() == "float");
   CHECK(type_name<PaperFeatures>() == "pinnquad::PaperFeatures");
   CHECK(type_name<Network<float, InputSize<3>, Dense<2>, pinnquad::Gelu, pinnquad::Silu, pinnquad::Softplus,
-                          pinnquad::Sine>>() ==
+                          pinnquad::Sine, pinnquad::Elu, pinnquad::LeakyRelu>>() ==
         "pinnquad::Network<float, pinnquad::InputSize<3>, pinnquad::Dense<2>, pinnquad::Gelu, pinnquad::Silu, "
-        "pinnquad::Softplus, pinnquad::Sine>");
+        "pinnquad::Softplus, pinnquad::Sine, pinnquad::Elu, pinnquad::LeakyRelu>");
   CHECK(type_name<Net>().find("pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<5>, pinnquad::Relu, "
                               "pinnquad::Dense<4>>") == 0);  // with every compiler
   // nor of its flags: a type of an inline namespace that names an instruction set, in another such

@@ -356,10 +356,11 @@ void features_are_the_same() {
 
 TEST_CASE_TEMPLATE("commands to the bit: the paper's network, each activation, double, layers without bias", Model,
                    ModelOf<Paper10, PaperFeatures>, Activated<Relu>, Activated<Tanh>, Activated<Gelu>, Activated<Silu>,
-                   Activated<Softplus>, Activated<Sine>, Activated<Clip>, ActivatedInDouble<Relu>,
-                   ActivatedInDouble<Tanh>, ActivatedInDouble<Gelu>, ActivatedInDouble<Silu>,
+                   Activated<Softplus>, Activated<Sine>, Activated<Clip>, Activated<Elu>, Activated<LeakyRelu>,
+                   ActivatedInDouble<Relu>, ActivatedInDouble<Tanh>, ActivatedInDouble<Gelu>, ActivatedInDouble<Silu>,
                    ActivatedInDouble<Softplus>, ActivatedInDouble<Sine>, ActivatedInDouble<Clip>,
-                   ModelOf<WithoutBias, PaperFeatures>, ModelOf<Clipped, PaperFeatures>) {
+                   ActivatedInDouble<Elu>, ActivatedInDouble<LeakyRelu>, ModelOf<WithoutBias, PaperFeatures>,
+                   ModelOf<Clipped, PaperFeatures>) {
   commands_are_the_same<Model>(1);
 }
 
@@ -495,8 +496,9 @@ TEST_CASE_TEMPLATE("derivatives are those of central differences in double", Mod
 }
 
 TEST_CASE_TEMPLATE("derivatives are those that the flight side works out", Model, Activated<Relu>, Activated<Gelu>,
-                   ActivatedInDouble<Softplus>, OfSchema<WrenchOutputs, Racer>, Monotone, PathBoundedModel,
-                   MonotoneOnBase, TwoNetworks, OfFeatures<CausalWindow>) {
+                   Activated<Elu>, ActivatedInDouble<LeakyRelu>, ActivatedInDouble<Softplus>,
+                   OfSchema<WrenchOutputs, Racer>, Monotone, PathBoundedModel, MonotoneOnBase, TwoNetworks,
+                   OfFeatures<CausalWindow>) {
   using Scalar = typename Model::Scalar;
   const Model model = some<Model>(7);
   const auto bytes = drawn_block(model);

@@ -310,7 +310,8 @@ void pinnquad_flight_tanh_network(const float* parameters, const float* x, float
 void pinnquad_flight_smooth_network(const float* parameters, const float* x, float* y, float* jacobian) {
   using Net = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<9>, pinnquad::Gelu, pinnquad::Dense<9>,
                                 pinnquad::Silu, pinnquad::Clip, pinnquad::Dense<9>, pinnquad::Softplus,
-                                pinnquad::Dense<9>, pinnquad::Sine, pinnquad::Dense<4>>;
+                                pinnquad::Dense<9>, pinnquad::Sine, pinnquad::Dense<9>, pinnquad::Elu,
+                                pinnquad::Dense<9>, pinnquad::LeakyRelu, pinnquad::Dense<4>>;
   pinnquad::JacobianPass<Net>::run(parameters, x, y, jacobian);
   pinnquad::BatchedNetwork<Net>::forward(parameters, x, y, 5);
 }

@@ -29,6 +29,16 @@ using pinnquad_test::expect;
 pinnquad_test::Tally tally;
 pinnquad_test::LineMutator features_lines;
 
+/// Of every file beside a model: 64 floats.
+std::string numbers_beside(const std::string& /*location*/, const std::string& /*tensor*/) {
+  std::string bytes;
+  for (int i = 0; i < 64; ++i) {
+    const float value = 0.125f * static_cast<float>(i % 9 - 4);
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  return bytes;
+}
+
 /// As many features as the network reads: a few of the motion, columns behind them.
 programs::ForeignMeaning meaning_of(std::size_t inputs) {
   const char* names[] = {"wdot_x", "wdot_y", "wdot_z", "s_z"};
@@ -98,7 +108,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const auto tensors = programs::read_safetensors(bytes, "net.safetensors");
       use(programs::safetensors_network(tensors, "net.safetensors", meaning_of(1)));
     } else if (data[0] == 'O') {
-      use(programs::read_onnx(bytes, "net.onnx"));
+      use(programs::read_onnx(bytes, "net.onnx", numbers_beside));
     } else {
       static_cast<void>(programs::parse_features(bytes, "features.toml"));
       ++tally.count["features"];

@@ -29,6 +29,21 @@ constexpr char onnx_model[] =
     "\003\022\001r\012\002\010\004B\004\012\000\020\015";
 // clang-format on
 
+/// Written by it: weights in a file beside, a bias of halves, an ELU and a leaky ReLU of other alphas, a Clip.
+constexpr char external_model[] =
+    // clang-format off
+    "\010\007\022\000:\325\002\012\041\012\001x\012\001w\012\001b\022\001a\042\004Gemm*\015\012\006transB\030\001"
+    "\240\001\002\012\034\012\001a\022\001c\042\003Elu*\017\012\005alpha\025\000\000\000\077\240\001\001\012\021"
+    "\012\001c\012\001v\022\001d\042\006MatMul\012\042\012\001d\022\001e\042\011LeakyRelu*\017\012\005alpha\025\000"
+    "\000\200>\240\001\001\012\022\012\001e\012\001l\012\001u\022\001y\042\004Clip\022\000*5\010\004\010\002\020"
+    "\001B\001wj\015\012\010location\022\001wj\013\012\006offset\022\0010j\014\012\006length\022\00232p\001*\020"
+    "\010\004\020\012*\007\200p\200\350\002\000\001B\001b*6\010\004\010\004\020\001B\001vj\015\012\010location\022"
+    "\001wj\014\012\006offset\022\00232j\014\012\006length\022\00264p\001*\013\020\001\042\004\000\000\000\000B\001"
+    "l*\013\020\001\042\004\000\000\200\077B\001uZ\024\012\001x\022\017\012\015\010\001\022\011\012\003\022\001r"
+    "\012\002\010\002b\024\012\001y\022\017\012\015\010\001\022\011\012\003\022\001r\012\002\010\004B\004\012\000"
+    "\020\015";
+// clang-format on
+
 std::string safetensors(const std::string& header, std::size_t numbers) {
   std::string bytes;
   for (std::size_t i = 0; i < 8; ++i) bytes += static_cast<char>(header.size() >> (8 * i) & 0xff);
@@ -61,6 +76,7 @@ int main(int argument_count, char** arguments) {
       "S" + safetensors("{}", 0),
       "S",
       "O" + std::string(onnx_model, sizeof onnx_model - 1),
+      "O" + std::string(external_model, sizeof external_model - 1),
       "Ffeature = [{ name = \"s_z\", unit = \"g\", lower = -3, upper = 1, mean = -1, scale = 0.5 },\n"
       "{ name = \"volts\", unit = \"V\", lower = 13, upper = 17 }]\nactivations = [\"tanh\", \"identity\"]\n"
       "commands_are = \"throttle\"\nsample_period_s = 0.02\n[output]\nnames = [\"u2\", \"u1\", \"u4\", \"u3\"]\n"

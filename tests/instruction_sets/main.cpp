@@ -46,14 +46,14 @@ bool agrees(const std::vector<std::size_t>& sizes, const Parameters& parameters,
   return true;
 }
 
-/// Gelu, SiLU, softplus and sine between five dense layers, in double; four ways to the same outputs and two to a
+/// Gelu, SiLU, softplus, sine, ELU and leaky ReLU between seven dense layers, in double; four ways to the same outputs and two to a
 /// Jacobian.
 bool agrees_smoothly(const float* x, const float* y) {
   const auto p = instruction_sets::some_parameters<instruction_sets::SmoothNet>();
   std::vector<double> values(x, x + 16);
   std::size_t next = 0;
-  for (int layer = 0; layer < 5; ++layer) {
-    std::vector<double> sums(layer < 4 ? 9 : 4);
+  for (int layer = 0; layer < 7; ++layer) {
+    std::vector<double> sums(layer < 6 ? 9 : 4);
     for (std::size_t row = 0; row < sums.size(); ++row) {
       sums[row] = static_cast<double>(p[next + sums.size() * values.size() + row]);
       for (std::size_t i = 0; i < values.size(); ++i)
@@ -65,6 +65,8 @@ bool agrees_smoothly(const float* x, const float* y) {
       if (layer == 1) v = v / (1 + std::exp(-v));
       if (layer == 2) v = std::log(1 + std::exp(v));
       if (layer == 3) v = std::sin(v);
+      if (layer == 4) v = v > 0 ? v : std::exp(v) - 1;
+      if (layer == 5) v = v < 0 ? 0.01 * v : v;
     }
     values = sums;
   }

@@ -9,7 +9,9 @@
 #include "pinnquad/inference/self_test.hpp"
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/batched_network.hpp"
+#include "pinnquad/nn/elu.hpp"
 #include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
 #include "pinnquad/nn/packed_network.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
@@ -27,10 +29,11 @@ using Net =
 using WideNet =
     pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<70>, pinnquad::Tanh, pinnquad::Dense<4>>;
 
-/// Every smooth activation that calls the C library, and derivatives asked with inputs.
+/// Every smooth activation that calls the C library, leaky ReLU, and derivatives asked with inputs.
 using SmoothNet = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<9>, pinnquad::Gelu,
                                     pinnquad::Dense<9>, pinnquad::Silu, pinnquad::Dense<9>, pinnquad::Softplus,
-                                    pinnquad::Dense<9>, pinnquad::Sine, pinnquad::Dense<4>>;
+                                    pinnquad::Dense<9>, pinnquad::Sine, pinnquad::Dense<9>, pinnquad::Elu,
+                                    pinnquad::Dense<9>, pinnquad::LeakyRelu, pinnquad::Dense<4>>;
 
 /// Numbers in +-0.5 without a pattern that a sum would cancel: a linear congruence.
 template <class Network>

@@ -83,7 +83,7 @@ std::vector<Interval> enclosed(const typename NetworkType::Parameters& parameter
 }  // namespace
 
 TEST_CASE_TEMPLATE("no derivative of the network leaves its path bound, whatever it is asked", NetworkType, Three<Relu>,
-                   Three<Tanh>, Three<Softplus>, Two, One) {
+                   Three<Tanh>, Three<Softplus>, Three<Elu>, Three<LeakyRelu>, Two, One) {
   std::mt19937_64 engine(1);
   double nearest = 1;
   for (int sample = 0; sample < 30; ++sample) {

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "pinnquad/nn/elu.hpp"
 #include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
 #include "pinnquad/nn/sine.hpp"
@@ -167,7 +169,7 @@ TEST_CASE_TEMPLATE("smooth activations and their slopes against 40 digits", Spec
   SUBCASE("double") { check_table<Spec, double>(); }
 }
 
-TEST_CASE_TEMPLATE("slopes against central differences", Spec, Gelu, Silu, Softplus, Sine, Tanh) {
+TEST_CASE_TEMPLATE("slopes against central differences", Spec, Gelu, Silu, Softplus, Sine, Tanh, Elu, LeakyRelu) {
   using Layer = Bound<Spec, double>;
   constexpr double step = 1e-5, tolerance = 1e-9;  // step^2 and rounding / step
   for (double v = -12; v <= 12; v += 0.37) {
@@ -185,6 +187,8 @@ TEST_CASE_TEMPLATE("packs give what scalars give, NaN and the largest numbers to
   check_pack<Sine, Pack>();
   check_pack<Tanh, Pack>();
   check_pack<Relu, Pack>();
+  check_pack<Elu, Pack>();
+  check_pack<LeakyRelu, Pack>();
 }
 
 TEST_CASE_TEMPLATE("NaN goes through, in value and slope; nothing overflows", Scalar, float, double) {
@@ -204,6 +208,7 @@ TEST_CASE_TEMPLATE("NaN goes through, in value and slope; nothing overflows", Sc
   check(Softplus{});
   check(Sine{});
   check(Tanh{});
+  check(Elu{});
   // far out they are the line they approach: 0 on the left, v on the right
   const Scalar far = std::numeric_limits<Scalar>::max() / 2, infinity = std::numeric_limits<Scalar>::infinity();
   const auto approaches_relu = [far](auto spec) {

@@ -10,7 +10,9 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/nn/batch_norm.hpp"
+#include "pinnquad/nn/elu.hpp"
 #include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
 #include "pinnquad/nn/sine.hpp"
@@ -76,6 +78,7 @@ TEST_CASE_TEMPLATE("every sample of a batch as if alone", Net,
                    Network<float, InputSize<1>, Dense<1>>,
                    Network<float, InputSize<5>, Relu, DenseWithoutBias<8>, Tanh, Dense<13>>,
                    Network<float, InputSize<6>, Dense<7>, Gelu, DenseWithoutBias<5>, Silu, Sine, Dense<3>, Softplus>,
+                   Network<float, InputSize<6>, Dense<7>, Elu, Dense<9>, pinnquad::LeakyRelu, Elu, Dense<3>>,
                    Network<float, InputSize<6>, Dense<7>, test::LeakyRelu, test::ChannelScale, Dense<2>>) {
   using Scalar = typename Net::Scalar;
   SUBCASE("native pack") { check_all_sizes<Net, NativePack<Scalar>>(); }

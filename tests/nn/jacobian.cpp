@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pinnquad/nn/jacobian.hpp"
+#include "pinnquad/nn/elu.hpp"
 
 #include <doctest/doctest.h>
 
@@ -15,6 +16,7 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
 #include "pinnquad/nn/sine.hpp"
@@ -84,6 +86,7 @@ TEST_CASE_TEMPLATE("Jacobian against central differences", Net,
                    From16<double, Dense<7>, Gelu, Dense<9>, Silu, Dense<5>, Softplus, Dense<4>, Sine, Dense<3>>,
                    From16<double, Gelu, DenseWithoutBias<5>, Sine, Silu, Dense<3>, Gelu>,
                    From16<double, test::ScalarSquare, Dense<5>, test::Square, test::ScalarSquare, Dense<3>>,
+                   From16<double, Elu, Dense<7>, Elu, Dense<9>, pinnquad::LeakyRelu, Dense<5>, Elu>,
                    Network<double, InputSize<3>, Sine, Dense<1>>,
                    Network<double, InputSize<1>, Dense<3>, Tanh, Dense<2>>,
                    Network<double, InputSize<3>, Tanh, Dense<40>, Relu, Relu, Dense<4>>) {
@@ -129,6 +132,7 @@ TEST_CASE_TEMPLATE("the vector unit's way forward keeps what slopes are asked wi
                    From16<float, Dense<25>, test::Square, Dense<25>, test::Square, Dense<25>, test::Square, Dense<4>>,
                    From16<float, Dense<7>, Gelu, Dense<7>, Gelu, Dense<7>, Sine, Relu, Silu, Dense<4>>,
                    From16<float, Gelu, Dense<50>, test::Square, Dense<4>, Softplus>,
+                   From16<float, Dense<25>, Elu, Dense<25>, pinnquad::LeakyRelu, Gelu, Dense<4>>,
                    From16<float, Dense<5>, test::ScalarSquare, DenseWithoutBias<5>, Sine, Dense<4>>) {
   std::mt19937_64 engine(11);
   auto net = random_network<Net>(engine);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pinnquad/nn/network.hpp"
+#include "pinnquad/nn/elu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
 
 #include <doctest/doctest.h>
 
@@ -251,6 +253,8 @@ TEST_CASE_TEMPLATE("fused activations and loops over equal layers keep the bits 
   using pinnquad::Gelu;
   compare(
       Network<Scalar, InputSize<6>, D6, Gelu, D6, Gelu, D6, pinnquad::Silu, D6, pinnquad::Softplus, pinnquad::Sine>{});
+  compare(Network<Scalar, InputSize<6>, D6, pinnquad::Elu, D6, pinnquad::Elu, D6, pinnquad::LeakyRelu, D6,
+                  pinnquad::LeakyRelu, Dense<3>>{});
   compare(Network<Scalar, InputSize<70>, Dense<60>, Relu, Dense<60>, Relu, Dense<60>, Relu, Dense<2>>{});
 }
 

@@ -22,7 +22,8 @@ UNITS = {"vdot_bx": "m/s^2", "s_z": "m/s^2", "wdot_x": "rad/s^2", "wdot_y": "rad
 FEATURES = [("s_z", -25, 0), ("wdot_y", -60, 60), ("wdot_x", -60, 60), ("w_x", -5, 5), ("wdot_z", -10, 10)]
 ACTIVATIONS = {"relu": lambda v: max(v, 0.0), "tanh": math.tanh, "sigmoid": lambda v: 1 / (1 + math.exp(-v)),
                "gelu": lambda v: v * (1 + math.erf(v / math.sqrt(2))) / 2, "silu": lambda v: v / (1 + math.exp(-v)),
-               "softplus": lambda v: math.log1p(math.exp(v)), "sine": math.sin, "identity": lambda v: v}
+               "softplus": lambda v: math.log1p(math.exp(v)), "sine": math.sin, "elu": lambda v: v if v > 0 else math.expm1(v),
+               "leaky_relu": lambda v: v if v > 0 else 0.01 * v, "identity": lambda v: v}
 AIRFRAME = '[airframe]\nname = "paper_quadrotor"\n'
 
 
@@ -341,7 +342,7 @@ HOSTILE = {
     "deep": (lambda header: b"[" * 100000, "nest"),
     "twice": (lambda header: json.dumps(header).replace("0.bias", "0.weight").encode(), "twice"),
     "no object": (lambda header: header.update({"0.weight": 3}), "number"),
-    "half": (header_of(dtype="F16"), "F16"),
+    "half": (header_of(dtype="F16"), "40 bytes"),
     "whole": (header_of(dtype="I64"), "I64"),
     "no dtype": (header_of(dtype=3), "dtype"),
     "no shape": (header_of(shape="wide"), "shape"),
@@ -484,7 +485,8 @@ def activation(graph, name):
     elif name == "silu":
         graph.node("Mul", graph.node("Sigmoid", x), x)
     else:
-        graph.node({"relu": "Relu", "tanh": "Tanh", "sigmoid": "Sigmoid", "softplus": "Softplus", "sine": "Sin"}[name], x)
+        graph.node({"relu": "Relu", "tanh": "Tanh", "sigmoid": "Sigmoid", "softplus": "Softplus", "sine": "Sin", "elu": "Elu",
+                    "leaky_relu": "LeakyRelu"}[name], x)
 
 
 @pytest.mark.parametrize("how", ["gemm", "scaled", "matmul", "transposed"])
@@ -518,7 +520,7 @@ def wrong_onnx(case):
     weights = lambda change: model(lambda m: change(m.graph.initializer[0]))
     width = lambda change: model(lambda m: change(m.graph.input[0].type.tensor_type))
     return {
-        "unknown": (op("LeakyRelu"), "'LeakyRelu_2'"),
+        "unknown": (op("HardSwish"), "'HardSwish_2'"),
         "domain": (op("Relu", domain="com.example"), "com.example"),
         "skip": (lambda g: g.node("Add", g.x, g.x), "skip"),
         "product": (lambda g: g.node("Mul", g.x, g.x), "GELU or SiLU"),
@@ -535,7 +537,6 @@ def wrong_onnx(case):
         "training": (lambda g: g.node("BatchNormalization", g.x, *[g.constant([1.0] * 4, [4]) for _ in range(4)],
                                       training_mode=1), "training_mode"),
         "variance": (lambda g: g.node("BatchNormalization", g.x, *[g.constant([-1.0] * 4, [4]) for _ in range(4)]), "-1"),
-        "half": (lambda g: g.node("Add", g.x, g.constant([1.0] * 4, [4], g.onnx.TensorProto.FLOAT16)), "FLOAT16"),
         "whole": (lambda g: g.node("Add", g.x, g.constant([1] * 4, [4], g.onnx.TensorProto.INT64)), "INT64"),
         "NaN": (lambda g: g.node("Add", g.x, g.constant([math.nan], [])), "NaN"),
         "inputs": (lambda g: g.node("Relu", g.x, g.x), "1 inputs"),
@@ -544,14 +545,14 @@ def wrong_onnx(case):
         "no features": (width(lambda t: setattr(t.shape.dim[1], "dim_value", -3)), "-3"),
         "huge": (width(lambda t: setattr(t.shape.dim[1], "dim_value", 2**62)), "features"),
         "rank": (width(lambda t: t.shape.dim.add()), "3 dimensions"),
-        "input type": (width(lambda t: setattr(t, "elem_type", 10)), "FLOAT16"),
+        "input type": (width(lambda t: setattr(t, "elem_type", 7)), "INT64"),
         "two inputs": (model(lambda m: m.graph.input.add().CopyFrom(m.graph.input[0]) or
                              setattr(m.graph.input[1], "name", "z")), "one input"),
         "two outputs": (model(lambda m: m.graph.output.add().CopyFrom(m.graph.output[0])), "one output"),
         "no output": (model(lambda m: setattr(m.graph.output[0], "name", "c0")), "c0"),
         "output width": (model(lambda m: setattr(m.graph.output[0].type.tensor_type.shape.dim[1], "dim_value", 9)), "9"),
         "twice": (model(lambda m: m.graph.node.add().CopyFrom(m.graph.node[1])), "again"),
-        "external": (weights(lambda t: setattr(t, "data_location", 1)), "external"),
+        "external": (weights(lambda t: setattr(t, "data_location", 1)), "location"),
         "negative dims": (weights(lambda t: t.dims.__setitem__(0, -4)), "-4"),
         "huge dims": (weights(lambda t: t.dims.__setitem__(0, 2**40)), "2^28"),
         "huge product": (weights(lambda t: (t.dims.__setitem__(0, 2**28), t.dims.__setitem__(1, 2**28))), "2^28"),
@@ -562,7 +563,7 @@ def wrong_onnx(case):
 
 
 WRONG_ONNX = ["unknown", "domain", "skip", "product", "softmax", "erf", "quotient", "by zero", "shape", "column", "matrix",
-              "made of nothing", "axis", "cast", "training", "variance", "half", "whole", "NaN", "inputs", "features",
+              "made of nothing", "axis", "cast", "training", "variance", "whole", "NaN", "inputs", "features",
               "named", "no features", "huge", "rank", "input type", "two inputs", "two outputs", "no output",
               "output width", "twice", "external", "negative dims", "huge dims", "huge product", "other dims", "raw",
               "opset"]
@@ -596,6 +597,171 @@ def test_without_onnx(pinnquad):
     features_toml()
     done = pinnquad.refused("convert net.onnx --features features.toml --out model", at="net.onnx")
     assert "libonnx-dev" in done.err or "an ONNX model" in done.err
+
+
+# as PyTorch's exporter writes: weights beside the model, bounds, halves
+
+def external(graph, change=lambda entries: None, name="net.onnx.data"):
+    """Moves each initializer's numbers into a file beside, as torch.onnx.export does since PyTorch 2.9."""
+    def move(model):
+        data = b""
+        for tensor in model.graph.initializer:
+            raw = graph.onnx.numpy_helper.to_array(tensor).tobytes()
+            copied = graph.onnx.TensorProto(name=tensor.name, data_type=tensor.data_type, dims=tensor.dims, data_location=1)
+            entries = {"location": name, "offset": str(len(data)), "length": str(len(raw))}
+            change(entries)
+            for key, value in entries.items():
+                copied.external_data.add(key=key, value=value)
+            tensor.CopyFrom(copied)
+            data += raw
+        Path(name).write_bytes(data)
+    graph.change = move
+
+
+def test_external_data(pinnquad):
+    """Numbers in the file beside; a folder of its own; what the author's machine is called reaches no model."""
+    onnx = has_onnx(pinnquad)
+    network = Network(5, 12, "elu", 4)
+    graph = Graph(onnx)
+    for layer, inputs in (network.layers[0], 5), ("elu", 12), (network.layers[2], 12):
+        activation(graph, layer) if layer == "elu" else linear(graph, layer, inputs, "gemm")
+    external(graph)
+    graph.nodes[0].doc_string = "File /home/author/secret.py, line 3"
+    Path("there").mkdir()
+    graph.write()
+    for file in "net.onnx", "net.onnx.data":
+        Path(file).rename(f"there/{file}")
+    features_toml(per_feature=mean_and_scale)
+    header = converted(pinnquad, "there/net.onnx")
+    standardised = lambda row: [(row[n] - (lower + upper) / 2 - 0.1) / ((upper - lower) / 4) for n, lower, upper in FEATURES]
+    assert worst(header, lambda row: network(standardised(row))) <= TOLERANCE
+    assert "author" not in header.text and b"author" not in Path("model/model.block").read_bytes()
+    Path("there/net.onnx.data").unlink()
+    done = pinnquad.refused("convert there/net.onnx --features features.toml --out other", at="there/net.onnx",
+                            keyword="net.onnx.data")
+    assert "external_data=False" in done.err
+
+
+WRONG_EXTERNAL = {
+    "absolute": ({"location": "/etc/passwd"}, "/etc/passwd"), "up": ({"location": "../net.onnx.data"}, "folder"),
+    "within": ({"location": "a/../net.onnx.data"}, "folder"), "nowhere": ({"location": ""}, "folder"),
+    "link": ({"location": "link"}, "link"), "offset": ({"offset": "97"}, "offset 97"),
+    "huge offset": ({"offset": str(2**64 - 1)}, "96 bytes"), "length": ({"length": "97"}, "length 97"),
+    "huge length": ({"length": str(2**64 - 1)}, "96 bytes"), "shape": ({"length": "76"}, "76 bytes"),
+    "no number": ({"offset": "-4"}, "-4"), "overflow": ({"offset": "9" * 30}, "999"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG_EXTERNAL)
+def test_wrong_external(pinnquad, case, tmp_path_factory):
+    entries, keyword = WRONG_EXTERNAL[case]
+    graph = Graph(has_onnx(pinnquad))
+    linear(graph, Network(5, 4).layers[0], 5, "gemm")
+    external(graph, lambda own: own.update(entries) if own["offset"] == "0" else None)
+    graph.write()
+    outside = tmp_path_factory.mktemp("outside") / "data"
+    outside.write_bytes(b"\0" * 96)
+    Path("link").symlink_to(outside)
+    pinnquad.refused("convert net.onnx --features features.toml --out model", at="net.onnx", keyword=keyword)
+    assert not Path("model").exists()
+
+
+@pytest.mark.parametrize("opset", [7, 13])
+@pytest.mark.parametrize("op, given, answer", [
+    ("Clip", {"min": 0.0, "max": 0.5}, lambda v: min(max(v, 0), 0.5)), ("Clip", {"min": 0.0}, lambda v: max(v, 0)),
+    ("Clip", {"max": 0.25}, lambda v: min(v, 0.25)), ("Clip", {}, lambda v: v),
+    ("Clip", {"min": -1.0, "max": 1.0}, lambda v: min(max(v, -1), 1)),
+    ("Elu", {"alpha": 0.5}, lambda v: v if v > 0 else 0.5 * math.expm1(v)),
+    ("LeakyRelu", {"alpha": 0.25}, lambda v: v if v > 0 else 0.25 * v)])
+def test_bounds_and_alphas(pinnquad, op, given, answer, opset):
+    """Between layers and behind the last one: bounds as attributes and as inputs, alphas that no layer has."""
+    network = Network(5, 12, 4)
+    graph = Graph(has_onnx(pinnquad))
+    graph.opset = opset
+    for layer, inputs in (network.layers[0], 5), (network.layers[1], 12):
+        linear(graph, layer, inputs, "gemm")
+        if op == "Clip" and opset > 10:
+            graph.node(op, graph.x, *[graph.constant([given[key]], []) if key in given else "" for key in ("min", "max")])
+        else:
+            graph.node(op, graph.x, **given)
+    graph.write()
+    features_toml(per_feature=mean_and_scale)
+    header = converted(pinnquad, "net.onnx")
+    dense = lambda layer, x: [answer(bias + sum(w * v for w, v in zip(layer[1][row * len(x) : (row + 1) * len(x)], x)))
+                              for row, bias in enumerate(layer[2])]
+    standardised = lambda row: [(row[n] - (lower + upper) / 2 - 0.1) / ((upper - lower) / 4) for n, lower, upper in FEATURES]
+    assert worst(header, lambda row: dense(network.layers[1], dense(network.layers[0], standardised(row)))) <= TOLERANCE
+
+
+@pytest.mark.parametrize("raw", [False, True])
+@pytest.mark.parametrize("kind", ["FLOAT16", "BFLOAT16"])
+def test_halves(pinnquad, kind, raw):
+    """Weights of half precision are what they are in float; both files, both ways to store them in ONNX."""
+    onnx = has_onnx(pinnquad)
+    bits_of = {"FLOAT16": lambda v: struct.unpack("<H", struct.pack("<e", v))[0],
+               "BFLOAT16": lambda v: struct.unpack("<I", struct.pack("<f", v))[0] >> 16}[kind]
+    number_of = {"FLOAT16": lambda b: struct.unpack("<e", struct.pack("<H", b))[0],
+                 "BFLOAT16": lambda b: struct.unpack("<f", struct.pack("<I", b << 16))[0]}[kind]
+    network = Network(5, 4)
+    (outputs, weights, biases), = network.layers
+    biases = [-6e-6, 2.0**-14, *biases[2:]]  # a subnormal half among them
+    stored = {"0.weight": ((4, 5), [bits_of(v) for v in weights]), "0.bias": ((4,), [bits_of(v) for v in biases])}
+    network.layers = [(outputs, *([number_of(b) for b in bits] for _, bits in stored.values()))]
+    features_toml(per_feature=mean_and_scale)
+    data = [struct.pack(f"<{len(bits)}H", *bits) for _, bits in stored.values()]
+    safetensors("net.safetensors", {}, change=lambda header: header.update({
+        name: {"dtype": {"FLOAT16": "F16"}.get(kind, "BF16"), "shape": shape, "data_offsets": [40 * at, 40 + 8 * at]}
+        for at, (name, (shape, _)) in enumerate(stored.items())}))
+    Path("net.safetensors").write_bytes(Path("net.safetensors").read_bytes() + b"".join(data))
+    graph = Graph(onnx)
+    graph.node("Gemm", "x", "0.weight", "0.bias", transB=1)
+    for (name, (shape, bits)), packed in zip(stored.items(), data):
+        tensor = onnx.TensorProto(name=name, dims=shape, data_type=getattr(onnx.TensorProto, kind))
+        if raw:
+            tensor.raw_data = packed
+        else:
+            tensor.int32_data.extend(bits)
+        graph.constants.append(tensor)
+    graph.write()
+    standardised = lambda row: [(row[n] - (lower + upper) / 2 - 0.1) / ((upper - lower) / 4) for n, lower, upper in FEATURES]
+    for file in "net.safetensors", "net.onnx":
+        assert worst(converted(pinnquad, file), lambda row: network(standardised(row))) <= TOLERANCE
+
+
+PAPER = [(name, -5, 5) for name in ("vdot_bx vdot_by vdot_bz wdot_x wdot_y wdot_z v_bx v_by v_bz w_x w_y w_z roll pitch "
+                                    "sin_yaw cos_yaw").split()]
+REFERENCE_NETWORKS = {name: "" for name in (
+    "bfloat16.default bn.default bn.legacy clamp.default elu.default float16.default float64.default gelu.default "
+    "hardtanh.default leaky.default paper_bn.default relu.axes relu.default relu.dynamic relu.legacy relu.noext "
+    "scaled.default scaled_bn.default silu.default softplus.default tanh.default").split()}
+REFERENCE_NETWORKS |= {"gelu_tanh.default": "approximate", "layernorm.default": "LayerNormalization",
+                       "residual.default": "skip connection"}
+
+
+@pytest.mark.parametrize("name", REFERENCE_NETWORKS)
+def test_reference(pinnquad, name, request):
+    """What PyTorch 2.11 exported answers as PyTorch did, within 1e-6 of the outputs' scale; or one line says why not."""
+    folder = request.config.getoption("--reference") / "exported_networks"
+    if not folder.exists():
+        pytest.skip("no reference networks")
+    onnx, numpy = has_onnx(pinnquad), pytest.importorskip("numpy")
+    unit = lambda name: {"vdot": "m/s^2", "wdot": "rad/s^2", "v": "m/s", "w": "rad/s"}.get(name.split("_")[0])
+    units = {name: unit(name) or ("rad" if name in ("roll", "pitch") else "1") for name, *_ in PAPER}
+    features_toml(features=PAPER, units=units)
+    source = folder / f"{name}.onnx"
+    if REFERENCE_NETWORKS[name]:
+        pinnquad.refused("convert", source, "--features", "features.toml", "--out", "model", at=str(source),
+                         keyword=REFERENCE_NETWORKS[name])
+        return
+    pinnquad("convert", source, "--features", "features.toml", "--out", "model")
+    assert b"/root/" not in Path("model/model.block").read_bytes() and "torch" not in Path("model/model.hpp").read_text()
+    rows_of = folder / f"{name.split('.')[0]}.golden.csv"
+    if not rows_of.exists():
+        return  # halves: PyTorch answers in their arithmetic
+    pinnquad("convert model/model.block --out back.onnx")
+    rows = numpy.loadtxt(rows_of, delimiter=",")
+    answers = run(onnx, numpy, onnx.load("back.onnx"), rows[:, :16].astype("f4"))
+    assert numpy.abs(answers - rows[:, 16:]).max() <= TOLERANCE * max(1, numpy.abs(rows[:, 16:]).max())
 
 
 # back
@@ -632,7 +798,9 @@ def run(onnx, numpy, model, x):
                  "Add": lambda a, b: a + b, "Gemm": lambda a, b, c: a @ b.T + c, "Relu": lambda a: numpy.maximum(a, 0),
                  "Tanh": numpy.tanh, "Sigmoid": sigmoid, "Softplus": lambda a: numpy.log1p(numpy.exp(a)),
                  "Sin": numpy.sin, "Erf": numpy.vectorize(math.erf), "Min": numpy.minimum, "Max": numpy.maximum,
-                 "Gather": lambda a, places: a[:, places], "Clip": numpy.clip}
+                 "Gather": lambda a, places: a[:, places], "Clip": numpy.clip,
+                 "Elu": lambda a: numpy.where(a > 0, a, numpy.expm1(numpy.minimum(a, 0))),
+                 "LeakyRelu": lambda a: numpy.where(a > 0, a, a * a.dtype.type(0.01))}
     for node in model.graph.node:
         values[node.output[0]] = operators[node.op_type](*(values[name] for name in node.input))
     return values[model.graph.output[0].name]
@@ -726,7 +894,7 @@ def torch_network(torch, name, norm, number):
             return torch.sin(x)
 
     made = {"relu": nn.ReLU, "tanh": nn.Tanh, "sigmoid": nn.Sigmoid, "gelu": nn.GELU, "silu": nn.SiLU,
-            "softplus": nn.Softplus, "sine": Sine}[name]
+            "softplus": nn.Softplus, "sine": Sine, "elu": nn.ELU, "leaky_relu": nn.LeakyReLU}[name]
     torch.manual_seed(3)
     network = nn.Sequential(nn.Linear(5, 24), *[nn.BatchNorm1d(24)] * norm, made(), nn.Linear(24, 24, bias=False), made(),
                             nn.Linear(24, 4)).to(number)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Every layer's backward rule, alone and in its mini-batch form, against central differences in double.
 #include "pinnquad/training/backward.hpp"
+#include "pinnquad/nn/elu.hpp"
 #include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
 #include "pinnquad/nn/sine.hpp"
@@ -163,7 +165,8 @@ TEST_CASE_TEMPLATE("backward rule of every layer", Layer, Bound<Dense<1>, 1>, Bo
                    Bound<DenseWithoutBias<1>, 1>, Bound<DenseWithoutBias<5>, 3>, Bound<DenseWithoutBias<25>, 16>,
                    Bound<Relu, 7>, Bound<Tanh, 6>, Bound<pinnquad::Gelu, 5>, Bound<pinnquad::Silu, 6>,
                    Bound<pinnquad::Softplus, 7>, Bound<pinnquad::Sine, 4>, Bound<pinnquad::test::ScalarSquare, 3>,
-                   Bound<LeakyRelu, 5>, Bound<ChannelScale, 6>, Bound<Softmax, 5>) {
+                   Bound<pinnquad::Elu, 6>, Bound<pinnquad::LeakyRelu, 7>, Bound<LeakyRelu, 5>, Bound<ChannelScale, 6>,
+                   Bound<Softmax, 5>) {
   if constexpr (is_elementwise<Layer> || pinnquad::is_detected<pinnquad::detail::BackwardOf, Layer>) {
     SUBCASE("alone") { check_rule<Layer>(); }
   }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Back-propagation through whole networks against central differences, in double.
 #include "pinnquad/training/network_gradient.hpp"
+#include "pinnquad/nn/elu.hpp"
 #include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
 #include "pinnquad/nn/sine.hpp"
@@ -61,7 +63,8 @@ double smallest_kink_input(const double* parameters, const double* x) {
     using Layer = typename Net::template Layer<Index>;
     double smallest = std::numeric_limits<double>::infinity();
     if constexpr (std::is_same_v<Layer, Relu::Bind<double, Layer::inputs>> ||
-                  std::is_same_v<Layer, LeakyRelu::Bind<double, Layer::inputs>>) {
+                  std::is_same_v<Layer, LeakyRelu::Bind<double, Layer::inputs>> ||
+                  std::is_same_v<Layer, pinnquad::LeakyRelu::Bind<double, Layer::inputs>>) {
       for (int i = 0; i < Layer::inputs; ++i) {
         // an input that is exactly 0 comes from a ReLU before, and stays 0 within the step
         if (x[i] != 0.0) smallest = std::min(smallest, std::fabs(x[i]));
@@ -136,6 +139,7 @@ using Packs3 = GenericPack<double, 3>;
 TEST_CASE_TEMPLATE("gradient of the library's layers in every order", Net, Network<double, InputSize<3>, Dense<2>>,
                    Network<double, InputSize<5>, Dense<6>, Relu, Dense<7>, Relu, Dense<4>>,
                    Network<double, InputSize<5>, Dense<6>, Tanh, Dense<9>, Relu, Dense<2>>,
+                   Network<double, InputSize<5>, Dense<6>, pinnquad::LeakyRelu, Dense<9>, pinnquad::Elu, Dense<2>>,
                    Network<double, InputSize<5>, DenseWithoutBias<6>, Tanh, DenseWithoutBias<9>, Dense<2>>,
                    Network<double, InputSize<4>, Tanh, Dense<5>, Dense<3>, Tanh>) {
   SUBCASE("packs of 4") { check_network<Net, Packs4>(); }
@@ -162,6 +166,7 @@ TEST_CASE_TEMPLATE("a layer whose slope is asked with its input finds it, whatev
                    Network<double, InputSize<5>, Dense<6>, Gelu, Dense<9>, Silu, Dense<2>>,
                    Network<double, InputSize<5>, Dense<6>, Sine, Sine, Softplus, Dense<2>, Gelu>,
                    Network<double, InputSize<5>, Gelu, Tanh, Sine, Dense<3>>,
+                   Network<double, InputSize<5>, pinnquad::Elu, Dense<6>, pinnquad::Elu, Gelu, Dense<3>>,
                    Network<double, InputSize<5>, Dense<6>, Gelu, Relu, Dense<3>>,
                    Network<double, InputSize<5>, Dense<6>, Tanh, Square, Softmax, ScalarSquare, Dense<3>>) {
   SUBCASE("packs of 4") { check_network<Net, Packs4>(); }
@@ -229,6 +234,7 @@ std::vector<double> gradient_of(const std::vector<double>& parameters, const std
 TEST_CASE_TEMPLATE("in float on the vector unit as in double by plain loops", Net,
                    Network<float, InputSize<5>, Dense<6>, Relu, Dense<17>, Relu, Dense<4>>,
                    Network<float, InputSize<5>, Dense<9>, Gelu, DenseWithoutBias<7>, Tanh, Dense<3>, Softplus>,
+                   Network<float, InputSize<5>, Dense<9>, pinnquad::Elu, Dense<7>, pinnquad::LeakyRelu, Dense<3>>,
                    Network<float, InputSize<3>, Dense<16>, Square, Dense<2>, LeakyRelu>) {
   std::mt19937_64 engine(93);
   constexpr double float_tolerance = 3.7e-7;  // of the largest: sums of at most 17 products, three layers deep

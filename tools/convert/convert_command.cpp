@@ -27,6 +27,7 @@
 #include "convert/converted_model.hpp"
 #include "convert/exported_network.hpp"
 #include "convert/features_file.hpp"
+#include "convert/file_beside.hpp"
 #include "convert/onnx_file.hpp"
 #include "convert/safetensors.hpp"
 #include "model/given_model.hpp"
@@ -45,17 +46,14 @@ struct ConvertOptions {
 };
 
 programs::ForeignNetwork read_network(const ConvertOptions& options, const programs::ForeignMeaning& meaning) {
-  constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 26;
-  std::error_code absent;
-  const std::uintmax_t size = std::filesystem::file_size(options.source, absent);
-  if (!absent && size > most_bytes) {
-    throw InputError(options.source, 0, 0, "a network of at most 64 MiB", std::to_string(size) + " bytes");
-  }
-  const std::string bytes = file_text(options.source);
+  const std::string bytes = programs::network_bytes(options.source);
+  const auto beside = [&](const std::string& location, const std::string& tensor) {
+    return programs::bytes_beside(options.source, location, tensor);
+  };
   const bool is_onnx = std::filesystem::path(options.source).extension() == ".onnx";
   programs::ForeignNetwork network =
       is_onnx
-          ? programs::read_onnx(bytes, options.source)
+          ? programs::read_onnx(bytes, options.source, beside)
           : programs::safetensors_network(programs::read_safetensors(bytes, options.source), options.source, meaning);
   network.source = printable(std::filesystem::path(options.source).filename().string());
   return network;

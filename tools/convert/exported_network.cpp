@@ -22,9 +22,7 @@ bool are(const Numbers& numbers, double value) {
 ForeignActivation activation_of(const RunTimeLayer& layer) {
   const std::string_view own = pinnquad::detail::run_time_activations<float>[layer.activation].description;
   std::size_t place = 0;
-  while (place == std::size_t(ForeignActivation::sigmoid) || layer_text(static_cast<ForeignActivation>(place)) != own) {
-    ++place;
-  }
+  while (layer_text(static_cast<ForeignActivation>(place)) != own) ++place;
   return static_cast<ForeignActivation>(place);
 }
 

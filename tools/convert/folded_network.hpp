@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A chain of affine maps and activations as layers of the library: dense ones and its activations alone. Batch norm,
-// scales and shifts, and the two affine maps that make a sigmoid of a tanh, are folded into the dense layers, in
-// double.
+// scales and shifts, and the affine maps that make another activation of one of the library's, are folded into the
+// dense layers, in double.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -19,9 +20,10 @@ struct FoldedLayer {
   ForeignActivation activation = ForeignActivation::relu;
 };
 
-/// sigmoid(v) = (1 + tanh(v / 2)) / 2 is the only activation that is none of the library's.
+/// The layer of the library by which an activation is worked out: its own, or the one that Folder makes it of.
 inline std::string layer_text(ForeignActivation activation) {
-  constexpr std::array<const char*, 8> names = {"Relu", "Tanh", "Tanh", "Gelu", "Silu", "Softplus", "Sine", "Clip"};
+  constexpr std::array<const char*, foreign_activations.size()> names = {
+      "Relu", "Tanh", "Tanh", "Gelu", "Silu", "Softplus", "Sine", "Clip", "Elu", "LeakyRelu", "Clip", "Clip"};
   return "pinnquad::" + std::string(names[static_cast<std::size_t>(activation)]);
 }
 
@@ -35,10 +37,14 @@ class Folder {
       add_dense(step.dense);
     } else if (!step.scale.empty()) {
       add_affine(step.scale, step.shift);
-    } else if (step.activation == ForeignActivation::sigmoid) {
-      add_affine(Numbers(width_, 0.5), Numbers(width_, 0.0));
+    } else if (step.activation == ForeignActivation::sigmoid) {  // (1 + tanh(v / 2)) / 2
+      add_uniform(0.5, 0);
       add_activation(ForeignActivation::tanh);
-      add_affine(Numbers(width_, 0.5), Numbers(width_, 0.5));
+      add_uniform(0.5, 0.5);
+    } else if (step.activation == ForeignActivation::clip) {
+      add_clip(step.lower, step.upper);
+    } else if (step.has_own_alpha()) {
+      add_halves(step);
     } else {
       add_activation(step.activation);
     }
@@ -64,6 +70,48 @@ class Folder {
       shift_[i] = shift_[i] * scale[i] + shift[i];
     }
     is_identity_ = false;
+  }
+  void add_uniform(double scale, double shift) {
+    if (!(std::abs(scale - 1) > 0) && !(std::abs(shift) > 0)) return;
+    add_affine(Numbers(width_, scale), Numbers(width_, shift));
+  }
+  /// By the library's Clip where there are two bounds, by ReLU where there is one.
+  void add_clip(double lower, double upper) {
+    if (std::isinf(lower) && std::isinf(upper)) return;
+    if (std::isinf(lower) || std::isinf(upper)) {
+      const double bound = std::isinf(lower) ? upper : lower, sign = std::isinf(lower) ? -1 : 1;
+      add_uniform(sign, -sign * bound);
+      add_activation(ForeignActivation::relu);
+      add_uniform(sign, bound);
+      return;
+    }
+    const double middle = (lower + upper) / 2, scale = (upper - lower) / 2 / clip_bound;
+    add_uniform(1 / scale, -middle / scale);
+    add_activation(ForeignActivation::clip);
+    add_uniform(scale, middle);
+  }
+  /// relu(v) and relu(-v) beside each other: leaky_relu(v) = relu(v) - alpha relu(-v), and the library's ELU of
+  /// relu(v) and -relu(-v) is relu(v) and exp(min(v, 0)) - 1.
+  void add_halves(const ForeignStep& step) {
+    const std::size_t count = width_;
+    const bool is_elu = step.activation == ForeignActivation::elu;
+    ForeignDense parted{count, Numbers(2 * count * count, 0), Numbers(2 * count, 0)};
+    ForeignDense joined{2 * count, Numbers(2 * count * count, 0), Numbers(count, 0)};
+    Numbers signs(2 * count, 1);
+    for (std::size_t i = 0; i < count; ++i) {
+      parted.weights[i * count + i] = 1;
+      parted.weights[(count + i) * count + i] = -1;
+      signs[count + i] = -1;
+      joined.weights[i * 2 * count + i] = 1;
+      joined.weights[i * 2 * count + count + i] = is_elu ? step.alpha : -step.alpha;
+    }
+    add_dense(parted);
+    add_activation(ForeignActivation::relu);
+    if (is_elu) {
+      add_affine(signs, Numbers(2 * count, 0));
+      add_activation(ForeignActivation::elu);
+    }
+    add_dense(joined);
   }
   void add_dense(const ForeignDense& next) {
     // two affine maps are one where that has no more weights

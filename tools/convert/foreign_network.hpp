@@ -15,26 +15,26 @@ namespace programs {
 
 using Numbers = std::vector<double>;
 
-/// Activations that a source may have, and the library's Clip. A sigmoid becomes a tanh between two affine maps.
-enum class ForeignActivation { relu, tanh, sigmoid, gelu, silu, softplus, sine, clip };
-inline constexpr std::array<const char*, 8> foreign_activations = {"relu", "tanh",     "sigmoid", "gelu",
-                                                                   "silu", "softplus", "sine",    "clip"};
-inline constexpr double clip_bound = 3.5;  ///< of the library's Clip, which is PyTorch's Hardtanh(-3.5, 3.5)
-
-/// By its definition, with the C library's functions.
-inline double activated(ForeignActivation activation, double v) {
-  switch (activation) {
-    case ForeignActivation::relu: return v < 0 ? 0 : v;
-    case ForeignActivation::tanh: return std::tanh(v);
-    case ForeignActivation::sigmoid: return 1 / (1 + std::exp(-v));
-    case ForeignActivation::gelu: return 0.5 * v * (1 + std::erf(v * std::sqrt(0.5)));
-    case ForeignActivation::silu: return v / (1 + std::exp(-v));
-    case ForeignActivation::softplus: return v > 30 ? v : std::log1p(std::exp(v));
-    case ForeignActivation::sine: return std::sin(v);
-    case ForeignActivation::clip: return v < -clip_bound ? -clip_bound : (v > clip_bound ? clip_bound : v);
-  }
-  return v;
-}
+/// Activations that a source may have. A sigmoid becomes a tanh between two affine maps, and relu6, hardtanh are clips.
+enum class ForeignActivation {
+  relu,
+  tanh,
+  sigmoid,
+  gelu,
+  silu,
+  softplus,
+  sine,
+  clip,
+  elu,
+  leaky_relu,
+  relu6,
+  hardtanh
+};
+inline constexpr std::array<const char*, 12> foreign_activations = {
+    "relu", "tanh", "sigmoid", "gelu", "silu", "softplus", "sine", "clip", "elu", "leaky_relu", "relu6", "hardtanh"};
+// the numbers of the library's own, and of PyTorch where a source says none
+inline constexpr double clip_bound = 3.5;  ///< Hardtanh(-3.5, 3.5)
+inline constexpr double elu_alpha = 1, leaky_relu_alpha = 0.01;
 
 /// y = W x + b, row by row (row = output).
 struct ForeignDense {
@@ -50,7 +50,34 @@ struct ForeignStep {
   ForeignDense dense;
   Numbers scale, shift;
   ForeignActivation activation = ForeignActivation::relu;
+  double lower = -clip_bound, upper = clip_bound;  ///< of a clip; an infinite one bounds nothing
+  double alpha = 0;                                ///< of elu and leaky_relu
+
+  /// An alpha that is not the library's, but for the rounding of a float.
+  bool has_own_alpha() const {
+    return (activation == ForeignActivation::elu && std::abs(alpha - elu_alpha) > 1e-9) ||
+           (activation == ForeignActivation::leaky_relu && std::abs(alpha - leaky_relu_alpha) > 1e-9);
+  }
 };
+
+/// By its definition, with the C library's functions.
+inline double activated(const ForeignStep& step, double v) {
+  switch (step.activation) {
+    case ForeignActivation::relu: return v < 0 ? 0 : v;
+    case ForeignActivation::tanh: return std::tanh(v);
+    case ForeignActivation::sigmoid: return 1 / (1 + std::exp(-v));
+    case ForeignActivation::gelu: return 0.5 * v * (1 + std::erf(v * std::sqrt(0.5)));
+    case ForeignActivation::silu: return v / (1 + std::exp(-v));
+    case ForeignActivation::softplus: return v > 30 ? v : std::log1p(std::exp(v));
+    case ForeignActivation::sine: return std::sin(v);
+    case ForeignActivation::elu: return v > 0 ? v : step.alpha * std::expm1(v);
+    case ForeignActivation::leaky_relu: return v < 0 ? step.alpha * v : v;
+    case ForeignActivation::clip:
+    case ForeignActivation::relu6:
+    case ForeignActivation::hardtanh: return v < step.lower ? step.lower : (v > step.upper ? step.upper : v);
+  }
+  return v;
+}
 
 /// The whole of it.
 struct ForeignNetwork {
@@ -71,7 +98,7 @@ inline Numbers taken(const ForeignStep& step, const Numbers& x) {
   } else if (!step.scale.empty()) {
     for (std::size_t i = 0; i < y.size(); ++i) y[i] = step.scale[i] * x[i] + step.shift[i];
   } else {
-    for (double& value : y) value = activated(step.activation, value);
+    for (double& value : y) value = activated(step, value);
   }
   return y;
 }
@@ -87,9 +114,20 @@ inline ForeignStep affine_step(Numbers scale, Numbers shift) {
   step.shift = std::move(shift);
   return step;
 }
+inline ForeignStep clip_step(double lower, double upper) {
+  ForeignStep step;
+  step.activation = ForeignActivation::clip;
+  step.lower = lower;
+  step.upper = upper;
+  return step;
+}
+/// With PyTorch's numbers; the clip is the library's.
 inline ForeignStep activation_step(ForeignActivation activation) {
+  if (activation == ForeignActivation::relu6) return clip_step(0, 6);
+  if (activation == ForeignActivation::hardtanh) return clip_step(-1, 1);
   ForeignStep step;
   step.activation = activation;
+  step.alpha = activation == ForeignActivation::elu ? elu_alpha : leaky_relu_alpha;
   return step;
 }
 

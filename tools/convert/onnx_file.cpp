@@ -4,14 +4,18 @@
 #include <onnx/onnx_pb.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
+#include <string_view>
 #include <vector>
 
+#include "convert/stored_number.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/version.hpp"
 
@@ -22,6 +26,12 @@ using pinnquad::InputError;
 using pinnquad::printable;
 
 constexpr std::size_t widest = 1 << 14;
+constexpr std::size_t most_numbers = std::size_t{1} << 24;
+const std::map<int, StoredNumber> number_types = {{onnx::TensorProto::FLOAT, StoredNumber::float32},
+                                                  {onnx::TensorProto::DOUBLE, StoredNumber::float64},
+                                                  {onnx::TensorProto::FLOAT16, StoredNumber::float16},
+                                                  {onnx::TensorProto::BFLOAT16, StoredNumber::bfloat16}};
+constexpr const char* type_words = "FLOAT, DOUBLE, FLOAT16 or BFLOAT16";
 
 /// Numbers of the file that depend on no input.
 struct Constant {
@@ -42,8 +52,8 @@ struct Link {
 };
 
 /// The place of a value behind its chain's last number b, within an activation that ONNX makes of several nodes:
-/// c b, c erf(a b) + d or c sigmoid(a b) + d.
-enum class Inner { plain, erf, sigmoid };
+/// c b, c erf(a b) + d or c sigmoid(a b) + d; or b > a, by which an exporter cuts a softplus short.
+enum class Inner { plain, erf, sigmoid, above };
 
 /// A tensor that depends on the input.
 struct Value {
@@ -59,7 +69,7 @@ using Operation = std::function<Numbers(const std::vector<Numbers>&)>;
 
 class Graph {
  public:
-  Graph(const std::string& bytes, const std::string& path) : path_(path) {
+  Graph(const std::string& bytes, const std::string& path, const FileBeside& beside) : path_(path), beside_(beside) {
     if (bytes.size() > std::size_t(std::numeric_limits<int>::max()) ||
         !model_.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())) || !model_.has_graph()) {
       refuse("an ONNX model", "none, or one that is cut short");
@@ -119,7 +129,7 @@ class Graph {
                ? onnx::TensorProto::DataType_Name(static_cast<onnx::TensorProto::DataType>(type))
                : std::to_string(type);
   }
-  static bool is_number_type(int type) { return type == onnx::TensorProto::FLOAT || type == onnx::TensorProto::DOUBLE; }
+  static bool is_number_type(int type) { return number_types.count(type) > 0; }
 
   std::size_t take_input() {
     const onnx::ValueInfoProto* input = nullptr;
@@ -133,7 +143,7 @@ class Graph {
     const std::string what = "input '" + printable(input->name()) + "': ";
     const auto& type = input->type();
     if (!type.has_tensor_type() || !is_number_type(type.tensor_type().elem_type())) {
-      refuse(what + "a tensor of FLOAT or DOUBLE",
+      refuse(what + "a tensor of " + type_words,
              type.has_tensor_type() ? type_text(type.tensor_type().elem_type()) : "another");
     }
     const auto& shape = type.tensor_type().shape();
@@ -193,6 +203,7 @@ class Graph {
   Value& made_plain(const std::string& name) {
     Value& value = values_.at(name);
     if (value.inner == Inner::erf) refuse_node("Erf as GELU has it, v (1 + erf(v / sqrt 2)) / 2", "another use of it");
+    if (value.inner == Inner::above) refuse_node("Greater before Where, as a softplus has it", "another use of it");
     if (value.inner == Inner::sigmoid) {
       if (!same(value.inner_scale, 1)) scale_chain(value, value.inner_scale);
       value.chain = behind(value, activation_step(ForeignActivation::sigmoid));
@@ -225,21 +236,20 @@ class Graph {
     return found ? found->i() : otherwise;
   }
 
-  /// Of a tensor of the file, by name. Throws for a type that is none of a network's numbers, data elsewhere, dims that
-  /// do not fit its data, and NaN.
-  Constant constant(const std::string& name) const {
+  /// Of a tensor of the file, by name. Throws for a type that is none of a network's numbers, dims that do not fit its
+  /// data, and NaN.
+  Constant constant(const std::string& name) {
     const auto made = made_.find(name);
     if (made != made_.end()) return made->second;
     const auto found = stored_.find(name);
     if (found == stored_.end()) refuse_node("inputs that the graph makes before", "'" + printable(name) + "'");
     return constant(*found->second, "tensor '" + printable(name) + "'");
   }
-  Constant constant(const onnx::TensorProto& tensor, const std::string& what) const {
-    if (tensor.data_location() == onnx::TensorProto::EXTERNAL || tensor.external_data_size() > 0) {
-      refuse(what + ": its data in the file itself", "external data");
-    }
-    if (!is_number_type(tensor.data_type()))
-      refuse(what + ": numbers of FLOAT or DOUBLE", type_text(tensor.data_type()));
+  Constant constant(const onnx::TensorProto& tensor, const std::string& what) {
+    const auto known = number_types.find(tensor.data_type());
+    if (known == number_types.end()) refuse(what + ": numbers of " + type_words, type_text(tensor.data_type()));
+    const StoredNumber type = known->second;
+    const std::size_t each = bytes_of(type);
     Constant result;
     std::uint64_t count = 1;
     for (const std::int64_t size : tensor.dims()) {
@@ -248,36 +258,84 @@ class Graph {
       count *= static_cast<std::uint64_t>(size);
       if (count > (1u << 28)) refuse(what + ": at most 2^28 numbers", "more");
     }
-    const bool is_float = tensor.data_type() == onnx::TensorProto::FLOAT;
-    const std::string& raw = tensor.raw_data();
-    const std::size_t size = is_float ? 4 : 8;
-    const std::uint64_t stored =
-        tensor.has_raw_data()
-            ? raw.size() / size
-            : static_cast<std::uint64_t>(is_float ? tensor.float_data_size() : tensor.double_data_size());
-    if (stored != count || (tensor.has_raw_data() && raw.size() % size != 0)) {
+    const bool is_elsewhere = tensor.data_location() == onnx::TensorProto::EXTERNAL || tensor.external_data_size() > 0;
+    const bool is_raw = is_elsewhere || tensor.has_raw_data();
+    const std::string_view raw = is_elsewhere ? bytes_beside(tensor, what) : std::string_view(tensor.raw_data());
+    const int listed = type == StoredNumber::float32   ? tensor.float_data_size()
+                       : type == StoredNumber::float64 ? tensor.double_data_size()
+                                                       : tensor.int32_data_size();
+    if (is_raw ? raw.size() != count * each : static_cast<std::uint64_t>(listed) != count) {
       refuse(what + ": " + std::to_string(count) + " numbers for its shape " + shape_text(result.shape),
-             std::to_string(stored));
+             is_raw ? std::to_string(raw.size()) + " bytes" : std::to_string(listed));
     }
     for (std::size_t i = 0; i < count; ++i) {
-      double value = 0;
-      if (!tensor.has_raw_data()) {
-        value = is_float ? static_cast<double>(tensor.float_data(static_cast<int>(i)))
-                         : tensor.double_data(static_cast<int>(i));
-      } else if (is_float) {
-        float narrow = 0;
-        std::memcpy(&narrow, raw.data() + 4 * i, 4);  // little-endian, as the machines of this program
-        value = static_cast<double>(narrow);
-      } else {
-        std::memcpy(&value, raw.data() + 8 * i, 8);
-      }
+      const int place = static_cast<int>(i);
+      const double value = is_raw                          ? number_at(raw.data() + each * i, type)
+                           : type == StoredNumber::float32 ? static_cast<double>(tensor.float_data(place))
+                           : type == StoredNumber::float64
+                               ? tensor.double_data(place)
+                               : number_of(static_cast<std::uint32_t>(tensor.int32_data(place)), type);
       if (!std::isfinite(value)) refuse(what + ": finite numbers", std::isnan(value) ? "NaN" : "Inf");
       result.values.push_back(value);
     }
     return result;
   }
+  /// The bytes of a tensor that lie in a file beside the model.
+  std::string_view bytes_beside(const onnx::TensorProto& tensor, const std::string& what) {
+    std::map<std::string, std::string> said;
+    for (const auto& entry : tensor.external_data()) {
+      if (!said.emplace(entry.key(), entry.value()).second) {
+        refuse(what + ": each key of its external data once", "'" + printable(entry.key()) + "' twice");
+      }
+    }
+    const auto whole = [&](const char* key) -> std::optional<std::uint64_t> {
+      const auto found = said.find(key);
+      if (found == said.end()) return std::nullopt;
+      const char *begin = found->second.data(), *end = begin + found->second.size();
+      std::uint64_t value = 0;
+      const auto read = std::from_chars(begin, end, value);
+      if (read.ec != std::errc() || read.ptr != end) {
+        refuse(what + ": a whole number `" + key + "` of its external data", "'" + printable(found->second) + "'");
+      }
+      return value;
+    };
+    const std::uint64_t offset = whole("offset").value_or(0);
+    const std::optional<std::uint64_t> length = whole("length");
+    const std::string& location = said["location"];
+    if (!files_.count(location)) {
+      constexpr std::size_t most_bytes = std::size_t{1} << 26;
+      std::string& bytes = files_[location] = beside_(location, what);
+      bytes_ += bytes.size();
+      if (bytes_ > most_bytes) refuse("at most 64 MiB of external data", std::to_string(bytes_) + " bytes");
+    }
+    const std::string& file = files_[location];
+    if (offset > file.size() || length.value_or(0) > file.size() - offset) {
+      refuse(what + ": its data within the " + std::to_string(file.size()) + " bytes of " + printable(location),
+             "offset " + std::to_string(offset) + (length ? ", length " + std::to_string(*length) : ""));
+    }
+    return std::string_view(file).substr(static_cast<std::size_t>(offset),
+                                         static_cast<std::size_t>(length.value_or(file.size() - offset)));
+  }
+  /// Whole numbers of a tensor in the model's file, as a Reshape has them; of any other tensor none.
+  std::vector<std::int64_t> whole_numbers(const std::string& name) const {
+    const auto found = stored_.find(name);
+    if (found == stored_.end() || found->second->data_type() != onnx::TensorProto::INT64) return {};
+    const std::string& raw = found->second->raw_data();
+    std::vector<std::int64_t> numbers(found->second->int64_data().begin(), found->second->int64_data().end());
+    for (std::size_t at = 0; at + 8 <= raw.size(); at += 8) {
+      std::int64_t number = 0;
+      std::memcpy(&number, raw.data() + at, 8);  // little-endian, as the machines of this program
+      numbers.push_back(number);
+    }
+    return numbers;
+  }
+  /// A constant that a node makes.
+  void keep(const Node& node, Constant made) {
+    count_numbers(made.values.size());
+    made_[node.output(0)] = std::move(made);
+  }
   /// One number for each of `width`, from one that is broadcast.
-  Numbers channels(const std::string& name, std::size_t width) const {
+  Numbers channels(const std::string& name, std::size_t width) {
     const Constant c = constant(name);
     bool fits = c.values.size() == 1 || (c.values.size() == width && !c.shape.empty() && c.shape.back() == width);
     fits = fits && c.shape.size() <= 2;
@@ -307,11 +365,13 @@ class Graph {
     return values_.at(name);
   }
 
+  void count_numbers(std::size_t more) {
+    numbers_ += more;
+    if (numbers_ > most_numbers) refuse_node("at most 2^24 numbers in all", "more");
+  }
   /// Adds what a node makes: how it is worked out, and what it is of the chain.
   void put(const Node& node, Value value, Operation operation) {
-    constexpr std::size_t most_numbers = std::size_t{1} << 24;
-    numbers_ += value.width + (value.chain ? value.chain->step.dense.weights.size() : 0);
-    if (numbers_ > most_numbers) refuse_node("at most 2^24 numbers in all", "more");
+    count_numbers(value.width + (value.chain ? value.chain->step.dense.weights.size() : 0));
     operations_.push_back(std::move(operation));
     value.slot = operations_.size();
     if (depends(node.output(0)) || stored_.count(node.output(0)) || made_.count(node.output(0))) {
@@ -339,28 +399,93 @@ class Graph {
     if (is_onnx && op == "BatchNormalization") return take_batch_norm(node);
     if (is_onnx && op == "Transpose") return take_transpose(node);
     if (is_onnx && (op == "Erf" || op == "Sigmoid")) return take_inner(node, op == "Erf" ? Inner::erf : Inner::sigmoid);
+    if (is_onnx && op == "Clip") return take_clip(node);
+    if (is_onnx && op == "Greater") return take_greater(node);
+    if (is_onnx && op == "Where") return take_where(node);
+    if (is_onnx && op == "Reshape") return take_reshape(node);
     if (is_onnx && (op == "Identity" || op == "Flatten" || op == "Dropout" || op == "Cast")) return take_identity(node);
-    static const std::map<std::string, ForeignActivation> activations = {{"Relu", ForeignActivation::relu},
-                                                                         {"Tanh", ForeignActivation::tanh},
-                                                                         {"Softplus", ForeignActivation::softplus},
-                                                                         {"Sin", ForeignActivation::sine},
-                                                                         {"Gelu", ForeignActivation::gelu}};
+    static const std::map<std::string, ForeignActivation> activations = {
+        {"Relu", ForeignActivation::relu},           {"Tanh", ForeignActivation::tanh},
+        {"Softplus", ForeignActivation::softplus},   {"Sin", ForeignActivation::sine},
+        {"Gelu", ForeignActivation::gelu},           {"Elu", ForeignActivation::elu},
+        {"LeakyRelu", ForeignActivation::leaky_relu}};
     const auto found = activations.find(op);
     if (!is_onnx || found == activations.end()) {
       refuse(
-          "operators Gemm, MatMul, Add, Sub, Mul, Div, BatchNormalization, Relu, Tanh, Sigmoid, Gelu, Softplus, Sin, "
-          "Erf, Identity, Flatten, Dropout or Constant",
+          "operators Gemm, MatMul, Add, Sub, Mul, Div, BatchNormalization, Relu, LeakyRelu, Elu, Clip, Tanh, Sigmoid, "
+          "Gelu, Softplus, Sin, Erf, Identity, Flatten, Reshape, Dropout or Constant",
           name_ + (is_onnx ? "" : " of " + printable(node.domain())));
     }
     require_inputs(node, 1, 1);
     if (const auto* approximate = attribute(node, "approximate"); approximate && approximate->s() != "none") {
       refuse_node("approximate \"none\"", "\"" + printable(approximate->s()) + "\"");
     }
+    ForeignStep step = activation_step(found->second);
+    step.alpha = number(node, "alpha", step.alpha);
+    put_activation(node, step);
+  }
+  void put_activation(const Node& node, const ForeignStep& step) {
+    const std::size_t width = runtime_input(node, 0).width;
+    if (step.has_own_alpha()) count_numbers(6 * width * width);  // of layers that make it (folded_network.hpp)
+    const Value of = made_plain(input(node, 0));
+    put_elementwise(node, of, plain(width, 0, behind(of, step)),
+                    [step](double v, std::size_t) { return activated(step, v); });
+  }
+  /// Bounds are attributes before opset 11, inputs since; an exporter says none by the largest float.
+  void take_clip(const Node& node) {
+    require_inputs(node, 1, 3);
+    const auto bound = [&](int place, const char* name, double none) {
+      if (depends(input(node, place))) refuse_node("constant bounds", "one that depends on the input");
+      const double said =
+          input(node, place).empty() ? number(node, name, none) : channels(input(node, place), 1).front();
+      return std::abs(said) < static_cast<double>(std::numeric_limits<float>::max()) ? said : none;
+    };
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const ForeignStep step = clip_step(bound(1, "min", -infinity), bound(2, "max", infinity));
+    if (!(step.lower < step.upper)) refuse_node("a lower bound below the upper one", "another");
+    put_activation(node, step);
+  }
+  /// b > a and the choice by it, as PyTorch's exporter writes softplus: where b > 20, b, else softplus(b).
+  void take_greater(const Node& node) {
+    require_inputs(node, 2, 2);
     runtime_input(node, 0);
     const Value of = made_plain(input(node, 0));
-    const ForeignActivation activation = found->second;
-    put_elementwise(node, of, plain(of.width, 0, behind(of, activation_step(activation))),
-                    [activation](double v, std::size_t) { return activated(activation, v); });
+    const Numbers bounds = channels(input(node, 1), of.width);
+    Value value = plain(of.width, 0, of.chain);
+    value.inner = Inner::above;
+    value.inner_scale = *std::min_element(bounds.begin(), bounds.end());
+    put_elementwise(node, of, std::move(value),
+                    [bounds](double v, std::size_t i) { return v > bounds[i] ? 1.0 : 0.0; });
+  }
+  void take_where(const Node& node) {
+    require_inputs(node, 3, 3);
+    constexpr double least = 16;  // where softplus(b) - b < 1.2e-7
+    const Value gate = runtime_input(node, 0), line = runtime_input(node, 1), curve = runtime_input(node, 2);
+    const auto untouched = [](const Value& value) {
+      return is_uniform(value.scale) && same(value.scale.front(), 1) &&
+             std::none_of(value.shift.begin(), value.shift.end(), [](double v) { return std::abs(v) > 0; });
+    };
+    const bool is_softplus = gate.inner == Inner::above && gate.inner_scale >= least && line.inner == Inner::plain &&
+                             curve.inner == Inner::plain && untouched(gate) && untouched(line) && untouched(curve) &&
+                             gate.chain == line.chain && curve.chain && curve.chain->before == line.chain &&
+                             curve.chain->step.dense.outputs() == 0 && curve.chain->step.scale.empty() &&
+                             curve.chain->step.activation == ForeignActivation::softplus;
+    if (!is_softplus) refuse_node("Where as a softplus has it, b > 20 ? b : softplus(b)", "another use of it");
+    put(node, curve, [a = gate.slot, b = line.slot, c = curve.slot](const std::vector<Numbers>& all) {
+      Numbers y = all[c];
+      for (std::size_t i = 0; i < y.size(); ++i) y[i] = all[a][i] > 0 ? all[b][i] : y[i];
+      return y;
+    });
+  }
+  /// To [rows, features], as it is.
+  void take_reshape(const Node& node) {
+    require_inputs(node, 2, 2);
+    const Value of = runtime_input(node, 0);
+    const std::vector<std::int64_t> shape = whole_numbers(input(node, 1));
+    const bool stays = shape.size() == 2 && shape[0] >= -1 && shape[0] <= 1 &&
+                       (shape[1] == 0 || shape[1] == std::int64_t(of.width) || (shape[1] == -1 && shape[0] != -1));
+    if (!stays) refuse_node("the shape [rows, " + std::to_string(of.width) + "], which it has", "another");
+    put_elementwise(node, of, of, [](double v, std::size_t) { return v; });
   }
 
   void take_constant(const Node& node) {
@@ -382,7 +507,7 @@ class Graph {
     for (const double v : made.values) {
       if (!std::isfinite(v)) refuse_node("finite numbers", "NaN or Inf");
     }
-    made_[node.output(0)] = made;
+    keep(node, std::move(made));
   }
 
   void take_transpose(const Node& node) {
@@ -396,7 +521,7 @@ class Graph {
         to.values[column * from.shape[0] + row] = from.values[row * from.shape[1] + column];
       }
     }
-    made_[node.output(0)] = std::move(to);
+    keep(node, std::move(to));
   }
 
   void take_identity(const Node& node) {
@@ -405,7 +530,7 @@ class Graph {
       refuse_node("axis 1", std::to_string(whole(node, "axis", 1)));
     }
     if (node.op_type() == "Cast" && !is_number_type(static_cast<int>(whole(node, "to", 0)))) {
-      refuse_node("a Cast to FLOAT or DOUBLE", type_text(static_cast<int>(whole(node, "to", 0))));
+      refuse_node(std::string("a Cast to ") + type_words, type_text(static_cast<int>(whole(node, "to", 0))));
     }
     if (node.op_type() == "Dropout" && !input(node, 2).empty()) {
       const auto mode = stored_.find(input(node, 2));
@@ -416,7 +541,7 @@ class Graph {
       if (trains) refuse_node("a network that no longer trains", "a training_mode");
     }
     if (!depends(input(node, 0))) {
-      made_[node.output(0)] = constant(input(node, 0));
+      keep(node, constant(input(node, 0)));
       return;
     }
     const Value of = runtime_input(node, 0);
@@ -530,8 +655,9 @@ class Graph {
     Value value = plain(of.width, 0, of.chain);
     value.inner = inner;
     value.inner_scale = of.scale.front();
-    put_elementwise(node, of, std::move(value), [inner](double v, std::size_t) {
-      return inner == Inner::erf ? std::erf(v) : activated(ForeignActivation::sigmoid, v);
+    const ForeignStep sigmoid = activation_step(ForeignActivation::sigmoid);
+    put_elementwise(node, of, std::move(value), [inner, sigmoid](double v, std::size_t) {
+      return inner == Inner::erf ? std::erf(v) : activated(sigmoid, v);
     });
   }
 
@@ -541,7 +667,8 @@ class Graph {
     Value v = runtime_input(node, 0), gate = runtime_input(node, 1);
     const std::size_t slots[] = {v.slot, gate.slot};
     if (v.inner != Inner::plain) std::swap(v, gate);
-    bool is_gate = v.inner == Inner::plain && gate.inner != Inner::plain && v.chain == gate.chain;
+    bool is_gate =
+        v.inner == Inner::plain && v.chain == gate.chain && (gate.inner == Inner::erf || gate.inner == Inner::sigmoid);
     for (std::size_t i = 0; is_gate && i < v.width; ++i) {
       is_gate = gate.inner == Inner::erf ? same(gate.shift[i], gate.scale[i]) : !(std::abs(gate.shift[i]) > 0);
     }
@@ -584,6 +711,9 @@ class Graph {
   }
 
   const std::string& path_;
+  const FileBeside& beside_;
+  std::map<std::string, std::string> files_;  ///< bytes of files beside the model, by their locations
+  std::size_t bytes_ = 0;                     ///< of all of them
   onnx::ModelProto model_;
   std::map<std::string, const onnx::TensorProto*> stored_;
   std::map<std::string, Constant> made_;  ///< of constants by nodes
@@ -683,6 +813,10 @@ class GraphWriter {
       case ForeignActivation::sigmoid: return node("Sigmoid", {x});
       case ForeignActivation::softplus: return node("Softplus", {x});
       case ForeignActivation::sine: return node("Sin", {x});
+      case ForeignActivation::elu: return node("Elu", {x});
+      case ForeignActivation::leaky_relu: return node("LeakyRelu", {x});
+      case ForeignActivation::relu6:
+      case ForeignActivation::hardtanh:
       case ForeignActivation::clip: return node("Clip", {x, number(-clip_bound), number(clip_bound)});
       case ForeignActivation::silu: return node("Mul", {x, node("Sigmoid", {x})});
       case ForeignActivation::gelu: {
@@ -729,6 +863,8 @@ std::string onnx_bytes(const ExportedNetwork& network, const std::string& /*path
   return GraphWriter(network).bytes();
 }
 
-ForeignNetwork read_onnx(const std::string& bytes, const std::string& path) { return Graph(bytes, path).network(); }
+ForeignNetwork read_onnx(const std::string& bytes, const std::string& path, const FileBeside& beside) {
+  return Graph(bytes, path, beside).network();
+}
 
 }  // namespace programs

@@ -17,7 +17,9 @@ namespace {
 
 }  // namespace
 
-ForeignNetwork read_onnx(const std::string& /*bytes*/, const std::string& path) { built_without(path); }
+ForeignNetwork read_onnx(const std::string& /*bytes*/, const std::string& path, const FileBeside& /*beside*/) {
+  built_without(path);
+}
 std::string onnx_bytes(const ExportedNetwork& /*network*/, const std::string& path) { built_without(path); }
 
 }  // namespace programs

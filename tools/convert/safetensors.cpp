@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "convert/stored_number.hpp"
 #include "logs/nesting.hpp"
 #include "pinnquad/io/file_error.hpp"
 
@@ -30,18 +31,6 @@ std::uint64_t read_length(const std::string& bytes) {
   return length;
 }
 
-/// One number of IEEE 754, least significant byte first.
-template <class Bits, class Number>
-double read_number(const char* from) {
-  static_assert(sizeof(Bits) == sizeof(Number));
-  Bits bits = 0;
-  for (std::size_t i = sizeof(Bits); i > 0; --i)
-    bits = static_cast<Bits>(bits << 8 | static_cast<unsigned char>(from[i - 1]));
-  Number number{};
-  std::memcpy(&number, &bits, sizeof number);
-  return static_cast<double>(number);
-}
-
 template <class Bits, class Number>
 void append_number(Number number, std::string& to) {
   static_assert(sizeof(Bits) == sizeof(Number));
@@ -49,6 +38,11 @@ void append_number(Number number, std::string& to) {
   std::memcpy(&bits, &number, sizeof bits);
   for (std::size_t i = 0; i < sizeof bits; ++i) to += static_cast<char>(bits >> (8 * i) & 0xff);
 }
+
+const std::map<std::string, StoredNumber> number_types = {{"F64", StoredNumber::float64},
+                                                          {"F32", StoredNumber::float32},
+                                                          {"F16", StoredNumber::float16},
+                                                          {"BF16", StoredNumber::bfloat16}};
 
 /// A tensor of the header: where its bytes are.
 struct Placed {
@@ -114,8 +108,9 @@ class Header {
     tensor.type = dtype->get<std::string>();
     constexpr std::string_view counter = "num_batches_tracked";  // of BatchNorm1d, and nothing that a network answers
     const bool counts = name.size() >= counter.size() && name.substr(name.size() - counter.size()) == counter;
-    if (tensor.type != "F32" && tensor.type != "F64" && !(tensor.type == "I64" && counts)) {
-      refuse(what + "numbers of type F32 or F64", printable(tensor.type));
+    const auto known = number_types.find(tensor.type);
+    if (known == number_types.end() && !(tensor.type == "I64" && counts)) {
+      refuse(what + "numbers of type F64, F32, F16 or BF16", printable(tensor.type));
     }
     if (shape == entry.end() || !shape->is_array()) refuse(what + "an array shape", "none");
     for (const auto& size : *shape) {
@@ -136,7 +131,7 @@ class Header {
     if (tensor.begin > tensor.end || tensor.end > data_bytes_) {
       refuse(what + "data_offsets within the " + std::to_string(data_bytes_) + " bytes of data", range);
     }
-    const std::uint64_t bytes = tensor.count * (tensor.type == "F32" ? 4 : 8);
+    const std::uint64_t bytes = tensor.count * (known == number_types.end() ? 8 : bytes_of(known->second));
     if (tensor.end - tensor.begin != bytes) {
       refuse(what + std::to_string(bytes) + " bytes for its shape", range);
     }
@@ -331,12 +326,8 @@ class Sequential {
     }
     const std::optional<ForeignActivation> activation = meaning_.activations[place];
     if (!activation) return;
-    chain.push_back({[activation](const Numbers& x) {
-                       Numbers y = x;
-                       for (double& value : y) value = activated(*activation, value);
-                       return y;
-                     },
-                     activation_step(*activation)});
+    const ForeignStep step = activation_step(*activation);
+    chain.push_back({[step](const Numbers& x) { return taken(step, x); }, step});
   }
 
   const std::string& path_;
@@ -357,10 +348,10 @@ Tensors read_safetensors(const std::string& bytes, const std::string& path) {
     tensor.shape = placed.shape;
     const char* at = bytes.data() + header.first() + placed.begin;
     if (placed.type != "I64") {
-      const bool is_float = placed.type == "F32";
+      const StoredNumber type = number_types.at(placed.type);
       tensor.values.reserve(static_cast<std::size_t>(placed.count));
-      for (std::uint64_t i = 0; i < placed.count; ++i, at += is_float ? 4 : 8) {
-        const double value = is_float ? read_number<std::uint32_t, float>(at) : read_number<std::uint64_t, double>(at);
+      for (std::uint64_t i = 0; i < placed.count; ++i, at += bytes_of(type)) {
+        const double value = number_at(at, type);
         if (!std::isfinite(value)) {
           throw InputError(path, 0, 0, "finite numbers in '" + printable(placed.name) + "'",
                            std::isnan(value) ? "NaN" : "Inf");

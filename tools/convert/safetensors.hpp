@@ -21,7 +21,7 @@ using Tensors = std::map<std::string, Tensor>;
 
 /// The tensors of the bytes of a file, those of whole numbers left out. Throws InputError, one line: cut short, no JSON
 /// or another one than the format's, offsets that overlap, leave holes or lead out of the file, a name twice, numbers
-/// of another type than F32, F64 and, left out, I64, and NaN or Inf.
+/// of another type than F64, F32, F16, BF16 and, left out, I64, and NaN or Inf.
 Tensors read_safetensors(const std::string& bytes, const std::string& path);
 
 /// The chain of a state_dict: Linear and BatchNorm1d by their numbers, what has no numbers by the features file. Throws

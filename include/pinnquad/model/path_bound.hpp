@@ -8,13 +8,16 @@
 #include <limits>
 
 #include "pinnquad/model/axis_aligned.hpp"
+#include "pinnquad/nn/elu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/softplus.hpp"
 #include "pinnquad/nn/tanh.hpp"
 
 namespace pinnquad {
 
-/// True for activations whose slope is from 0 to 1: of Relu 0 or 1, of Tanh 1 - y^2, of Softplus 1 / (1 + exp(-v)).
+/// True for activations whose slope is from 0 to 1: of Relu 0 or 1, of LeakyRelu 0.01 or 1, of Tanh 1 - y^2, of
+/// Softplus 1 / (1 + exp(-v)), of Elu exp(v) or 1.
 /// Not Gelu, Silu (-0.13 to 1.13) and Sine (-1 to 1).
 template <class Layer>
 inline constexpr bool slopes_from_0_to_1 = false;
@@ -24,6 +27,10 @@ template <class Scalar, int Size>
 inline constexpr bool slopes_from_0_to_1<Tanh::Bind<Scalar, Size>> = true;
 template <class Scalar, int Size>
 inline constexpr bool slopes_from_0_to_1<Softplus::Bind<Scalar, Size>> = true;
+template <class Scalar, int Size>
+inline constexpr bool slopes_from_0_to_1<Elu::Bind<Scalar, Size>> = true;
+template <class Scalar, int Size>
+inline constexpr bool slopes_from_0_to_1<LeakyRelu::Bind<Scalar, Size>> = true;
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
@@ -142,7 +149,8 @@ struct PathBounded : detail::PredictorBase<PathBounded<NetworkType>, typename Ne
   using Layers = detail::PathLayers<NetworkType>;
   static_assert(std::is_same_v<typename NetworkType::Scalar, float>, "pinnquad: a PathBounded network is of floats");
   static_assert(Layers::alternates,
-                "pinnquad: a PathBounded network has Dense layers with Relu, Tanh or Softplus between them");
+                "pinnquad: a PathBounded network has Dense layers with Relu, LeakyRelu, Tanh, Softplus or Elu between "
+                "them");
   static_assert(Layers::dense_layers <= 3,
                 "pinnquad: a PathBounded network has at most 3 Dense layers: of more the bound "
                 "says nothing (docs/certificate.md)");

@@ -5,7 +5,9 @@
 #include <tuple>
 
 #include "pinnquad/nn/clip.hpp"
+#include "pinnquad/nn/elu.hpp"
 #include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
 #include "pinnquad/nn/sine.hpp"
@@ -15,6 +17,6 @@
 namespace pinnquad {
 
 /// Every activation of the library. The program finds one here by its `description` when it reads a header.
-using Activations = std::tuple<Relu, Tanh, Gelu, Silu, Softplus, Sine, Clip>;
+using Activations = std::tuple<Relu, Tanh, Gelu, Silu, Softplus, Sine, Clip, Elu, LeakyRelu>;
 
 }  // namespace pinnquad

@@ -296,8 +296,8 @@ auto fit_monotone(const ContextType& context, const RowSet& training, const RowS
       [](const auto&) {}, training, validation, map, how, engine, goes_on);
 }
 
-/// As fit_monotone(), but the residual is shown all features. `Residual`: at most 3 Dense layers with Relu, Tanh or
-/// Softplus between them. `share`: of a slope, the most that the residual may take away.
+/// As fit_monotone(), but the residual is shown all features. `Residual`: at most 3 Dense layers with activations of
+/// slope 0 to 1 between them (model/path_bound.hpp). `share`: of a slope, the most that the residual may take away.
 template <class Residual, class ContextType, class Engine, class GoesOn>
 auto fit_path_bounded(const ContextType& context, const RowSet& training, const RowSet& validation,
                       const AffineMap& map, const ResidualTraining& how, Engine& engine, const GoesOn& goes_on,
