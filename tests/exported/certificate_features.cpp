@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whatever feature, tap or column shows an angular acceleration: the certificate counts it, or there is none; header and
-// block agree.
+// Whatever feature, tap or column shows an angular acceleration: the certificate counts it, or there is none; header
+// and block agree.
 #include <doctest/doctest.h>
 
 #include "pinnquad/deploy/block_model.hpp"
@@ -63,7 +63,7 @@ void header_and_block_say(bool has_one) {
 
 }  // namespace
 
-TEST_CASE("an angular acceleration beside the threes of the affine part, or a feature of which nobody knows: no proof") {
+TEST_CASE("an angular acceleration beside the threes of the affine part, or an unknown feature: no proof") {
   header_and_block_say<Certified<LonePast>>(false);
   header_and_block_say<Certified<LoneFuture>>(false);
   header_and_block_say<Certified<TwoOfThree>>(false);

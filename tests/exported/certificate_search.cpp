@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A search for what refutes a proof: random feature sets (any parts, chosen places, windows, columns), random structures
-// and weights. Where a block's model is proven, no signed sum may fall over a larger acceleration of the present, nor
+// A search for what refutes a proof: random feature sets (any parts, chosen places, windows, columns), structures and
+// weights. Where a block's model is proven, no signed sum may fall over a larger acceleration of the present, nor
 // over one that is held, nor rise by less than is proven. The motions are moved, not the features: the search knows no
 // feature by its name. A longer one, in seconds to minutes:
 //   PINNQUAD_SEARCHED_COMPOSITIONS=600 PINNQUAD_SEARCHED_PAIRS=20000 test_exported -tc='*refutes a proof*'
@@ -339,9 +339,9 @@ class SumsInDouble {
     for (std::size_t i = 0; i < x_.size(); ++i) {
       in_[i][0] = (x_[i] - double(scales.input_mean[i])) / double(scales.input_deviation[i]);
       if (model_.features().is_column(int(i))) {
-        const double least = (double(scales.lower[i]) - double(scales.input_mean[i])) / double(scales.input_deviation[i]);
-        const double most = (double(scales.upper[i]) - double(scales.input_mean[i])) / double(scales.input_deviation[i]);
-        in_[i][0] = std::clamp(in_[i][0], least, most);
+        const double mean = double(scales.input_mean[i]), deviation = double(scales.input_deviation[i]);
+        const double least = double(scales.lower[i]) - mean, most = double(scales.upper[i]) - mean;
+        in_[i][0] = std::clamp(in_[i][0], least / deviation, most / deviation);
       }
       largest_ += std::abs(in_[i][0]);
     }
@@ -433,7 +433,8 @@ Refuted search_of(const RunTimeModel<Scalar>& model, const ProvenSigns& proof,
 
 std::string kind_of(const BlockModel& model, SignProof by) {
   if (by == SignProof::affinity) return "affine";
-  return (model.network().part_count() == 1 ? "base alone" : (by == SignProof::path_bound ? "path-bounded" : "residual")) +
+  const char* added = by == SignProof::path_bound ? "path-bounded" : "residual";
+  return (model.network().part_count() == 1 ? "base alone" : added) +
          std::string(model.with([](const auto& own) { return own.records().base.count != 0; }) ? " on a base" : "") +
          (model.features().window().taps > 1 ? ", window" : "") + (model.columns().empty() ? "" : ", column");
 }
@@ -451,7 +452,8 @@ TEST_CASE("a search over random feature sets, structures and weights refutes no 
   for (; proven < wanted && made < 100 * wanted; ++made) {
     const Composition composition = Composer(engine).compose();
     const bool in_double = Composer(engine).likely(0.3);
-    const auto bytes = in_double ? Maker<double>(engine, composition).block() : Maker<float>(engine, composition).block();
+    const auto bytes =
+        in_double ? Maker<double>(engine, composition).block() : Maker<float>(engine, composition).block();
     const BlockModel model("searched.block", bytes);
     const std::optional<ProvenSigns> proof = model.proven_signs();
     if (!proof) continue;

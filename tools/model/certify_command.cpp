@@ -53,7 +53,9 @@ void print_thrust(const BlockModel& model, const Findings& findings) {
   const double held = certificate.held_thrust_slope;
   std::printf("thrust     the sum of the commands by the thrust asked: %.6f s^2/m, %.2f of the airframe's own in hover",
               held, held / own);
-  if (findings.past_or_future) std::printf(", of one that is held; of the present alone %.6f", certificate.thrust_slope);
+  if (findings.past_or_future) {
+    std::printf(", of one that is held; of the present alone %.6f", certificate.thrust_slope);
+  }
   std::printf("%s\n", !has_base(model) ? "" : ", while the base's commands are in 0 to 1");
   const double range = certificate.residual_upper[0] - certificate.residual_lower[0];
   const double least = least_thrust_slope(findings);

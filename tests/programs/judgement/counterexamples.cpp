@@ -44,7 +44,7 @@ TEST_CASE("a sum that falls over no step inside the envelope is no counterexampl
   CHECK(search.least[0] == -10);
 }
 
-TEST_CASE("more of an acceleration that is held is more in every feature that shows it, a lone one of another tap too") {
+TEST_CASE("more of a held acceleration is more in every feature that shows it, a lone one of another tap too") {
   using namespace pinnquad;
   using LonePast = PartlyWindowed<InverseFeatures, Chosen<NamedFeatures, 3>, 2, PeriodMicroseconds<20000>>;
   using Model = test::ModelOf<MonotoneBase<LonePast>, LonePast, AxisCommandOutputs>;
