@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // CASE NO_STRUCTURE: pinnquad: this model has no structure that could be proven
+// CASE LONE_ANGULAR_ACCELERATION: pinnquad: a feature of the model shows an angular acceleration beside the three
 // CASE SLOPE_BELOW_ZERO: pinnquad: a slope of the model is not above 0
 // CASE SLOPE_ZERO: pinnquad: a slope of the model is not above 0
 // CASE SLOPE_HARDLY_ABOVE_ZERO: pinnquad: a slope of the model is not above 0 by its floor
@@ -75,6 +76,15 @@ struct Certified {
 };
 static_assert(require_certificate<Certified>());
 static_assert(certificate_of<Certified>().slope[0] > 0.49 && certificate_of<Certified>().command_bound[3] < 0.11);
+
+#ifdef LONE_ANGULAR_ACCELERATION
+using LonePast = PartlyWindowed<InverseFeatures, Chosen<NamedFeatures, 3>, 2, PeriodMicroseconds<20000>>;
+struct Lone : Certified {
+  using Network = MonotoneBase<LonePast>;
+  using Features = LonePast;
+};
+static_assert(require_certificate<Lone>());
+#endif
 
 /// Models on a base: of features that it reads, and of others.
 template <class FeatureSet, class Schema, class Predictor = MonotoneBase<FeatureSet>>

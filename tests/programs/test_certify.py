@@ -219,6 +219,17 @@ def test_held_slope(pinnquad, flown, dataset, past, code):
     assert found["counterexample"]["moved"] == ["wdot_z", *(f"wdot_z[-{tap}]" for tap in range(1, 9))]
 
 
+def test_lone_tap(pinnquad, recorded):
+    """A window whose past shows one angular acceleration alone, against the present's: never proven."""
+    block = recorded("cases/proof_lone_tap/lone_wdot.block")
+    said = pinnquad("certify --json", block, code=(1, 2))
+    if said.code == 1:
+        found = json.loads(said.out)
+        assert found["uncounted_features"] == ["wdot_x[-1]"] and "proven" not in found["verdict"]
+        assert found["counterexample"]["moved"] == ["wdot_x", "wdot_x[-1]"]
+        assert "\nno proof " in pinnquad("certify", block, code=1).out
+
+
 def test_refused(pinnquad, flight):
     pinnquad.refused("certify none.hpp", at="none.hpp", keyword="readable file")
     pinnquad.refused("certify", flight, at="flight.csv", keyword="model block")

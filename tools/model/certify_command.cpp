@@ -53,7 +53,9 @@ void print_thrust(const BlockModel& model, const Findings& findings) {
   const double held = certificate.held_thrust_slope;
   std::printf("thrust     the sum of the commands by the thrust asked: %.6f s^2/m, %.2f of the airframe's own in hover",
               held, held / own);
-  if (findings.taps > 1) std::printf(", of one that is held; of the present alone %.6f", certificate.thrust_slope);
+  if (findings.past_or_future) {
+    std::printf(", of one that is held; of the present alone %.6f", certificate.thrust_slope);
+  }
   std::printf("%s\n", !has_base(model) ? "" : ", while the base's commands are in 0 to 1");
   const double range = certificate.residual_upper[0] - certificate.residual_lower[0];
   const double least = least_thrust_slope(findings);
@@ -104,11 +106,19 @@ void print_rounding(const Findings& findings) {
       "           inside the envelope the base's commands are within %.1e of the real ones, and a sum rises for sure "
       "from a step of %.1e, %.1e, %.1e rad/s^2 on%s\n",
       certificate.rounding, step[0], step[1], step[2],
-      findings.taps > 1 ? "; over a smaller one that is held it may fall" : "");
+      findings.past_or_future ? "; over a smaller one that is held it may fall" : "");
 }
 
 /// Of a model that is not proven.
-void print_provable() {
+void print_provable(const Findings& findings) {
+  std::string uncounted;
+  for (const std::string& name : findings.uncounted) uncounted += (uncounted.empty() ? "" : ", ") + printable(name);
+  if (!uncounted.empty()) {
+    std::printf(
+        "no proof   the affine part counts the angular acceleration of a tap as three features; these show one beside "
+        "them, or may show one: %s\n",
+        uncounted.c_str());
+  }
   std::printf(
       "provable   an affine network, and what pinnquad train fits to the same flights (docs/structured_models.md)\n");
 }
@@ -129,7 +139,7 @@ void print_text(const BlockModel& model, const Findings& findings) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::printf("%s%-5s %.6f s^2/rad, %.2f of the airframe's own in hover", axis == 0 ? "slope      " : "           ",
                   axes[axis], findings.proof->held_slope[axis], findings.proof->held_slope[axis] / own[axis]);
-      if (findings.taps > 1)
+      if (findings.past_or_future)
         std::printf(", of one that is held; of the present alone %.6f", findings.proof->slope[axis]);
       std::printf("\n");
     }
@@ -140,7 +150,7 @@ void print_text(const BlockModel& model, const Findings& findings) {
       std::printf("bound      %s\n", programs::bound_in_words(*findings.certificate).c_str());
       print_bias(model);
       print_thrust(model, findings);
-      if (findings.taps > 1) print_with_rates(findings);
+      if (findings.past_or_future) print_with_rates(findings);
       print_rounding(findings);
     }
     return;
@@ -153,7 +163,7 @@ void print_text(const BlockModel& model, const Findings& findings) {
       std::printf("%s%-5s %.6f s^2/rad%s\n", way == 0 ? "least      " : "           ", axes[findings.ways[way].axis],
                   findings.search.least[way], findings.ways[way].held ? ", held" : "");
     }
-    print_provable();
+    print_provable(findings);
     return;
   }
   const programs::Counterexample& found = *findings.search.found;
@@ -166,7 +176,7 @@ void print_text(const BlockModel& model, const Findings& findings) {
   std::printf("more       %s%s larger by %.6g: the signed sum falls from %.6f to %.6f (derivative %.6f s^2/rad)\n",
               findings.names[found.asked.places.front()].c_str(), found.asked.held ? " at all instants" : "",
               found.step, found.sum, found.sum_of_more, found.derivative);
-  print_provable();
+  print_provable(findings);
 }
 
 int certify(const CertifyOptions& options) {

@@ -49,13 +49,34 @@ static void add_responses(const BlockModel& model, Findings& findings) {
   }
 }
 
+static std::vector<std::string> uncounted_features(const BlockModel& model) {
+  std::vector<std::string> names;
+  const RunTimePart& base = model.network().part(0);
+  if (!model.is_axis_commands() || !base.axis_aligned) return names;
+  model.with([&](const auto& own) {
+    for (int i = 0; i < own.features().size(); ++i) {
+      const ShownAcceleration shown = shown_acceleration(own, i);
+      bool counted = shown == ShownAcceleration::none;
+      for (int tap = 0; tap < base.three_count; ++tap) {
+        counted = counted || (shown != ShownAcceleration::unknown && i - base.threes[tap] == static_cast<int>(shown));
+      }
+      if (!counted) names.emplace_back(own.features()[i].name);
+    }
+  });
+  return names;
+}
+
 Findings findings_of(const BlockModel& model, double seconds, std::uint64_t seed) {
   Findings findings;
   findings.names = model.feature_names();
-  findings.taps = model.angular_accelerations().size();
-  if (findings.taps == 0) {
+  bool is_asked = false;
+  for (const AccelerationPlace& place : model.angular_accelerations()) {
+    (place.is_present ? is_asked : findings.past_or_future) = true;
+  }
+  if (!is_asked) {
     throw InputError(model.path(), 0, 0, "a model that is asked for an angular acceleration", "one that is not");
   }
+  findings.uncounted = uncounted_features(model);
   findings.proof = model.proven_signs();
   if (findings.proven() && findings.proof->by != SignProof::affinity) {
     findings.certificate = model.certificate();
@@ -135,6 +156,7 @@ nlohmann::json findings_json(const BlockModel& model, const Findings& findings) 
     }
   }
   if (!findings.proven()) {
+    if (!findings.uncounted.empty()) report["uncounted_features"] = findings.uncounted;
     report["evaluations"] = findings.search.evaluations;
     report["seconds"] = findings.search.seconds;
     for (std::size_t way = 0; way < findings.ways.size(); ++way) {

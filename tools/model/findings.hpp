@@ -28,14 +28,17 @@ struct Findings {
   Search search;                   ///< where nothing is proven
   std::vector<AskedMore> ways;     ///< of the search
   std::vector<std::string> names;  ///< of the features
-  std::size_t taps = 1;            ///< with an angular acceleration
+  bool past_or_future = false;     ///< other taps of a window show an angular acceleration too
+  /// Of an affine base and what is added to it: features that show an angular acceleration beside the threes that it
+  /// counts, and features of which nobody knows. With one nothing is proven of the structure.
+  std::vector<std::string> uncounted;
 
   bool proven() const { return proof.has_value(); }
   bool by_path_bound() const { return proof && proof->by == pinnquad::SignProof::path_bound; }
 };
 
 /// Searches for `seconds` of the processor where nothing is proven. Throws InputError for a model that is asked no
-/// angular acceleration.
+/// angular acceleration of the present.
 Findings findings_of(const pinnquad::BlockModel& model, double seconds, std::uint64_t seed);
 
 /// The proof's argument.

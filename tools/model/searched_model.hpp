@@ -15,14 +15,20 @@ inline SearchedModel searched_model(const pinnquad::BlockModel& model) {
   SearchedModel searched;
   searched.lower = model.envelope_lower();
   searched.upper = model.envelope_upper();
-  const std::vector<int> taps = model.angular_accelerations();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    AskedMore held{axis, true, {}};
-    for (const int place : taps) held.places.push_back(static_cast<std::size_t>(place) + axis);
-    searched.ways.push_back({axis, false, {held.places.front()}});
-    if (taps.size() > 1) searched.ways.push_back(std::move(held));
+    AskedMore now{axis, false, {}}, held{axis, true, {}};
+    for (const pinnquad::AccelerationPlace& place : model.angular_accelerations()) {
+      if (place.axis != axis) continue;
+      held.places.push_back(place.feature);
+      if (place.is_present) now.places.push_back(place.feature);
+    }
+    const bool is_asked = !now.places.empty(), differ = now.places.size() < held.places.size();
+    if (is_asked) searched.ways.push_back(std::move(now));
+    if (is_asked && differ) searched.ways.push_back(std::move(held));
   }
-  searched.derivatives = [&model, ways = searched.ways, window = taps.size() > 1](const std::vector<double>& x) {
+  searched.derivatives = [&model, ways = searched.ways](const std::vector<double>& x) {
+    bool window = false;
+    for (const AskedMore& way : ways) window = window || way.held;
     const pinnquad::AxisDerivatives now = model.derivatives(x, false);
     const pinnquad::AxisDerivatives held = window ? model.derivatives(x, true) : now;
     std::vector<double> all;

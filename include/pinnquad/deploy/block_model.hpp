@@ -169,14 +169,17 @@ class BlockModel {
     }
     return columns;
   }
-  /// Places of the angular acceleration of each tap that has one, the present first.
-  std::vector<int> angular_accelerations() const {
-    std::vector<int> places;
-    for (int tap = 0; tap < features().window().taps; ++tap) {
-      const int place = features().angular_acceleration(tap);
-      if (place >= 0) places.push_back(place);
-    }
-    return places;
+  /// Features that show an angular acceleration.
+  const std::vector<AccelerationPlace>& angular_accelerations() const noexcept { return derivatives_.places(); }
+  /// True where each feature is one of the library's or a column that shows no angular acceleration.
+  bool knows_its_features() const {
+    return with([](const auto& model) {
+      bool known = true;
+      for (int i = 0; i < model.features().size(); ++i) {
+        known = known && shown_acceleration(model, i) != ShownAcceleration::unknown;
+      }
+      return known;
+    });
   }
   bool is_axis_commands() const {
     return with([](const auto& model) { return model.outputs().is_axis_commands(); });
@@ -227,7 +230,7 @@ class BlockModel {
       }
       return proof;
     }
-    if (!has_affine_schema() || !detail::is_affine(network())) return {};
+    if (!has_affine_schema() || !detail::is_affine(network()) || !knows_its_features()) return {};
     proof.by = SignProof::affinity;
     const std::vector<double> anywhere = golden_features(0);
     proof.slope = derivatives(anywhere, false);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pinnquad/deploy/provenance.hpp"
-#include "pinnquad/exported/run_time_model.hpp"
+#include "pinnquad/exported/run_time_certificate.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/nn/kernel/pack.hpp"
 
@@ -15,6 +15,12 @@ namespace pinnquad {
 
 /// d(signed command sum) / d(angular acceleration) about roll, pitch and yaw, s^2/rad.
 using AxisDerivatives = std::array<double, 3>;
+
+/// A feature that shows the angular acceleration about an axis, at the present instant or at another tap of a window.
+struct AccelerationPlace {
+  std::size_t feature = 0, axis = 0;
+  bool is_present = true;
+};
 
 /// Of a model by its description: a block's, or one that was trained.
 class ExactDerivatives {
@@ -31,8 +37,8 @@ class ExactDerivatives {
     }
     outputs_.prepare(model.airframe());
     take_numbers(model.parameters(), model.scales());
-    for (int tap = 0; tap < model.features().window().taps; ++tap) {
-      places_.push_back(model.features().angular_acceleration(tap));
+    for (int i = 0; i < model.features().size(); ++i) {
+      add_place(i, shown_acceleration(model, i), detail::is_of_present(model.features()[i].name));
     }
   }
 
@@ -55,11 +61,15 @@ class ExactDerivatives {
         model.network.parameters.data(),
         detail::Scales<Scalar>{model.input.mean.data(), model.input.standard_deviation.data(), model.output.mean.data(),
                                model.output.standard_deviation.data(), nullptr, nullptr});
-    for (int tap = 0; tap < detail::WindowOf<Features>::taps; ++tap) {
-      result.places_.push_back(angular_acceleration_at<Features>(tap));
+    for (int i = 0; i < Features::size; ++i) {
+      result.add_place(i, detail::shown_acceleration_of<Features>(i),
+                       detail::is_of_present(Features::names[static_cast<std::size_t>(i)]));
     }
     return result;
   }
+
+  /// The features that show an angular acceleration, as they stand.
+  const std::vector<AccelerationPlace>& places() const noexcept { return places_; }
 
   /// Of features in physical units. `held`: of a window the angular acceleration of all taps is moved; else the present
   /// alone. At the kink of a ReLU it is the derivative from below, as in nn/jacobian.hpp.
@@ -113,17 +123,21 @@ class ExactDerivatives {
     output_mean_.assign(scales.output_mean, scales.output_mean + outputs);
     output_deviation_.assign(scales.output_deviation, scales.output_deviation + outputs);
   }
+  void add_place(int feature, ShownAcceleration shown, bool is_present) {
+    if (shown == ShownAcceleration::none || shown == ShownAcceleration::unknown) return;
+    places_.push_back({static_cast<std::size_t>(feature), static_cast<std::size_t>(shown), is_present});
+  }
   template <class Visit>
   void each_angular_acceleration(bool held, const Visit& visit) const {
-    for (std::size_t tap = 0; tap < (held ? places_.size() : 1); ++tap) {
-      for (std::size_t axis = 0; places_[tap] >= 0 && axis < 3; ++axis) visit(axis, std::size_t(places_[tap]) + axis);
+    for (const AccelerationPlace& place : places_) {
+      if (held || place.is_present) visit(place.axis, place.feature);
     }
   }
 
   RunTimeNetwork network_;
   RunTimeOutputs<double> outputs_;
   std::vector<double> parameters_, input_mean_, input_deviation_, output_mean_, output_deviation_;
-  std::vector<int> places_;  ///< of the angular acceleration at each tap, -1 where it has none
+  std::vector<AccelerationPlace> places_;
   std::array<std::array<double, rotor_count>, 3> signs_{};
 };
 

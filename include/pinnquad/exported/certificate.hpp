@@ -195,7 +195,7 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Scalar>
 constexpr Certificate certificate_of(const detail::CertifiedNumbers<Scalar>& from) noexcept {
   Certificate certificate;
-  certificate.monotone = detail::exact_mix(from.vehicle.mix) && from.taps <= 16;
+  certificate.monotone = detail::exact_mix(from.vehicle.mix);
   if (from.has_paths) certificate.monotone = certificate.monotone && detail::even_mix(from.vehicle.mix);
   for (int axis = 0; axis < 3; ++axis) {
     const double scale = static_cast<double>(from.scales.output_deviation[1 + axis]);
@@ -271,6 +271,11 @@ constexpr Certificate certificate_of() noexcept {
 /// Refuses, at compile time and by rule, a model whose monotony is not proven. The headers of such models ask for it.
 template <class Model>
 constexpr bool require_certificate() noexcept {
+  using Structure = detail::ProvenStructure<typename Model::Network, typename Model::Features>;
+  static_assert(!Structure::is_known || !std::is_void_v<typename Structure::Base>,
+                "pinnquad: a feature of the model shows an angular acceleration beside the three of a tap that the "
+                "affine part counts, or is neither the library's nor a column: nobody knows the response to an "
+                "acceleration that is held (docs/certificate.md)");
   static_assert(has_certificate<Model>,
                 "pinnquad: this model has no structure that could be proven (exported/certificate.hpp)");
   if constexpr (has_certificate<Model>) {

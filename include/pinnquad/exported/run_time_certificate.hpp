@@ -8,6 +8,20 @@
 namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
+/// The angular acceleration that a feature of a model shows: `unknown` of one that is neither the library's nor said to
+/// be a column.
+template <class Scalar>
+ShownAcceleration shown_acceleration(const RunTimeModel<Scalar>& model, int feature) noexcept {
+  const auto [name, unit] = model.features()[feature];
+  bool is_column = false;
+  std::string_view rest = model.records().columns;
+  RunTimeFeatures::Named said;
+  while (RunTimeFeatures::take_text(rest, said.name) && RunTimeFeatures::take_text(rest, said.unit)) {
+    is_column = is_column || said.name == name || said.name == detail::name_at_tap(name);
+  }
+  return detail::shown_acceleration(name, unit, is_column);
+}
+
 /// Dense layers, at most 3, with activations between them whose slope is from 0 to 1 (model/path_bound.hpp). `widths`
 /// become the outputs of each.
 inline bool has_path_bound(const RunTimeNetwork& network, const RunTimePart& part, int (&widths)[3],
@@ -29,22 +43,21 @@ inline bool has_path_bound(const RunTimeNetwork& network, const RunTimePart& par
 inline std::size_t path_workspace(const RunTimePart& part) noexcept { return std::size_t(4 * part.widest); }
 
 /// False, and nothing is written, for a model whose structure says nothing of its slopes: other outputs than axis
-/// commands, no affine base that covers the angular acceleration of every tap, a residual that is shown it without a
-/// bound of its paths.
+/// commands, an affine base that does not cover every feature that shows an angular acceleration, a feature of which
+/// nobody knows, a residual that is shown the angular acceleration without a bound of its paths.
 template <class Scalar>
 bool run_time_certificate(const RunTimeModel<Scalar>& model, double* work, Certificate& certificate) noexcept {
-  constexpr int most_taps = 16;
   const RunTimeNetwork& network = model.network();
   const RunTimeFeatures& features = model.features();
   const RunTimePart& base = network.part(0);
   if (!model.outputs().is_axis_commands() || !base.axis_aligned || network.part_count() > 2) return false;
-  if (base.three_count > most_taps || base.threes[0] != features.angular_acceleration(0)) return false;
-  for (int tap = 1; tap < features.window().taps; ++tap) {
-    const int place = features.angular_acceleration(tap);
-    if (place >= 0 && (tap >= base.three_count || base.threes[tap] != place)) return false;
-    if (place < 0 && tap < base.three_count) return false;
+  if (!detail::threes_cover_acceleration(
+          static_cast<const int*>(base.threes), base.three_count, features.size(),
+          [&model](int feature) { return shown_acceleration(model, feature); },
+          [&features](int feature) { return detail::is_of_present(features[feature].name); })) {
+    return false;
   }
-  detail::PathBound<4> paths[3 * most_taps];
+  detail::PathBound<4> paths[3 * detail::most_certified_taps];
   const bool has_residual = network.part_count() == 2;
   bool has_paths = false;
   if (has_residual) {
@@ -66,7 +79,7 @@ bool run_time_certificate(const RunTimeModel<Scalar>& model, double* work, Certi
   int thrust_count = 0, present = 0;
   for (const bool now : {true, false}) {
     for (int i = 0; i < features.size(); ++i) {
-      if (!detail::is_thrust(features[i].name) || (features[i].name.back() != ']') != now) continue;
+      if (!detail::is_thrust(features[i].name) || detail::is_of_present(features[i].name) != now) continue;
       thrusts[thrust_count++] = i;
       present += now ? 1 : 0;
     }

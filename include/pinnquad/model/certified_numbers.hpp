@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "pinnquad/features/shown_acceleration.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
 #include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
@@ -22,26 +23,51 @@ inline constexpr double least_slope_share = 0.0005;
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// True where `First...` are the places of the angular acceleration at all taps of these features.
-template <class Features, int... First>
-constexpr bool covers_angular_acceleration() noexcept {
-  if constexpr (Features::angular_acceleration < 0) {
-    return false;
-  } else {
-    return std::is_same_v<MonotoneBase<Features>, AxisAligned<float, Features::size, First...>>;
+/// Most threes that a certificate counts: taps of a window.
+inline constexpr int most_certified_taps = 16;
+
+/// True where the `taps` threes from `places` on are all that moves with the angular acceleration, the present's first
+/// and each feature about its own axis: nothing else shows one, and nobody knows less of a feature than that it stands.
+/// `shown(feature)`: its ShownAcceleration; `of_present(feature)`: it is of no other tap.
+template <class Shown, class OfPresent>
+constexpr bool threes_cover_acceleration(const int* places, int taps, int features, const Shown& shown,
+                                         const OfPresent& of_present) noexcept {
+  if (taps < 1 || taps > most_certified_taps) return false;
+  for (int feature = 0; feature < features; ++feature) {
+    ShownAcceleration counted = ShownAcceleration::none;
+    for (int tap = 0; tap < taps; ++tap) {
+      const int axis = feature - places[tap];
+      if (axis < 0 || axis > 2) continue;
+      counted = static_cast<ShownAcceleration>(axis);
+      if (of_present(feature) != (tap == 0)) return false;
+    }
+    if (shown(feature) != counted) return false;
   }
+  return true;
 }
 
-/// The structure of a predictor that a certificate proves. `Base`: its affine part, void where there is no such
-/// structure.
+/// The same of the places `First...` among these features.
+template <class Features, int... First>
+constexpr bool covers_angular_acceleration() noexcept {
+  constexpr int places[] = {First...};
+  return threes_cover_acceleration(
+      static_cast<const int*>(places), int(sizeof...(First)), Features::size,
+      [](int feature) { return shown_acceleration_of<Features>(feature); },
+      [](int feature) { return is_of_present(Features::names[static_cast<std::size_t>(feature)]); });
+}
+
+/// The structure of a predictor that a certificate proves, if it `is_known`. `Base`: its affine part, void where there
+/// is no such structure, or where it does not cover the angular acceleration that the features show.
 template <class Predictor, class Features>
 struct ProvenStructure {
   using Base = void;
+  static constexpr bool is_known = false;
 };
 template <class Scalar, int FeatureCount, int... First, class Features>
 struct ProvenStructure<AxisAligned<Scalar, FeatureCount, First...>, Features> {
   using Base = std::conditional_t<covers_angular_acceleration<Features, First...>(),
                                   AxisAligned<Scalar, FeatureCount, First...>, void>;
+  static constexpr bool is_known = true;
   static constexpr bool has_residual = false;
   static constexpr bool has_paths = false;
 };
@@ -105,9 +131,7 @@ struct ThrustPlaces {
 };
 /// True for "s_z", "vdot_bz" and, of other taps, "s_z[-1]".
 constexpr bool is_thrust(std::string_view name) noexcept {
-  const std::size_t bracket = name.find('[');
-  const std::string_view of_tap(name.data(), bracket < name.size() ? bracket : name.size());  // no substr(): noexcept
-  return of_tap == "s_z" || of_tap == "vdot_bz";
+  return name_at_tap(name) == "s_z" || name_at_tap(name) == "vdot_bz";
 }
 template <class Features>
 constexpr ThrustPlaces<Features::size> thrust_places() noexcept {
@@ -115,7 +139,7 @@ constexpr ThrustPlaces<Features::size> thrust_places() noexcept {
   for (const bool now : {true, false}) {
     for (int i = 0; i < Features::size; ++i) {
       const std::string_view name = Features::names[static_cast<std::size_t>(i)];
-      if (!is_thrust(name) || (name.back() != ']') != now) continue;
+      if (!is_thrust(name) || is_of_present(name) != now) continue;
       places.place[places.count++] = i;
       places.present += now ? 1 : 0;
     }
@@ -174,7 +198,7 @@ constexpr CertifiedVehicle<Scalar> certified_vehicle(const Airframe<Scalar>& air
 template <class Scalar>
 struct CertifiedNumbers {
   int inputs;                 ///< features
-  int taps;                   ///< with an angular acceleration; 16 at most
+  int taps;                   ///< with an angular acceleration; most_certified_taps at most
   const int* places;          ///< of each tap's angular acceleration among the features, the present first
   int thrust_count;           ///< features that are the specific force along the thrust axis, of all taps
   int thrust_present;         ///< of them, how many are of the present instant

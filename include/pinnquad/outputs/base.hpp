@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "pinnquad/core/detected.hpp"
+#include "pinnquad/features/shown_acceleration.hpp"
 
 namespace pinnquad {
 
@@ -46,11 +47,12 @@ struct BaseOf<Outputs, true> {
   using type = typename Outputs::Base;
 };
 
-/// True where the base reads an angular acceleration.
+/// True where the base reads an angular acceleration, or a column that may be one.
 template <class Base>
 constexpr bool reads_angular_acceleration() noexcept {
   for (const ReadFeature& read : Base::reads) {
-    if (std::string_view(read.name).substr(0, 5) == "wdot_") return true;
+    constexpr bool whatever_it_is = true;
+    if (shown_acceleration(read.name, read.unit, whatever_it_is) != ShownAcceleration::none) return true;
   }
   return false;
 }
