@@ -62,8 +62,9 @@ struct SpinPlaces {
 };
 constexpr SpinPlaces spin_places() noexcept {
   SpinPlaces places;
+  const Airframe<double> any{};
   int i = 0;
-  each_number(Airframe<double>{}, [&](const auto& number) {
+  each_number(any, [&](const auto& number) {
     places.at[i++] = std::is_same_v<std::decay_t<decltype(number)>, Spin>;
   });
   return places;
