@@ -61,3 +61,14 @@ def test_refused(pinnquad, flown):
     for name, keyword in (("cut.block", "cut short"), ("empty.block", "cut short"), ("weight.block", "NaN"),
                           ("flight.csv", "model block"), ("none.block", "found none")):
         pinnquad.refused("block", name, at=name, keyword=keyword)
+
+
+@pytest.mark.parametrize("name, word", [("clock_lag", "lag_removed_s"), ("commands_range", "record commands"),
+                                        ("trust_nan", "command_residual_limit"), ("vehicle_mass_x2", "contents")])
+@pytest.mark.parametrize("command", ["certify", "block"])
+def test_edited_reference(pinnquad, reference, command, name, word):
+    """Blocks whose bytes were edited and whose checksum was made again."""
+    block = reference / "cases/block_edits" / f"{name}.block"
+    if not block.exists():
+        pytest.skip(f"no {block}")
+    pinnquad.refused(command, block, at=block.name, keyword=word)
