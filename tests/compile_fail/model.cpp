@@ -45,6 +45,11 @@
 // CASE DISTANCE_LENGTH: pinnquad: the model's statistics of a distance don't have the length of the feature set
 // CASE BIAS_LENGTH: pinnquad: the model's time constants of a bias are not four
 // CASE BIAS_NEGATIVE: pinnquad: a time constant of the model's bias is no time of 0 to 60 s
+// CASE BIAS_TOO_FAST: pinnquad: a time constant of the model's bias is no time of 0 to 60 s that a bias can have
+// CASE LAG_OF_NO_ROTOR: a lag 1 s at most
+// CASE COMMANDS_TO_FIVE: pinnquad: the range of the model's commands is none, or beyond -1 to 1
+// CASE R_SQUARED_NEGATIVE: pinnquad: the model's verdict is not that of its R
+// CASE R_SQUARED_ABOVE_1: pinnquad: an R.2 of the model is above 1 or no number
 #include <array>
 #include <limits>
 

@@ -417,9 +417,9 @@ TEST_CASE("a monotone model that says other signs or another range, or whose num
   const auto sign = [&](signed char value) { return with_value(block, BlockRecord::slope_signs, 0, value); };
   CHECK(opened(sign(0)).line == "");
   corrupt(sign(1), "slope signs");
-  corrupt(sign(2), "records that fit");
+  corrupt(sign(2), "slope signs");
   corrupt(with_value(block, BlockRecord::residual_range, 0, -9.0f), "range of the residual");
-  corrupt(with_value(block, BlockRecord::residual_range, 0, 9.0f), "records that fit");
+  corrupt(with_value(block, BlockRecord::residual_range, 0, 9.0f), "range of the residual");
 
   // a slope below 0, and golden commands of it
   BlockBytes other(block);

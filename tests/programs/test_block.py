@@ -66,9 +66,7 @@ def test_refused(pinnquad, flown):
 @pytest.mark.parametrize("name, word", [("clock_lag", "lag_removed_s"), ("commands_range", "record commands"),
                                         ("trust_nan", "command_residual_limit"), ("vehicle_mass_x2", "contents")])
 @pytest.mark.parametrize("command", ["certify", "block"])
-def test_edited_reference(pinnquad, reference, command, name, word):
+def test_edited_reference(pinnquad, recorded, command, name, word):
     """Blocks whose bytes were edited and whose checksum was made again."""
-    block = reference / "cases/block_edits" / f"{name}.block"
-    if not block.exists():
-        pytest.skip(f"no {block}")
-    pinnquad.refused(command, block, at=block.name, keyword=word)
+    block = recorded(f"cases/block_edits/{name}.block")
+    pinnquad.refused(command, block, at=f"{name}.block", keyword=word)

@@ -179,7 +179,7 @@ struct BlockRecords : ModelRecords<Scalar> {
         trust = bytes;
         fault = fault_of_trust(limits);
         if (fault.number != StatedNumber::none) return Status::block_corrupt;
-        const Scalar* mean = scalars + sizeof limits / (sizeof(Scalar));
+        const Scalar* mean = scalars + 5 * sizeof(double) / sizeof(Scalar);
         if (!are_finite(finite, mean, inputs)) return refuse(StatedNumber::trust_mean);
         if (!is_triangle(finite, mean + inputs, inputs, true)) return refuse(StatedNumber::trust_whitening);
         break;
