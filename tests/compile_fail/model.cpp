@@ -188,6 +188,10 @@ struct Recorded : RecordedModel {
       "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<8>, pinnquad::Tanh, pinnquad::Dense<4>>";
 #elif defined(NO_COMMAND_RANGE)
   static constexpr double command_lower = 1.5;
+#elif defined(LAG_OF_NO_ROTOR)
+  static constexpr double lag_removed_s = 3.5;
+#elif defined(COMMANDS_TO_FIVE)
+  static constexpr double command_upper = 5;
 #elif defined(PERIOD_NEGATIVE)
   static constexpr double sample_period_s = -0.004;
 #elif defined(OTHER_WINDOW)
@@ -227,8 +231,18 @@ struct Recorded : RecordedModel {
   static constexpr std::array<float, 3> bias_time_constants_s{};
 #elif defined(BIAS_NEGATIVE)
   static constexpr std::array<float, 4> bias_time_constants_s = {0.2f, 0.5f, -0.5f, 0.5f};
+#elif defined(BIAS_TOO_FAST)
+  static constexpr std::array<float, 4> bias_time_constants_s = {0.2f, 0.5f, 0.0001f, 0.5f};
 #else
   static constexpr std::array<float, 4> bias_time_constants_s = {0.2f, 0.5f, 0.5f, 0.0f};
+#endif
+  static constexpr bool worse_than_mean = false, beats_linear_regression = true;
+#if defined(R_SQUARED_NEGATIVE)
+  static constexpr double test_r_squared = -3.5, linear_regression_r_squared = -4;
+#elif defined(R_SQUARED_ABOVE_1)
+  static constexpr double test_r_squared = 1.5, linear_regression_r_squared = 0.5;
+#else
+  static constexpr double test_r_squared = 0.75, linear_regression_r_squared = 0.5;
 #endif
 };
 
@@ -262,7 +276,8 @@ using Model = Unrecorded;
 #elif defined(UNKNOWN_RECORD) || defined(OTHER_ANSWER) || defined(NO_COMMAND_RANGE) || defined(PERIOD_NEGATIVE) || \
     defined(OTHER_WINDOW) || defined(NOT_CAUSAL) || defined(OTHER_COLUMNS) || defined(OTHER_ALLOCATION) ||         \
     defined(OTHER_BASE) || defined(SLOPE_SIGNS_MISSING) || defined(RESIDUAL_LENGTH) || defined(DISTANCE_LENGTH) || \
-    defined(BIAS_LENGTH) || defined(BIAS_NEGATIVE)
+    defined(BIAS_LENGTH) || defined(BIAS_NEGATIVE) || defined(BIAS_TOO_FAST) || defined(LAG_OF_NO_ROTOR) ||        \
+    defined(COMMANDS_TO_FIVE) || defined(R_SQUARED_NEGATIVE) || defined(R_SQUARED_ABOVE_1)
 using Model = Recorded;
 #else
 using Model = Changed;
