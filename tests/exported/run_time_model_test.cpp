@@ -317,7 +317,7 @@ TEST_CASE("a window that its features do not have, without a period, or centred 
   };
   CHECK(opened<double>(window(3, 0)).line == "");
   for (const std::uint32_t taps : {0u, 1u, 65u, 0x10003u, 0xffffffffu}) {
-    corrupt<double>(window(taps, 0), "names and units of its features");
+    corrupt<double>(window(taps, 0), taps == 0 ? "record window" : "names and units of its features");
   }
   corrupt<double>(window(3, 1), "names and units of its features");  // [+1] is not in a causal one
   corrupt<double>(window(4, 0), "odd");
@@ -350,7 +350,7 @@ TEST_CASE("outputs that no library has, or that are other ones than those that t
   records = own;
   records.erase(records.begin() + (&find(records, BlockRecord::affine) - records.data()));
   incompatible(with_records(five(), records), "output schema");
-  corrupt(with_value(five(), BlockRecord::affine, 0, std::numeric_limits<float>::quiet_NaN()), "records that fit");
+  corrupt(with_value(five(), BlockRecord::affine, 0, std::numeric_limits<float>::quiet_NaN()), "record affine");
   corrupt(replaced(five(), BlockRecord::outputs, "u5", "u6"), "hash");
 }
 

@@ -125,7 +125,7 @@ inline constexpr StatedRange stated_ranges[] = {
     {0, 0, false, "an envelope about the features' mean, as far as their standard deviation lets a training reach",
      "another"},
     {0, 0, false, "golden commands that are numbers", "NaN or Inf"},
-    {0, 0, false, "golden vectors inside the envelope", "one outside of it"},
+    {0, 0, false, "golden vectors of numbers inside the envelope", "one outside of it"},
     {0, 0, false, "contents of which its hash is (record contents)", "others: it was edited after its export"},
 };
 static_assert(sizeof stated_ranges / sizeof stated_ranges[0] == std::size_t(StatedNumber::count));
