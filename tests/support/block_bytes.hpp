@@ -70,8 +70,8 @@ class BlockBytes {
     using Header = ModelBlockHeader;
     detail::BlockRecords<Scalar> records;
     std::size_t record_bytes = 0;
-    const std::size_t inputs = u32(Header::inputs), outputs = u32(Header::outputs), parameters = u32(Header::parameters),
-                      golden = u32(Header::golden_vectors), behind = size_ - Header::size - Header::checksum_size;
+    const std::size_t inputs = u32(Header::inputs), outputs = u32(Header::outputs),
+                      parameters = u32(Header::parameters), golden = u32(Header::golden_vectors), behind = size_ - Header::size - Header::checksum_size;
     if (size_ < Header::size + Header::checksum_size || inputs > 10000 || outputs > 10000 || golden > size_) return;
     // a record that is refused leaves what was read before it: such a block is refused for that
     if (detail::read_records(bytes_.get() + Header::size, behind, inputs, outputs, records, record_bytes) !=

@@ -82,8 +82,8 @@ std::vector<std::uint64_t> unrounded_numbers(const WrittenRecords& records) {
   const double lower = records.command_lower, upper = records.command_upper;
   const double period = records.sample_period_s, lag = records.lag_removed_s;
   bool same = exact(lower, static_cast<double>(static_cast<Scalar>(lower))) &&
-              exact(upper, static_cast<double>(static_cast<Scalar>(upper))) && exact(period, nanoseconds(period) / 1e9) &&
-              exact(lag, nanoseconds(lag) / 1e9);
+              exact(upper, static_cast<double>(static_cast<Scalar>(upper))) &&
+              exact(period, nanoseconds(period) / 1e9) && exact(lag, nanoseconds(lag) / 1e9);
   if (sizeof(Scalar) < sizeof(double)) {
     const AllocationMatrix<double> own = allocation(records.airframe);
     for (std::size_t i = 0; i < own.size(); ++i) {

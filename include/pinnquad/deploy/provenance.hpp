@@ -217,7 +217,8 @@ void require_provenance(const Provenance& from) {
     for (const double time_s : *from.bias_time_constants_s) {
       fast = fast && time_s >= 0 && time_s <= longest_bias_time_constant_s;
     }
-    refuse(fast ? "a time constant of the bias is below 0.02 s" : "a time constant of the bias is not one of 0 to 60 s");
+    refuse(fast ? "a time constant of the bias is below 0.02 s"
+                : "a time constant of the bias is not one of 0 to 60 s");
   }
   if (const auto& distance = from.distance) {
     constexpr auto size = static_cast<std::size_t>(Features::size);

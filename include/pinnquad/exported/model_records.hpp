@@ -313,8 +313,8 @@ constexpr void require_optional_records() noexcept {
     static_assert(four, "pinnquad: the model's time constants of a bias are not four (bias_time_constants_s)");
     if constexpr (four) {
       static_assert(are_bias_time_constants(M::bias_time_constants_s),
-                    "pinnquad: a time constant of the model's bias is no time of 0 to 60 s that a bias can have: 0 (none "
-                    "of this sum), or 0.02 s and more (bias_time_constants_s)");
+                    "pinnquad: a time constant of the model's bias is no time of 0 to 60 s that a bias can have: 0 "
+                    "(none of this sum), or 0.02 s and more (bias_time_constants_s)");
     }
   }
   if constexpr (is_detected<DistanceStatisticsOf, M>) {

@@ -210,7 +210,8 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
     constexpr auto allocation = pinnquad::allocation(airframe_value<typename ShapeType::Vehicle, double>());
     constexpr detail::TorqueSigns signs = motor_torque_signs<typename ShapeType::Vehicle>();
     const detail::BlockVehicle vehicle{detail::first_of<double>(allocation), detail::first_of<int>(signs)};
-    bool sound = detail::fault_of_block(records, numbers, structure, vehicle, version >= 4) == detail::StatedNumber::none;
+    using detail::StatedNumber;
+    bool sound = detail::fault_of_block(records, numbers, structure, vehicle, version >= 4) == StatedNumber::none;
     if constexpr (has_certificate<ShapeType>) {
       constexpr auto certified =
           detail::certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ranges of the numbers that a model states, one table for the compiler (a header) and for open() (a block), and the
-// words of a refusal. A number outside its range is no measurement of a quadrotor, whatever a checksum says.
+// The ranges of the numbers that a model states, one table for the compiler (a header) and for open() (a block), and
+// the words of a refusal. A number outside its range is no measurement of a quadrotor, whatever a checksum says.
 #pragma once
 
 #include <cstddef>
