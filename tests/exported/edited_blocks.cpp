@@ -76,9 +76,7 @@ BlockBytes edited(const Bytes& block, BlockRecord type, std::size_t at, Value va
 
 }  // namespace
 
-TEST_CASE("the shipped model with every record is taken") {
-  CHECK(refusal(BlockBytes(whole())) == "");
-}
+TEST_CASE("the shipped model with every record is taken") { CHECK(refusal(BlockBytes(whole())) == ""); }
 
 TEST_CASE("a number of a record that no quadrotor has is refused by its name, though all hashes were made again") {
   const Bytes block = whole();

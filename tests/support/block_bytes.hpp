@@ -71,7 +71,8 @@ class BlockBytes {
     detail::BlockRecords<Scalar> records;
     std::size_t record_bytes = 0;
     const std::size_t inputs = u32(Header::inputs), outputs = u32(Header::outputs),
-                      parameters = u32(Header::parameters), golden = u32(Header::golden_vectors), behind = size_ - Header::size - Header::checksum_size;
+                      parameters = u32(Header::parameters), golden = u32(Header::golden_vectors),
+                      behind = size_ - Header::size - Header::checksum_size;
     if (size_ < Header::size + Header::checksum_size || inputs > 10000 || outputs > 10000 || golden > size_) return;
     // a record that is refused leaves what was read before it: such a block is refused for that
     if (detail::read_records(bytes_.get() + Header::size, behind, inputs, outputs, records, record_bytes) !=
@@ -97,9 +98,13 @@ class BlockBytes {
     const detail::TorqueSigns signs = motor_torque_signs(airframe);
     const detail::BlockVehicle vehicle{own[0].data(), signs[0].data()};
     const auto* first = reinterpret_cast<const Scalar*>(bytes_.get() + Header::size + record_bytes);
-    const detail::BlockNumbers<Scalar> numbers{
-        first, inputs, outputs, golden, parameters, u32(Header::training_rows),
-        detail::read_u64(bytes_.get() + Header::training_data_hash)};
+    const detail::BlockNumbers<Scalar> numbers{first,
+                                               inputs,
+                                               outputs,
+                                               golden,
+                                               parameters,
+                                               u32(Header::training_rows),
+                                               detail::read_u64(bytes_.get() + Header::training_data_hash)};
     const std::uint64_t hash = detail::BlockContents<Scalar>(records, numbers, vehicle).of_today();
     std::size_t at = Header::size + Header::record_counts;
     while ((u32(at) & 0x7fffu) != static_cast<unsigned>(BlockRecord::contents)) {

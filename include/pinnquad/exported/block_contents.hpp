@@ -64,9 +64,7 @@ constexpr SpinPlaces spin_places() noexcept {
   SpinPlaces places;
   const Airframe<double> any{};
   int i = 0;
-  each_number(any, [&](const auto& number) {
-    places.at[i++] = std::is_same_v<std::decay_t<decltype(number)>, Spin>;
-  });
+  each_number(any, [&](const auto& number) { places.at[i++] = std::is_same_v<std::decay_t<decltype(number)>, Spin>; });
   return places;
 }
 
@@ -165,16 +163,14 @@ class BlockContents {
   std::uint64_t of_every_format() const noexcept {
     constexpr std::uint64_t frame = constant_hash("frame", model_frame);
     constexpr std::uint64_t data = seed_of("training_data_hash"), rows = seed_of("training_rows"),
-                            worse = seed_of("worse_than_mean"),
-                            beats = seed_of("beats_linear_regression"),
+                            worse = seed_of("worse_than_mean"), beats = seed_of("beats_linear_regression"),
                             names = seed_of("feature_names"), units = seed_of("feature_units"),
                             outputs = seed_of("output_names"), vehicle = seed_of("vehicle_name"),
                             order = seed_of("motor_torque_signs"), airframe = seed_of("Vehicle"),
                             signs = seed_of("slope_signs"), lower = seed_of("residual_lower"),
                             upper = seed_of("residual_upper"), mean = seed_of("distance_mean"),
-                            triangle_seed = seed_of("distance_inverse_cholesky"),
-                            limit = seed_of("distance_limit"), input = seed_of("input"),
-                            output = seed_of("output"), least = seed_of("envelope_lower"),
+                            triangle_seed = seed_of("distance_inverse_cholesky"), limit = seed_of("distance_limit"),
+                            input = seed_of("input"), output = seed_of("output"), least = seed_of("envelope_lower"),
                             most = seed_of("envelope_upper"), golden = seed_of("golden_features"),
                             commands = seed_of("golden_commands"), weights = seed_of("parameters");
     constexpr SpinPlaces spins = spin_places();
@@ -252,10 +248,9 @@ class BlockContents {
     static_assert(sizeof meanings / sizeof meanings[0] == command_meaning_count);
     constexpr std::uint64_t answer = seed_of("answer"), lower = seed_of("command_lower"),
                             upper = seed_of("command_upper"), period = seed_of("sample_period_s"),
-                            lag = seed_of("lag_removed_s"), taps = seed_of("window_taps"),
-                            causal = seed_of("causal"), names = seed_of("column_names"),
-                            units = seed_of("column_units"), allocation = seed_of("allocation"),
-                            base = seed_of("base");
+                            lag = seed_of("lag_removed_s"), taps = seed_of("window_taps"), causal = seed_of("causal"),
+                            names = seed_of("column_names"), units = seed_of("column_units"),
+                            allocation = seed_of("allocation"), base = seed_of("base");
     const bool stated = said_.unrounded != nullptr;
     const auto number = [](std::uint64_t seed, double value) {
       RunTimeHash hash{seed};

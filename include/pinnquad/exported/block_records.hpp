@@ -74,9 +74,9 @@ struct BlockRecords : ModelRecords<Scalar> {
   constexpr bool said(BlockRecord record) const noexcept { return (seen >> static_cast<unsigned>(record) & 1u) != 0; }
   /// Says all that a block of version 4 must.
   constexpr bool describes_itself() const noexcept {
-    constexpr BlockRecord must[] = {BlockRecord::commands,   BlockRecord::clock,    BlockRecord::window,
-                                    BlockRecord::allocation, BlockRecord::answer,   BlockRecord::features,
-                                    BlockRecord::outputs,    BlockRecord::vehicle,  BlockRecord::contents};
+    constexpr BlockRecord must[] = {BlockRecord::commands,   BlockRecord::clock,   BlockRecord::window,
+                                    BlockRecord::allocation, BlockRecord::answer,  BlockRecord::features,
+                                    BlockRecord::outputs,    BlockRecord::vehicle, BlockRecord::contents};
     bool all = true;
     for (const BlockRecord record : must) all = all && said(record);
     return all;

@@ -20,7 +20,7 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// The fault of a block, in words: a refusal on the ground says both.
 struct BlockFault {
   const char* expected = nullptr;
-  const char* found = nullptr;   ///< "" where a number is
+  const char* found = nullptr;  ///< "" where a number is
   double number = 0;
 };
 

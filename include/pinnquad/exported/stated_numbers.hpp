@@ -216,8 +216,7 @@ constexpr StatedNumber fault_of_numbers(const IsFinite& finite, const Scales<Sca
   }
   for (std::size_t i = 0; i < golden; ++i) {
     if (!are_finite(finite, commands(i), std::size_t(rotor_count))) return StatedNumber::golden_command;
-    if (!are_finite(finite, features(i), inputs) ||
-        !inside_envelope(scales.lower, features(i), scales.upper, inputs)) {
+    if (!are_finite(finite, features(i), inputs) || !inside_envelope(scales.lower, features(i), scales.upper, inputs)) {
       return StatedNumber::golden_vector;
     }
   }
