@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A block that was edited under a right checksum is refused: a number out of its range by the name of its record,
-// any other one by the hash over the contents, which is computed again. In flight it is a Status, and the view is untouched.
+// any other one by the hash over the contents. In flight it is a Status, and the view is untouched.
 #include <doctest/doctest.h>
 
 #include <cstring>
