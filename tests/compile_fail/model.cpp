@@ -45,6 +45,11 @@
 // CASE DISTANCE_LENGTH: pinnquad: the model's statistics of a distance don't have the length of the feature set
 // CASE BIAS_LENGTH: pinnquad: the model's time constants of a bias are not four
 // CASE BIAS_NEGATIVE: pinnquad: a time constant of the model's bias is no time of 0 to 60 s
+// CASE BIAS_TOO_FAST: pinnquad: a time constant of the model's bias is no time of 0 to 60 s that a bias can have
+// CASE LAG_OF_NO_ROTOR: a lag 1 s at most
+// CASE COMMANDS_TO_FIVE: pinnquad: the range of the model's commands is none, or beyond -1 to 1
+// CASE R_SQUARED_NEGATIVE: pinnquad: the model's verdict is not that of its R
+// CASE R_SQUARED_ABOVE_1: pinnquad: an R.2 of the model is above 1 or no number
 #include <array>
 #include <limits>
 
@@ -183,6 +188,10 @@ struct Recorded : RecordedModel {
       "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<8>, pinnquad::Tanh, pinnquad::Dense<4>>";
 #elif defined(NO_COMMAND_RANGE)
   static constexpr double command_lower = 1.5;
+#elif defined(LAG_OF_NO_ROTOR)
+  static constexpr double lag_removed_s = 3.5;
+#elif defined(COMMANDS_TO_FIVE)
+  static constexpr double command_upper = 5;
 #elif defined(PERIOD_NEGATIVE)
   static constexpr double sample_period_s = -0.004;
 #elif defined(OTHER_WINDOW)
@@ -222,8 +231,18 @@ struct Recorded : RecordedModel {
   static constexpr std::array<float, 3> bias_time_constants_s{};
 #elif defined(BIAS_NEGATIVE)
   static constexpr std::array<float, 4> bias_time_constants_s = {0.2f, 0.5f, -0.5f, 0.5f};
+#elif defined(BIAS_TOO_FAST)
+  static constexpr std::array<float, 4> bias_time_constants_s = {0.2f, 0.5f, 0.0001f, 0.5f};
 #else
   static constexpr std::array<float, 4> bias_time_constants_s = {0.2f, 0.5f, 0.5f, 0.0f};
+#endif
+  static constexpr bool worse_than_mean = false, beats_linear_regression = true;
+#if defined(R_SQUARED_NEGATIVE)
+  static constexpr double test_r_squared = -3.5, linear_regression_r_squared = -4;
+#elif defined(R_SQUARED_ABOVE_1)
+  static constexpr double test_r_squared = 1.5, linear_regression_r_squared = 0.5;
+#else
+  static constexpr double test_r_squared = 0.75, linear_regression_r_squared = 0.5;
 #endif
 };
 
@@ -257,7 +276,8 @@ using Model = Unrecorded;
 #elif defined(UNKNOWN_RECORD) || defined(OTHER_ANSWER) || defined(NO_COMMAND_RANGE) || defined(PERIOD_NEGATIVE) || \
     defined(OTHER_WINDOW) || defined(NOT_CAUSAL) || defined(OTHER_COLUMNS) || defined(OTHER_ALLOCATION) ||         \
     defined(OTHER_BASE) || defined(SLOPE_SIGNS_MISSING) || defined(RESIDUAL_LENGTH) || defined(DISTANCE_LENGTH) || \
-    defined(BIAS_LENGTH) || defined(BIAS_NEGATIVE)
+    defined(BIAS_LENGTH) || defined(BIAS_NEGATIVE) || defined(BIAS_TOO_FAST) || defined(LAG_OF_NO_ROTOR) ||        \
+    defined(COMMANDS_TO_FIVE) || defined(R_SQUARED_NEGATIVE) || defined(R_SQUARED_ABOVE_1)
 using Model = Recorded;
 #else
 using Model = Changed;

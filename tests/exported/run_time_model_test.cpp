@@ -317,7 +317,7 @@ TEST_CASE("a window that its features do not have, without a period, or centred 
   };
   CHECK(opened<double>(window(3, 0)).line == "");
   for (const std::uint32_t taps : {0u, 1u, 65u, 0x10003u, 0xffffffffu}) {
-    corrupt<double>(window(taps, 0), "names and units of its features");
+    corrupt<double>(window(taps, 0), taps == 0 ? "record window" : "names and units of its features");
   }
   corrupt<double>(window(3, 1), "names and units of its features");  // [+1] is not in a causal one
   corrupt<double>(window(4, 0), "odd");
@@ -350,7 +350,7 @@ TEST_CASE("outputs that no library has, or that are other ones than those that t
   records = own;
   records.erase(records.begin() + (&find(records, BlockRecord::affine) - records.data()));
   incompatible(with_records(five(), records), "output schema");
-  corrupt(with_value(five(), BlockRecord::affine, 0, std::numeric_limits<float>::quiet_NaN()), "records that fit");
+  corrupt(with_value(five(), BlockRecord::affine, 0, std::numeric_limits<float>::quiet_NaN()), "record affine");
   corrupt(replaced(five(), BlockRecord::outputs, "u5", "u6"), "hash");
 }
 
@@ -417,9 +417,9 @@ TEST_CASE("a monotone model that says other signs or another range, or whose num
   const auto sign = [&](signed char value) { return with_value(block, BlockRecord::slope_signs, 0, value); };
   CHECK(opened(sign(0)).line == "");
   corrupt(sign(1), "slope signs");
-  corrupt(sign(2), "records that fit");
+  corrupt(sign(2), "slope signs");
   corrupt(with_value(block, BlockRecord::residual_range, 0, -9.0f), "range of the residual");
-  corrupt(with_value(block, BlockRecord::residual_range, 0, 9.0f), "records that fit");
+  corrupt(with_value(block, BlockRecord::residual_range, 0, 9.0f), "range of the residual");
 
   // a slope below 0, and golden commands of it
   BlockBytes other(block);

@@ -61,3 +61,12 @@ def test_refused(pinnquad, flown):
     for name, keyword in (("cut.block", "cut short"), ("empty.block", "cut short"), ("weight.block", "NaN"),
                           ("flight.csv", "model block"), ("none.block", "found none")):
         pinnquad.refused("block", name, at=name, keyword=keyword)
+
+
+@pytest.mark.parametrize("name, word", [("clock_lag", "lag_removed_s"), ("commands_range", "record commands"),
+                                        ("trust_nan", "command_residual_limit"), ("vehicle_mass_x2", "contents")])
+@pytest.mark.parametrize("command", ["certify", "block"])
+def test_edited_reference(pinnquad, recorded, command, name, word):
+    """Blocks whose bytes were edited and whose checksum was made again."""
+    block = recorded(f"cases/block_edits/{name}.block")
+    pinnquad.refused(command, block, at=f"{name}.block", keyword=word)

@@ -130,9 +130,9 @@ inline std::vector<std::string> places_of(const TrainOptions& options, const pin
 /// Throws InputError and std::invalid_argument for flights that no model should be fitted to, or judged on.
 inline void require_sound(const TrainOptions& options, const pinnquad::logs::ImportedDataset& dataset,
                           const std::vector<Fold>& folds) {
-  if (!(std::abs(dataset.lag_removed_s) <= pinnquad::longest_clock_s)) {
+  if (!(std::abs(dataset.lag_removed_s) <= pinnquad::longest_lag_s)) {
     throw pinnquad::InputError(options.dataset_folder() + "/" + pinnquad::logs::dataset_file_name, 0, 0,
-                               "a lag removed of at most " + pinnquad::number_text(pinnquad::longest_clock_s) + " s",
+                               "a lag removed of at most " + pinnquad::number_text(pinnquad::longest_lag_s) + " s",
                                pinnquad::number_text(dataset.lag_removed_s) + " s");
   }
   const std::vector<std::string> places = places_of(options, dataset);

@@ -17,6 +17,8 @@
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/deploy/exact_derivatives.hpp"
 #include "pinnquad/exported/run_time_certificate.hpp"
+#include "pinnquad/exported/stated_certificate.hpp"
+#include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/text_file.hpp"
 
 namespace pinnquad {
@@ -313,15 +315,53 @@ class BlockModel {
   void open() {
     auto model = std::make_unique<RunTimeModel<Scalar>>();
     BlockFault fault;
-    if (RunTimeModel<Scalar>::open(data(), length_, *model, fault) != Status::ok) refuse(fault.expected, fault.found);
+    if (RunTimeModel<Scalar>::open(data(), length_, *model, fault) != Status::ok) {
+      refuse(fault.expected, *fault.found == 0 ? number_text(fault.number) : fault.found);
+    }
     derivatives_ = ExactDerivatives(*model);
     const bool says_signs = model->records().slope_signs != nullptr;
+    const unsigned char* stated = model->records().certificate;
     model_ = std::unique_ptr<const RunTimeModel<Scalar>>(std::move(model));
+    require_words();
     if (!(golden_difference() <= golden_tolerance)) refuse("golden commands that its weights give", "others");
-    const std::optional<Certificate> proof = says_signs ? certificate() : std::nullopt;
+    if (!says_signs && stated == nullptr) return;
+    const std::optional<Certificate> proof = certificate();
     if (proof && !proof->proven()) refuse("slopes and bounds of which its certificate is proven", "others");
+    if (stated == nullptr) return;
+    if (!proof || !detail::states_certificate(stated, *proof)) refuse(detail::StatedNumber::certificate, "others");
   }
-  [[noreturn]] void refuse(const char* expected, const char* found) const {
+  /// Words of the provenance that are numbers: whole ones, and R^2 that bear out the verdict.
+  void require_words() const {
+    using detail::StatedNumber;
+    const auto require_whole = [this](const char* word, StatedNumber number) {
+      const std::string text = provenance(word);
+      const bool whole = std::all_of(text.begin(), text.end(), [](char c) { return '0' <= c && c <= '9'; });
+      if (!whole || text.size() > 20) refuse(number, text);
+    };
+    require_whole("seed", StatedNumber::seed);
+    require_whole("epochs", StatedNumber::epochs);
+    double figures[2]{};
+    bool stated = true;
+    for (const char* word : {"test_r_squared", "linear_regression_r_squared"}) {
+      const std::string text = provenance(word);
+      double& figure = figures[word[0] == 't' ? 0 : 1];
+      stated = stated && !text.empty();
+      if (text.empty()) continue;
+      if (!parse_number(text, figure) || !is_finite(figure) || !detail::in_range<StatedNumber::r_squared>(figure)) {
+        refuse(StatedNumber::r_squared, text);
+      }
+    }
+    const bool borne_out = with([&](const auto& model) {
+      const auto& said = model.records();
+      return !said.has_verdict ||
+             detail::bears_out(said.worse_than_mean, said.beats_linear_regression, figures[0], figures[1]);
+    });
+    if (stated && !borne_out) refuse(StatedNumber::judged_figures, "another");
+  }
+  [[noreturn]] void refuse(detail::StatedNumber number, const std::string& found) const {
+    refuse(detail::stated_ranges[static_cast<std::size_t>(number)].expected, found);
+  }
+  [[noreturn]] void refuse(const std::string& expected, const std::string& found) const {
     throw InputError(path_, 0, 0, expected, found);
   }
 

@@ -73,6 +73,33 @@ inline std::vector<std::string> provenance_texts(const WrittenRecords& records) 
   return texts;
 }
 
+/// Numbers of a header that a block's other records round: the range of the commands, the clock's two, the allocation.
+/// None where what those hold, and the airframe, give them to the bit: contents_hash is over them (exported/
+/// block_contents.hpp). A tilted rotor's torque is a sum of products, which a compiler may round otherwise.
+template <class Scalar>
+std::vector<std::uint64_t> unrounded_numbers(const WrittenRecords& records) {
+  const auto exact = [](double value, double held) { return double_bits(value) == double_bits(held); };
+  const double lower = records.command_lower, upper = records.command_upper;
+  const double period = records.sample_period_s, lag = records.lag_removed_s;
+  bool same = exact(lower, static_cast<double>(static_cast<Scalar>(lower))) &&
+              exact(upper, static_cast<double>(static_cast<Scalar>(upper))) &&
+              exact(period, nanoseconds(period) / 1e9) && exact(lag, nanoseconds(lag) / 1e9);
+  if (sizeof(Scalar) < sizeof(double)) {
+    const AllocationMatrix<double> own = allocation(records.airframe);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      for (std::size_t k = 0; k < own[i].size(); ++k) same = same && exact(records.allocation[i][k], own[i][k]);
+    }
+    for (const auto& rotor : records.airframe.rotors) same = same && is_upright(rotor);
+  }
+  std::vector<std::uint64_t> numbers;
+  if (same) return numbers;
+  for (const double number : {lower, upper, period, lag}) numbers.push_back(double_bits(number));
+  for (const auto& row : records.allocation) {
+    for (const double entry : row) numbers.push_back(double_bits(entry));
+  }
+  return numbers;
+}
+
 /// The records of a block: their counts, then each.
 template <class Scalar>
 std::vector<unsigned char> block_records(const WrittenRecords& records) {
@@ -147,6 +174,9 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
     add(std::array<double, 2>{proven->thrust_slope, proven->held_thrust_slope});
     add(proven->command_bound);
     record(BlockRecord::certificate, optional, numbers);
+  }
+  if (const auto numbers = unrounded_numbers<Scalar>(records); !numbers.empty()) {
+    record(BlockRecord::unrounded, optional, numbers);
   }
   if (records.bias_time_constants_s) record(BlockRecord::bias, optional, *records.bias_time_constants_s);
   const std::vector<unsigned char> provenance = closed(provenance_texts(records));

@@ -190,11 +190,13 @@ WrittenRecords records_of_types() {
 template <class Features, class Outputs>
 void require_provenance(const Provenance& from) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument("export: " + what); };
-  if (!is_finite(from.command_lower) || !is_finite(from.command_upper) || !(from.command_lower <= from.command_upper)) {
-    refuse("the range of the commands is none");
+  if (!is_command_range(from.command_lower, from.command_upper)) {
+    refuse("the range of the commands is none, or beyond -1 to 1");
   }
-  if (!is_clock_time(from.sample_period_s)) refuse("the sample period is not one of 0 to 4 s");
-  if (!is_clock_time(from.lag_removed_s)) refuse("the lag removed is not one of 0 to 4 s");
+  if (!in_range<StatedNumber::sample_period_s>(from.sample_period_s)) {
+    refuse("the sample period is not one of 0 to 4 s, or below 0.00001 s");
+  }
+  if (!in_range<StatedNumber::lag_removed_s>(from.lag_removed_s)) refuse("the lag removed is not one of 0 to 1 s");
   constexpr double window_s = WindowOf<Features>::period_s;
   if (window_s > 0 && from.sample_period_s > 0 && !same_period(from.sample_period_s, window_s)) {
     refuse("the sample period is not that of the features' window");
@@ -211,7 +213,12 @@ void require_provenance(const Provenance& from) {
     }
   }
   if (from.bias_time_constants_s && !are_bias_time_constants(*from.bias_time_constants_s)) {
-    refuse("a time constant of the bias is not one of 0 to 60 s");
+    bool fast = true;
+    for (const double time_s : *from.bias_time_constants_s) {
+      fast = fast && time_s >= 0 && time_s <= longest_bias_time_constant_s;
+    }
+    refuse(fast ? "a time constant of the bias is below 0.02 s"
+                : "a time constant of the bias is not one of 0 to 60 s");
   }
   if (const auto& distance = from.distance) {
     constexpr auto size = static_cast<std::size_t>(Features::size);
@@ -220,7 +227,9 @@ void require_provenance(const Provenance& from) {
     }
     require_finite(distance->mean, "the means of the distance");
     require_finite(distance->inverse_cholesky, "the triangle of the distance");
-    if (!is_finite(distance->limit) || !(distance->limit > 0)) refuse("the limit of the distance is no number above 0");
+    if (!in_range<StatedNumber::distance_limit>(distance->limit)) {
+      refuse("the limit of the distance is no number above 0 to 131072");
+    }
   }
 }
 
@@ -302,6 +311,9 @@ WrittenRecords records_of_header() {
     records.command_lower = M::command_lower;
     records.command_upper = M::command_upper;
     records.lag_removed_s = M::lag_removed_s;
+    records.allocation = M::allocation;
+    records.answer = M::answer;
+    records.base = M::base;
   }
   if constexpr (is_detected<StatedVerdictOf, M>) {
     records.judged = judged_bits(M::worse_than_mean, M::beats_linear_regression);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string_view>
 
 #include "pinnquad/core/finite.hpp"
@@ -66,26 +67,45 @@ struct BlockRecords : ModelRecords<Scalar> {
   const unsigned char* trust = nullptr;        ///< five f64
   const unsigned char* certificate = nullptr;  ///< twelve f64
   const Scalar* affine = nullptr;
-  std::uint32_t seen = 0;  ///< a bit per type
+  const unsigned char* unrounded = nullptr;  ///< twenty f64
+  std::uint32_t seen = 0;                    ///< a bit per type
+  StatedFault fault{};                       ///< where take() refuses
 
   constexpr bool said(BlockRecord record) const noexcept { return (seen >> static_cast<unsigned>(record) & 1u) != 0; }
+  /// Says all that a block of version 4 must.
+  constexpr bool describes_itself() const noexcept {
+    constexpr BlockRecord must[] = {BlockRecord::commands,   BlockRecord::clock,   BlockRecord::window,
+                                    BlockRecord::allocation, BlockRecord::answer,  BlockRecord::features,
+                                    BlockRecord::outputs,    BlockRecord::vehicle, BlockRecord::contents};
+    bool all = true;
+    for (const BlockRecord record : must) all = all && said(record);
+    return all;
+  }
 
-  /// `block_corrupt` for a record of another length than its type has, and for numbers that are none.
+  /// `block_corrupt` for a record of another length than its type has, and for numbers out of their range
+  /// (exported/stated_numbers.hpp): `fault` says which.
   Status take(BlockRecord type, const unsigned char* bytes, std::uint32_t length, std::size_t inputs,
               std::size_t outputs_count) noexcept {
     const RecordLengths lengths =
         record_lengths(sizeof(Scalar), static_cast<std::uint32_t>(inputs), static_cast<std::uint32_t>(outputs_count));
     const std::uint32_t sized = lengths.of[static_cast<unsigned>(type)];
+    fault = {StatedNumber::layout};
     if (sized != 0 && length != sized) return Status::block_corrupt;
     const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes));  // at a multiple of 8
     const BlockText text{bytes, length};
-    bool sound = true;
+    const FiniteNumber finite{};
     switch (type) {
       case BlockRecord::commands: {
         const std::uint32_t meaning = read_u32(bytes);
         const Scalar* range = scalars + 8 / sizeof(Scalar);
-        if (read_u32(bytes + 4) != 0 || !all_finite(range, 2) || !(range[0] <= range[1])) return Status::block_corrupt;
-        if (meaning >= command_meaning_count) return Status::block_incompatible;
+        const bool sound = are_finite(finite, range, 2) &&
+                           is_command_range(static_cast<double>(range[0]), static_cast<double>(range[1]));
+        if (!sound) return refuse(StatedNumber::command_range);
+        if (read_u32(bytes + 4) != 0) return refuse(StatedNumber::command_meaning);
+        if (meaning >= command_meaning_count) {
+          fault = {StatedNumber::command_meaning};
+          return Status::block_incompatible;
+        }
         this->stated = true;
         this->command_meaning = static_cast<CommandMeaning>(meaning);
         this->command_lower = range[0];
@@ -93,37 +113,52 @@ struct BlockRecords : ModelRecords<Scalar> {
         break;
       }
       case BlockRecord::clock: {
-        constexpr std::uint32_t longest_ns = nanoseconds(longest_clock_s);
         this->sample_period_ns = read_u32(bytes);
         this->lag_removed_ns = read_u32(bytes + 4);
-        sound = this->sample_period_ns <= longest_ns && this->lag_removed_ns <= longest_ns;
+        const double period_s = this->sample_period_ns / 1e9, lag_s = this->lag_removed_ns / 1e9;
+        if (!in_range<StatedNumber::sample_period_s>(period_s)) return refuse(StatedNumber::sample_period_s, period_s);
+        if (!in_range<StatedNumber::lag_removed_s>(lag_s)) return refuse(StatedNumber::lag_removed_s, lag_s);
         break;
       }
       case BlockRecord::window:
         window_taps = read_u32(bytes);
         causal = read_u32(bytes + 4);
+        if (window_taps < 1 || causal > 1) return refuse(StatedNumber::window);
         break;
       case BlockRecord::columns: columns = text; break;
       case BlockRecord::allocation: allocation = scalars; break;
       case BlockRecord::base: base = text; break;
-      case BlockRecord::verdict:
+      case BlockRecord::verdict: {
+        const std::uint32_t bits = read_u32(bytes);
+        if (bits > judged_bits(true, true) || read_u32(bytes + 4) != 0) return refuse(StatedNumber::verdict);
         this->has_verdict = true;
-        this->worse_than_mean = (read_u32(bytes) & judged_bits(true, false)) != 0;
-        this->beats_linear_regression = (read_u32(bytes) & judged_bits(false, true)) != 0;
+        this->worse_than_mean = (bits & judged_bits(true, false)) != 0;
+        this->beats_linear_regression = (bits & judged_bits(false, true)) != 0;
         break;
+      }
       case BlockRecord::slope_signs:
         this->slope_signs = static_cast<const signed char*>(static_cast<const void*>(bytes));
-        for (std::size_t i = 0; i < length; ++i) sound &= -1 <= this->slope_signs[i] && this->slope_signs[i] <= 1;
+        for (std::size_t i = 0; i < length; ++i) {
+          const int sign = this->slope_signs[i];
+          if (sign < -1 || sign > 1) return refuse(StatedNumber::slope_sign, sign);
+        }
         break;
       case BlockRecord::residual_range:
         this->residual_range = scalars;
-        sound = all_finite(scalars, static_cast<int>(2 * outputs_count));
-        for (std::size_t i = 0; i < outputs_count; ++i) sound &= scalars[i] <= scalars[outputs_count + i];
+        if (!are_finite(finite, scalars, 2 * outputs_count)) return refuse(StatedNumber::residual_range);
+        for (std::size_t i = 0; i < outputs_count; ++i) {
+          if (!(scalars[i] <= scalars[outputs_count + i])) return refuse(StatedNumber::residual_range);
+        }
         break;
       case BlockRecord::distance: {
-        const std::size_t last = inputs + triangle(inputs);
+        const Scalar limit = scalars[inputs + triangle(inputs)];
         this->distance = scalars;
-        sound = all_finite(scalars, static_cast<int>(last) + 1) && scalars[last] > Scalar(0);
+        if (!are_finite(finite, scalars, inputs) || !is_triangle(finite, scalars + inputs, inputs, false)) {
+          return refuse(StatedNumber::distance);
+        }
+        if (!is_finite(limit) || !in_range<StatedNumber::distance_limit>(static_cast<double>(limit))) {
+          return refuse(StatedNumber::distance_limit, static_cast<double>(limit));
+        }
         break;
       }
       case BlockRecord::answer: answer = text; break;
@@ -138,20 +173,49 @@ struct BlockRecords : ModelRecords<Scalar> {
         break;
       }
       case BlockRecord::contents: contents_hash = read_u64(bytes); break;
-      case BlockRecord::trust: trust = bytes; break;
+      case BlockRecord::trust: {
+        double limits[5];
+        std::memcpy(static_cast<double*>(limits), bytes, sizeof limits);
+        trust = bytes;
+        fault = fault_of_trust(limits);
+        if (fault.number != StatedNumber::none) return Status::block_corrupt;
+        const Scalar* mean = scalars + 5 * sizeof(double) / sizeof(Scalar);
+        if (!are_finite(finite, mean, inputs)) return refuse(StatedNumber::trust_mean);
+        if (!is_triangle(finite, mean + inputs, inputs, true)) return refuse(StatedNumber::trust_whitening);
+        break;
+      }
       case BlockRecord::certificate: certificate = bytes; break;
-      case BlockRecord::provenance: provenance = text; break;
+      case BlockRecord::provenance: {
+        provenance = text;
+        std::uint32_t ends = 0;
+        for (std::uint32_t i = 0; i < length; ++i) ends += bytes[i] == 0 ? 1 : 0;
+        if (ends % 2 != 0 || (length > 0 && bytes[length - 1] != 0)) return refuse(StatedNumber::words);
+        break;
+      }
       case BlockRecord::bias:
         this->has_bias = true;
-        for (std::size_t i = 0; i < 4; ++i) this->bias_time_constants_s[i] = scalars[i];
-        sound = are_bias_time_constants(scalars);
+        for (std::size_t i = 0; i < 4; ++i) {
+          const Scalar time_s = scalars[i];
+          this->bias_time_constants_s[i] = time_s;
+          if (!is_finite(time_s) || !in_range<StatedNumber::bias_time_constant_s>(static_cast<double>(time_s))) {
+            return refuse(StatedNumber::bias_time_constant_s, static_cast<double>(time_s));
+          }
+        }
         break;
       case BlockRecord::affine:
         affine = scalars;
-        sound = all_finite(scalars, static_cast<int>(length / sizeof(Scalar)));
+        if (!are_finite(finite, scalars, length / sizeof(Scalar))) return refuse(StatedNumber::affine);
         break;
+      case BlockRecord::unrounded: unrounded = bytes; break;
     }
-    return sound ? Status::ok : Status::block_corrupt;
+    fault = {};
+    return Status::ok;
+  }
+
+ private:
+  Status refuse(StatedNumber number, double value = 0) noexcept {
+    fault = {number, value};
+    return Status::block_corrupt;
   }
 };
 
@@ -162,6 +226,7 @@ template <class Scalar>
 Status read_records(const unsigned char* first, std::size_t available, std::size_t inputs, std::size_t outputs,
                     BlockRecords<Scalar>& records, std::size_t& size) noexcept {
   using Header = ModelBlockHeader;
+  records.fault = {StatedNumber::layout};
   if (available < Header::record_counts) return Status::block_corrupt;
   const std::uint32_t count = read_u32(first);
   const std::uint32_t bytes = read_u32(first + 4);
@@ -180,7 +245,9 @@ Status read_records(const unsigned char* first, std::size_t available, std::size
       const Status status =
           records.take(static_cast<BlockRecord>(type), at + Header::record_head, length, inputs, outputs);
       if (status != Status::ok) return status;
+      records.fault = {StatedNumber::layout};
     } else if ((word & mandatory_record) != 0) {
+      records.fault = {StatedNumber::unknown_record};
       return Status::block_incompatible;
     }
     const std::size_t whole = Header::record_head + Header::padded(length);  // both multiples of 8, as `left` is
@@ -188,6 +255,7 @@ Status read_records(const unsigned char* first, std::size_t available, std::size
     left -= whole;
   }
   if (left != 0) return Status::block_corrupt;
+  records.fault = {};
   size = Header::record_counts + bytes;
   return Status::ok;
 }
@@ -205,35 +273,23 @@ struct RowMajorAllocation {
 template <class Shape>
 struct RecordReader {
   using Scalar = typename Shape::Scalar;
-  using Records = ModelRecords<Scalar>;
   using Features = typename Shape::Features;
   using Outputs = typename Shape::Outputs;
   using Base = typename BaseOf<Outputs>::type;
   using Window = WindowOf<Features>;
 
-  /// As read_records(); `block_incompatible` too where a record is missing that the shape asks for, or says another
-  /// thing than the shape.
-  static Status read(const unsigned char* first, std::size_t available, Records& records, std::size_t& size) noexcept {
+  /// As read_records(); `block_incompatible` too where a record is missing that the shape or the version asks for, or
+  /// says another thing than the shape.
+  static Status read(const unsigned char* first, std::size_t available, std::uint32_t version,
+                     BlockRecords<Scalar>& records, std::size_t& size) noexcept {
     constexpr std::size_t inputs = std::size_t(Features::size), outputs = std::size_t(OutputMap<Outputs>::size);
-    BlockRecords<Scalar> all;
-    const Status status = read_records(first, available, inputs, outputs, all, size);
+    const Status status = read_records(first, available, inputs, outputs, records, size);
     if (status != Status::ok) return status;
-    if (all.slope_signs != nullptr && !true_slope_signs(all.slope_signs)) return Status::block_corrupt;
-    records = all;
-    return fits(all) && fits_header(all) ? Status::ok : Status::block_incompatible;
+    const bool complete = version < 4 || records.describes_itself();
+    return complete && fits(records) && fits_header(records) ? Status::ok : Status::block_incompatible;
   }
 
  private:
-  static bool true_slope_signs(const signed char* stated) noexcept {
-    constexpr TorqueSigns torque_signs = motor_torque_signs<typename Shape::Vehicle>();
-    const int* own = first_of<int>(torque_signs);
-    bool sound = true;
-    if (StatedStructure<typename Shape::Network>::known) {
-      for (int i = 0; i < 3 * rotor_count; ++i) sound &= true_slope_sign(stated[i], own[i]);
-    }
-    return sound;
-  }
-
   /// No std::memcmp: a text that is not said is null.
   static bool same_start(const char* letters, const BlockText& text) noexcept {
     bool same = true;
@@ -265,7 +321,7 @@ struct RecordReader {
   }
 
   /// Where the shape is an exported header: its commands mean the same, as often.
-  static bool fits_header(const Records& records) noexcept {
+  static bool fits_header(const ModelRecords<Scalar>& records) noexcept {
     if constexpr (is_model<Shape>) {
       // constants: worked out by the compiler
       constexpr std::uint32_t period = nanoseconds(header_period_s<Shape>());

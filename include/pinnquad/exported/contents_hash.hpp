@@ -91,9 +91,9 @@ class ConstantHash {
     });
   }
 
- private:
   static constexpr std::uint64_t prime = 0x100000001b3u;
 
+ private:
   constexpr void add_word(std::uint32_t word) noexcept { hash_ = (hash_ ^ word) * prime; }
 
   std::uint64_t hash_ = Fnv1a{}.hash;

@@ -93,19 +93,37 @@ constexpr bool same_output_units() noexcept {
   }
 }
 
-/// False for NaN.
+/// The first fault of the numbers that every model has.
 template <class M>
-constexpr bool golden_inside_envelope() noexcept {
-  for (const auto& x : M::golden_features) {
-    if (!inside_envelope(M::envelope_lower.data(), x.data(), M::envelope_upper.data(), x.size())) return false;
-  }
-  return true;
+constexpr StatedNumber fault_of_header() noexcept {
+  return fault_of_numbers(
+      FiniteConstant{}, scales_in_header<M>(), M::envelope_lower.size(), M::output.mean.size(), M::parameters.data(),
+      M::parameters.size(), [](std::size_t i) { return M::golden_features[i].data(); },
+      [](std::size_t i) { return M::golden_commands[i].data(); }, M::golden_features.size());
 }
 
-template <class Array>
-constexpr bool all_positive(const Array& values) noexcept {
-  for (const auto& value : values) {
-    if (!(value > 0)) return false;
+template <class M>
+using TestFigureOf = decltype(double{M::test_r_squared});
+template <class M>
+using LinearFigureOf = decltype(double{M::linear_regression_r_squared});
+
+template <class M>
+constexpr bool are_header_figures() noexcept {
+  bool sound = true;
+  if constexpr (is_detected<TestFigureOf, M>) sound = sound && in_range<StatedNumber::r_squared>(M::test_r_squared);
+  if constexpr (is_detected<LinearFigureOf, M>) {
+    sound = sound && in_range<StatedNumber::r_squared>(M::linear_regression_r_squared);
+  }
+  return sound;
+}
+
+/// A linear regression whose R^2 was no number is not stated; the model beats it.
+template <class M>
+constexpr bool header_verdict_is_borne_out() noexcept {
+  if constexpr (is_detected<StatedVerdictOf, M> && is_detected<TestFigureOf, M>) {
+    double linear = -no_bound;
+    if constexpr (is_detected<LinearFigureOf, M>) linear = M::linear_regression_r_squared;
+    return bears_out(M::worse_than_mean, M::beats_linear_regression, M::test_r_squared, linear);
   }
   return true;
 }
@@ -137,21 +155,22 @@ constexpr void require_description() noexcept {
         same_values(M::motor_torque_signs, motor_torque_signs<typename M::Vehicle>()),
         "pinnquad: the model was trained with another motor order than its Vehicle now has: a rotor sits or turns "
         "elsewhere (motor_torque_signs)");
-    static_assert(all_finite_constants(M::parameters), "pinnquad: a weight of the model is NaN or infinite");
-    static_assert(all_finite_constants(M::input.mean) && all_finite_constants(M::input.standard_deviation) &&
-                      all_finite_constants(M::output.mean) && all_finite_constants(M::output.standard_deviation),
-                  "pinnquad: a scaler's number is NaN or infinite");
-    static_assert(all_finite_constants(M::envelope_lower) && all_finite_constants(M::envelope_upper),
-                  "pinnquad: a border of the model's envelope is NaN or infinite");
-    static_assert(all_positive(M::input.standard_deviation) && all_positive(M::output.standard_deviation),
-                  "pinnquad: a scaler's standard deviation is not positive");
-    static_assert(
-        is_envelope(M::input.mean.data(), M::input.standard_deviation.data(), M::envelope_lower.data(),
-                    M::envelope_upper.data(), M::envelope_lower.size()),
-        "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean and "
-        "standard deviation can have been (envelope_lower, envelope_upper, input)");
-    static_assert(all_finite_constants(M::golden_commands), "pinnquad: a golden command is NaN or infinite");
-    static_assert(golden_inside_envelope<M>(), "pinnquad: a golden vector lies outside the model's envelope");
+    constexpr StatedNumber fault = fault_of_header<M>();
+    static_assert(fault != StatedNumber::weight, "pinnquad: a weight of the model is NaN or infinite");
+    static_assert(fault != StatedNumber::scaler, "pinnquad: a scaler's number is NaN or infinite");
+    static_assert(fault != StatedNumber::border, "pinnquad: a border of the model's envelope is NaN or infinite");
+    static_assert(fault != StatedNumber::deviation, "pinnquad: a scaler's standard deviation is not positive");
+    static_assert(fault != StatedNumber::envelope,
+                  "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean "
+                  "and standard deviation can have been (envelope_lower, envelope_upper, input)");
+    static_assert(fault != StatedNumber::golden_command, "pinnquad: a golden command is NaN or infinite");
+    static_assert(fault != StatedNumber::golden_vector, "pinnquad: a golden vector lies outside the model's envelope");
+    static_assert(are_header_figures<M>(),
+                  "pinnquad: an R^2 of the model is above 1 or no number (test_r_squared, "
+                  "linear_regression_r_squared)");
+    static_assert(header_verdict_is_borne_out<M>(),
+                  "pinnquad: the model's verdict is not that of its R^2 (test_r_squared, linear_regression_r_squared, "
+                  "worse_than_mean, beats_linear_regression)");
     static_assert(same_contents<M>(),
                   "pinnquad: the header, or the airframe that it was trained for, was edited since it was exported: "
                   "a number, a name or a text is another (contents_hash); export it again");

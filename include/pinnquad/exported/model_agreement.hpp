@@ -100,18 +100,6 @@ constexpr bool same_residual_range(const Scalar* lower, const Scalar* upper, boo
 /// A proven sign is the one by which the rotor makes the torque, or 0: nothing is said.
 constexpr bool true_slope_sign(int stated, int torque_sign) noexcept { return stated == 0 || stated == torque_sign; }
 
-/// The statistics of a distance: means inside the envelope, a triangle with a diagonal above 0, row by row, a limit
-/// above 0.
-template <class Scalar>
-constexpr bool is_distance(const Scalar* mean, const Scalar* triangle, Scalar limit, const Scalar* lower,
-                           const Scalar* upper, std::size_t size) noexcept {
-  bool sound = inside_envelope(lower, mean, upper, size) && limit > Scalar(0);
-  for (std::size_t row = 0, diagonal = 0; row < size; ++row, diagonal += row + 1) {
-    sound = sound && triangle[diagonal] > Scalar(0);
-  }
-  return sound;
-}
-
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 }  // namespace pinnquad

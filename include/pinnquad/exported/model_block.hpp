@@ -83,6 +83,8 @@ enum class BlockRecord : std::uint16_t {
   provenance = 18,   ///< name and value in turn, every text closed by a 0; optional
   affine = 19,       ///< scalars: commands at outputs 0, then by each output, of a schema that no library has; optional
   bias = 20,         ///< scalars: time constants of the bias of the four signed sums, s, 0 none is learnt; optional
+  unrounded = 21,    ///< f64 of the header that the records above round: lower and upper command, sample period s, lag
+                     ///< removed s, 16 of the allocation; where contents_hash can't be computed from those; optional
 };
 
 /// Bit of a record's type: a reader that does not know the record refuses the block.
@@ -95,7 +97,7 @@ PINNQUAD_ALWAYS_INLINE constexpr bool is_block_version(std::uint32_t version) no
   return version >= oldest_model_block_version && version <= model_block_version && version != 3;
 }
 
-inline constexpr std::uint32_t block_record_types = 20;
+inline constexpr std::uint32_t block_record_types = 21;
 
 /// The most bytes of a block's provenance.
 inline constexpr std::uint32_t longest_provenance = 4096;
@@ -143,7 +145,8 @@ constexpr RecordLengths record_lengths(std::uint32_t scalar, std::uint32_t input
            12 * 8,
            0,
            rotors * (1 + outputs) * scalar,
-           4 * scalar}};
+           4 * scalar,
+           (4 + 4 * rotors) * 8}};
 }
 
 /// The bytes of texts, each closed by a 0.

@@ -13,6 +13,7 @@
 #include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/exported/stated_numbers.hpp"
 #include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/model/description.hpp"
 #include "pinnquad/outputs/base.hpp"
@@ -239,19 +240,11 @@ constexpr double header_period_s() noexcept {
   }
 }
 
-/// The longest time constant of a bias that is one.
-inline constexpr double longest_bias_time_constant_s = 60;
-
-/// True for four times of 0 to the longest; false for NaN.
+/// True for four times that are one each; false for NaN.
 template <class Times>
 constexpr bool are_bias_time_constants(const Times& times_s) noexcept {
-  bool sound = true;
-  for (std::size_t i = 0; i < 4; ++i) {
-    sound = sound && times_s[i] >= 0 && static_cast<double>(times_s[i]) <= longest_bias_time_constant_s;
-  }
-  return sound;
+  return all_in_range<StatedNumber::bias_time_constant_s>(times_s, 4);
 }
-
 /// Numbers in the lower triangle of a Size x Size matrix.
 constexpr std::size_t triangle(std::size_t size) noexcept { return size * (size + 1) / 2; }
 
@@ -320,23 +313,24 @@ constexpr void require_optional_records() noexcept {
     static_assert(four, "pinnquad: the model's time constants of a bias are not four (bias_time_constants_s)");
     if constexpr (four) {
       static_assert(are_bias_time_constants(M::bias_time_constants_s),
-                    "pinnquad: a time constant of the model's bias is no time of 0 to 60 s (bias_time_constants_s)");
+                    "pinnquad: a time constant of the model's bias is no time of 0 to 60 s that a bias can have: 0 "
+                    "(none of this sum), or 0.02 s and more (bias_time_constants_s)");
     }
   }
   if constexpr (is_detected<DistanceStatisticsOf, M>) {
     constexpr auto size = static_cast<std::size_t>(M::Features::size);
     constexpr bool numbers = M::distance_mean.size() == size && M::distance_inverse_cholesky.size() == triangle(size) &&
                              all_finite_constants(M::distance_mean) &&
-                             all_finite_constants(M::distance_inverse_cholesky) && M::distance_limit > 0 &&
-                             is_finite_constant(M::distance_limit);
+                             all_finite_constants(M::distance_inverse_cholesky) &&
+                             in_range<StatedNumber::distance_limit>(static_cast<double>(M::distance_limit));
     static_assert(
         numbers,
         "pinnquad: the model's statistics of a distance don't have the length of the feature set, or hold what "
         "is no number (distance_mean)");
     if constexpr (numbers) {
       static_assert(
-          is_distance(M::distance_mean.data(), M::distance_inverse_cholesky.data(), M::distance_limit,
-                      M::envelope_lower.data(), M::envelope_upper.data(), size),
+          inside_envelope(M::envelope_lower.data(), M::distance_mean.data(), M::envelope_upper.data(), size) &&
+              is_triangle(FiniteConstant{}, M::distance_inverse_cholesky.data(), size, false),
           "pinnquad: the model's statistics of a distance have a mean outside the envelope, or a diagonal that "
           "is not above 0 (distance_mean, distance_inverse_cholesky)");
     }
@@ -356,11 +350,13 @@ constexpr void require_records() noexcept {
     using Window = WindowOf<typename M::Features>;
     static_assert(describes<typename M::Network>(M::answer),
                   "pinnquad: the model's parameters are of another answer than its Network now is (answer)");
-    static_assert(M::command_lower <= M::command_upper && is_finite_constant(M::command_lower) &&
-                      is_finite_constant(M::command_upper),
-                  "pinnquad: the range of the model's commands is none (command_lower, command_upper)");
-    static_assert(is_clock_time(M::sample_period_s) && is_clock_time(M::lag_removed_s),
-                  "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s");
+    static_assert(is_command_range(M::command_lower, M::command_upper),
+                  "pinnquad: the range of the model's commands is none, or beyond -1 to 1: a command is a share of the "
+                  "full one (command_lower, command_upper)");
+    static_assert(in_range<StatedNumber::sample_period_s>(M::sample_period_s) &&
+                      in_range<StatedNumber::lag_removed_s>(M::lag_removed_s),
+                  "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s that it can be: a period "
+                  "is 0 (not said) or 0.00001 s and more, a lag 1 s at most (sample_period_s, lag_removed_s)");
     static_assert(M::window_taps == Window::taps && M::causal == Window::causal,
                   "pinnquad: the model has another window than its feature set now has (window_taps, causal)");
     static_assert(Window::period_s <= 0.0 || same_period(M::sample_period_s, Window::period_s),

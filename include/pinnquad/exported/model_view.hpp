@@ -7,9 +7,10 @@
 #include <limits>
 
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/exported/block_contents.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_block.hpp"
+#include "pinnquad/exported/stated_certificate.hpp"
 #include "pinnquad/model/predictor.hpp"
 
 namespace pinnquad {
@@ -120,19 +121,27 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
         {sizeof(Scalar), Layout::inputs, Layout::outputs, Layout::parameter_count, shape_hash<ShapeType>});
     if (checked != Status::ok) return checked;
     const std::size_t whole = detail::read_u32(bytes + Header::length);
-    ModelRecords<Scalar> records{};
+    const std::uint32_t version = detail::read_u32(bytes + Header::version);
+    detail::BlockRecords<Scalar> records;
     std::size_t record_bytes = 0;
     const Status read =
-        detail::read_u32(bytes + Header::version) < 2
-            ? Status::ok  // version 1 has none
+        version < 2  // has none
+            ? Status::ok
             : detail::RecordReader<ShapeType>::read(bytes + Header::size, whole - Header::size - Header::checksum_size,
-                                                    records, record_bytes);
+                                                    version, records, record_bytes);
     if (read != Status::ok) return read;
     const std::uint32_t golden = detail::read_u32(bytes + Header::golden_vectors);
     if (golden == 0 || Layout::length(golden) != whole - record_bytes) return Status::block_corrupt;
     // aligned, and of this scalar type: the header says so
     const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes + Header::size + record_bytes));
-    if (!sound(scalars, golden, records)) return Status::block_corrupt;
+    const detail::BlockNumbers<Scalar> numbers{scalars,
+                                               Layout::inputs,
+                                               Layout::outputs,
+                                               golden,
+                                               Layout::parameter_count,
+                                               detail::read_u32(bytes + Header::training_rows),
+                                               detail::read_u64(bytes + Header::training_data_hash)};
+    if (!sound(numbers, records, version)) return Status::block_corrupt;
 
     copy(scalars + Layout::input_mean, view.input.mean);
     copy(scalars + Layout::input_deviation, view.input.standard_deviation);
@@ -195,44 +204,22 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
     std::memcpy(&to, from, sizeof to);
   }
 
-  static bool sound(const Scalar* scalars, std::size_t golden, const ModelRecords<Scalar>& records) noexcept {
-    using Layout = ModelBlockLayout<ShapeType>;
-    const std::size_t count = Layout::parameters(golden) + Layout::parameter_count;
-    const Scalar* lower = scalars + Layout::envelope_lower;
-    const Scalar* upper = scalars + Layout::envelope_upper;
-    bool sound = true;
-    for (std::size_t i = 0; i < count; ++i) sound &= is_finite(scalars[i]);
-    for (std::size_t i = 0; i < Layout::inputs; ++i) sound &= scalars[Layout::input_deviation + i] > Scalar(0);
-    for (std::size_t i = 0; i < Layout::outputs; ++i) sound &= scalars[Layout::output_deviation + i] > Scalar(0);
-    sound &= detail::is_envelope(scalars + Layout::input_mean, scalars + Layout::input_deviation, lower, upper,
-                                 Layout::inputs);
-    for (std::size_t row = 0; row < golden; ++row) {
-      const Scalar* x = scalars + Layout::golden_features + row * Layout::inputs;
-      sound &= detail::inside_envelope(lower, x, upper, Layout::inputs);
-    }
-    if (records.distance != nullptr) {
-      const Scalar* triangle = records.distance + Layout::inputs;
-      sound &= detail::is_distance(records.distance, triangle, triangle[detail::triangle(Layout::inputs)], lower, upper,
-                                   Layout::inputs);
-    }
-    using Structure = detail::StatedStructure<Network>;
-    if constexpr (Structure::known) {
-      const Scalar* bounds = nullptr;
-      if constexpr (Structure::at >= 0) bounds = scalars + Layout::parameters(golden) + Structure::at;
-      if (records.residual_range != nullptr) {
-        sound &= detail::same_residual_range(records.residual_range, records.residual_range + Layout::outputs,
-                                             Structure::at >= 0, bounds, scalars + Layout::output_deviation,
-                                             Layout::outputs);
-      }
-    }
+  static bool sound(const detail::BlockNumbers<Scalar>& numbers, const detail::BlockRecords<Scalar>& records,
+                    std::uint32_t version) noexcept {
+    constexpr detail::BlockStructure structure = detail::block_structure<Network>();
+    constexpr auto allocation = pinnquad::allocation(airframe_value<typename ShapeType::Vehicle, double>());
+    constexpr detail::TorqueSigns signs = motor_torque_signs<typename ShapeType::Vehicle>();
+    const detail::BlockVehicle vehicle{detail::first_of<double>(allocation), detail::first_of<int>(signs)};
+    using detail::StatedNumber;
+    bool sound = detail::fault_of_block(records, numbers, structure, vehicle, version >= 4) == StatedNumber::none;
     if constexpr (has_certificate<ShapeType>) {
-      constexpr auto vehicle =
+      constexpr auto certified =
           detail::certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());
-      const Certificate certificate = certificate_of<ShapeType>(
-          vehicle, scalars + Layout::parameters(golden),
-          {scalars + Layout::input_mean, scalars + Layout::input_deviation, scalars + Layout::output_mean,
-           scalars + Layout::output_deviation, scalars + Layout::envelope_lower, scalars + Layout::envelope_upper});
+      const Certificate certificate = certificate_of<ShapeType>(certified, numbers.parameters(), numbers.scales());
       sound &= certificate.proven();
+      sound &= records.certificate == nullptr || detail::states_certificate(records.certificate, certificate);
+    } else {
+      sound &= records.certificate == nullptr;
     }
     return sound;
   }

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/exported/block_contents.hpp"
 #include "pinnquad/exported/run_time_features.hpp"
 #include "pinnquad/exported/run_time_network.hpp"
 #include "pinnquad/exported/run_time_outputs.hpp"
@@ -20,7 +20,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// The fault of a block, in words: a refusal on the ground says both.
 struct BlockFault {
   const char* expected = nullptr;
-  const char* found = nullptr;
+  const char* found = nullptr;  ///< "" where a number is
+  double number = 0;
 };
 
 /// A model of a block that is known at run time alone: every layer, column and schema is as the block describes it.
@@ -47,12 +48,14 @@ class RunTimeModel {
   const Airframe<Scalar>& flown_airframe() const noexcept { return flown_; }
   const Records& records() const noexcept { return records_; }
   const detail::Scales<Scalar>& scales() const noexcept { return scales_; }
-  const Scalar* parameters() const noexcept { return parameters_; }
-  int golden_count() const noexcept { return golden_count_; }
-  const Scalar* golden_features(int vector) const noexcept { return golden_features_ + vector * features_.size(); }
-  const Scalar* golden_commands(int vector) const noexcept { return golden_commands_ + vector * rotor_count; }
-  std::uint32_t training_rows() const noexcept { return training_rows_; }
-  std::uint64_t training_data_hash() const noexcept { return training_data_hash_; }
+  const Scalar* parameters() const noexcept { return numbers_.parameters(); }
+  int golden_count() const noexcept { return static_cast<int>(numbers_.golden); }
+  const Scalar* golden_features(int vector) const noexcept {
+    return numbers_.golden_features() + vector * features_.size();
+  }
+  const Scalar* golden_commands(int vector) const noexcept { return numbers_.golden_commands() + vector * rotor_count; }
+  std::uint32_t training_rows() const noexcept { return numbers_.training_rows; }
+  std::uint64_t training_data_hash() const noexcept { return numbers_.training_data_hash; }
   std::uint64_t shape_hash() const noexcept { return shape_hash_; }
 
   /// Entries of Scalar that commands() works in.
@@ -72,7 +75,7 @@ class RunTimeModel {
     static_assert(sizeof(Values<Scalar, 1>) == sizeof(Scalar));
     using Entry = Values<Scalar, 1>;
     auto* made = reinterpret_cast<Entry*>(work);
-    network_.template forward<Scalar, 1>(parameters_, reinterpret_cast<const Entry*>(standardised), made,
+    network_.template forward<Scalar, 1>(parameters(), reinterpret_cast<const Entry*>(standardised), made,
                                          made + network_.outputs());
     for (int k = 0; k < network_.outputs(); ++k) {
       work[k] = work[k] * scales_.output_deviation[k] + scales_.output_mean[k];
@@ -97,7 +100,7 @@ class RunTimeModel {
   /// Largest difference of a golden command from what the weights make of its features; NaN where one is none.
   Scalar golden_difference(Scalar* work) const noexcept {
     Scalar largest(0);
-    for (int vector = 0; vector < golden_count_; ++vector) {
+    for (int vector = 0; vector < golden_count(); ++vector) {
       Scalar u[rotor_count];
       commands(golden_features(vector), static_cast<Scalar*>(u), work);
       for (int i = 0; i < rotor_count; ++i) {
@@ -159,21 +162,23 @@ class RunTimeModel {
     const std::size_t behind = length - Layout::size - Layout::checksum_size;
     const Status read =
         detail::read_records<Scalar>(block + Layout::size, behind, inputs, outputs, records_, record_bytes);
-    if (read == Status::block_incompatible) return refuse(fault, read, "records that are known", "a newer one");
-    if (read != Status::ok) return refuse(fault, read, "records that fit, with numbers", "others");
+    if (read != Status::ok) return refuse(fault, read, records_.fault);
     const std::uint64_t scalars =
         4 * inputs + 2 * outputs + std::uint64_t{golden} * (inputs + rotor_count) + parameters;  // must not wrap around
     if (behind - record_bytes != scalars * sizeof(Scalar)) {
       return refuse(fault, Status::block_corrupt, "counts that fit its length", "others");
     }
-    place(static_cast<const Scalar*>(static_cast<const void*>(block + Layout::size + record_bytes)), inputs, outputs,
-          golden);
-    training_rows_ = detail::read_u32(block + Layout::training_rows);
+    numbers_ = {static_cast<const Scalar*>(static_cast<const void*>(block + Layout::size + record_bytes)),
+                inputs,
+                outputs,
+                golden,
+                parameters,
+                detail::read_u32(block + Layout::training_rows),
+                detail::read_u64(block + Layout::training_data_hash)};
+    scales_ = numbers_.scales();
     shape_hash_ = detail::read_u64(block + Layout::shape_hash);
-    training_data_hash_ = detail::read_u64(block + Layout::training_data_hash);
     const Status described = describe(inputs, outputs, parameters, fault);
-    if (described != Status::ok) return described;
-    return sound(static_cast<std::size_t>(scalars), fault);
+    return described == Status::ok ? sound(fault) : described;
   }
 
   static Status refuse(BlockFault& fault, Status status, const char* expected, const char* found) noexcept {
@@ -181,18 +186,10 @@ class RunTimeModel {
     return status;
   }
 
-  void place(const Scalar* at, std::size_t inputs, std::size_t outputs, std::size_t golden) noexcept {
-    first_ = at;
-    scales_ = {at,
-               at + inputs,
-               at + 2 * inputs,
-               at + 2 * inputs + outputs,
-               at + 2 * inputs + 2 * outputs,
-               at + 3 * inputs + 2 * outputs};
-    golden_features_ = at + 4 * inputs + 2 * outputs;
-    golden_commands_ = golden_features_ + golden * inputs;
-    parameters_ = golden_commands_ + golden * rotor_count;
-    golden_count_ = static_cast<int>(golden);
+  static Status refuse(BlockFault& fault, Status status, const detail::StatedFault& stated) noexcept {
+    const detail::StatedRange& range = detail::stated_ranges[static_cast<std::size_t>(stated.number)];
+    fault = {range.expected, range.found, stated.value};
+    return status;
   }
 
   /// Takes the description apart and compares what it says twice.
@@ -203,11 +200,7 @@ class RunTimeModel {
     const auto corrupt = [&fault](const char* expected, const char* found) {
       return refuse(fault, Status::block_corrupt, expected, found);
     };
-    for (const BlockRecord record :
-         {BlockRecord::commands, BlockRecord::clock, BlockRecord::window, BlockRecord::allocation, BlockRecord::answer,
-          BlockRecord::features, BlockRecord::outputs, BlockRecord::vehicle, BlockRecord::contents}) {
-      if (!records_.said(record)) return corrupt("all records of a block that describes itself", "one less");
-    }
+    if (!records_.describes_itself()) return corrupt("all records of a block that describes itself", "one less");
     if (!network_.parse(records_.answer)) {
       return incompatible("a network of dense layers and known activations, or a monotone model of one", "another");
     }
@@ -317,58 +310,18 @@ class RunTimeModel {
     return fnv.hash;
   }
 
-  /// The numbers, as ModelView::open() wants them.
-  Status sound(std::size_t scalars, BlockFault& fault) const noexcept {
-    const auto corrupt = [&fault](const char* expected, const char* found) {
-      return refuse(fault, Status::block_corrupt, expected, found);
-    };
-    const auto inputs = std::size_t(features_.size()), outputs = std::size_t(network_.outputs());
-    bool finite = true, positive = true;
-    for (std::size_t i = 0; i < scalars; ++i) finite &= is_finite(first_[i]);
-    if (!finite) return corrupt("numbers", "NaN or Inf");
-    for (std::size_t i = 0; i < inputs; ++i) positive &= scales_.input_deviation[i] > Scalar(0);
-    for (std::size_t i = 0; i < outputs; ++i) positive &= scales_.output_deviation[i] > Scalar(0);
-    if (!positive) return corrupt("standard deviations above 0", "another");
-    if (!detail::is_envelope(scales_.input_mean, scales_.input_deviation, scales_.lower, scales_.upper, inputs)) {
-      return corrupt("an envelope about the features' mean, as far as their standard deviation lets a training reach",
-                     "another");
-    }
-    for (int vector = 0; vector < golden_count_; ++vector) {
-      if (!inside_envelope(golden_features(vector))) {
-        return corrupt("golden vectors inside the envelope", "one outside of it");
-      }
-    }
-    if (const Scalar* distance = records_.distance) {
-      const Scalar* triangle = distance + inputs;
-      if (!detail::is_distance(distance, triangle, triangle[detail::triangle(inputs)], scales_.lower, scales_.upper,
-                               inputs)) {
-        return corrupt("statistics of a distance", "a mean outside the envelope, or a diagonal or a limit not above 0");
-      }
-    }
-    return structure_sound(fault);
-  }
-
-  /// Of a base in closed form, alone or with a residual between bounds: the numbers that are said twice
-  /// (detail::StatedStructure).
-  Status structure_sound(BlockFault& fault) const noexcept {
+  /// Numbers and contents, as ModelView::open() wants them.
+  Status sound(BlockFault& fault) const noexcept {
     const RunTimePart& base = network_.part(0);
     const bool has_residual = network_.part_count() == 2 && network_.part(1).bounded;
-    if (!base.axis_aligned || (network_.part_count() > 1 && !has_residual)) return Status::ok;
-    if (const signed char* stated = records_.slope_signs) {
-      const auto own = motor_torque_signs(airframe_);
-      for (std::size_t i = 0; i < std::size_t(3 * rotor_count); ++i) {
-        if (detail::true_slope_sign(stated[i], own[i / 3][i % 3])) continue;
-        return refuse(fault, Status::block_corrupt, "slope signs of the torques that its rotors make", "another");
-      }
-    }
-    const auto outputs = std::size_t(network_.outputs());
-    const Scalar* range = records_.residual_range;
-    if (range != nullptr &&
-        !detail::same_residual_range(range, range + outputs, has_residual, parameters_ + base.parameter_count,
-                                     scales_.output_deviation, outputs)) {
-      return refuse(fault, Status::block_corrupt, "a range of the residual as its parameters bound it", "another");
-    }
-    return Status::ok;
+    const detail::BlockStructure structure{base.axis_aligned && (network_.part_count() == 1 || has_residual),
+                                           has_residual, std::size_t(base.parameter_count)};
+    const AllocationMatrix<double> own = allocation(airframe_);
+    const detail::TorqueSigns signs = motor_torque_signs(airframe_);
+    const detail::BlockVehicle vehicle{detail::first_of<double>(own), detail::first_of<int>(signs)};
+    const detail::StatedNumber number = detail::fault_of_block(records_, numbers_, structure, vehicle, true);
+    if (number == detail::StatedNumber::none) return Status::ok;
+    return refuse(fault, Status::block_corrupt, detail::StatedFault{number});
   }
 
   RunTimeNetwork network_;
@@ -378,14 +331,9 @@ class RunTimeModel {
   Airframe<double> airframe_;
   Airframe<Scalar> flown_;
   std::string_view schema_, output_texts_;
-  const Scalar* first_ = nullptr;
+  detail::BlockNumbers<Scalar> numbers_;
   detail::Scales<Scalar> scales_{};
-  const Scalar* golden_features_ = nullptr;
-  const Scalar* golden_commands_ = nullptr;
-  const Scalar* parameters_ = nullptr;
-  std::uint64_t training_data_hash_ = 0, shape_hash_ = 0;
-  std::uint32_t training_rows_ = 0;
-  int golden_count_ = 0;
+  std::uint64_t shape_hash_ = 0;
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
