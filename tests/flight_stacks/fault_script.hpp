@@ -13,6 +13,7 @@ enum class FaultKind {
   attitude_stops,
   local_stops,
   set_point_stops,
+  set_point_jumps,  ///< to the north, by `value` m
   nan_everywhere,
   infinite_rates,
   denormal_motion,   ///< body rates and velocity

@@ -233,7 +233,11 @@ class FaultyFlight {
     if (due(local_period_ms) && !faulty(FaultKind::local_stops)) {
       stack_.local(stamp_us - late_us, estimated_[0], estimated_[1]);
     }
-    if (due(set_point_period_ms) && !faulty(FaultKind::set_point_stops)) stack_.set_point(stamp_us, point);
+    if (due(set_point_period_ms) && !faulty(FaultKind::set_point_stops)) {
+      TrajectoryPoint<double> asked = point;
+      asked.position_m[0] += value_of(FaultKind::set_point_jumps, 0);
+      stack_.set_point(stamp_us, asked);
+    }
     if (due(battery_period_ms)) stack_.battery(stamp_us, faulty(FaultKind::battery_stops) ? 0 : 15);
   }
 

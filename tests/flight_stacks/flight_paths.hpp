@@ -28,6 +28,11 @@ struct Eight {
   TrajectoryPoint<double> operator()(double time_s) const { return path.sample(time_s); }
 };
 
+/// 24 m by 12 m at up to 8 m/s, where the airframe has no thrust to spare.
+struct FastEight : Eight {
+  FastEight() : Eight(12, 13) {}
+};
+
 /// Another place and yaw every 2 s, in a box: steps, no path.
 struct RandomPlaces {
   std::vector<TrajectoryPoint<double>> places;

@@ -85,7 +85,7 @@ class Px4StackOf {
       m.position[i] = static_cast<float>(point.position_m[i]);
       m.velocity[i] = static_cast<float>(point.velocity_m_s[i]);
       m.acceleration[i] = static_cast<float>(point.acceleration_m_s2[i]);
-      m.jerk[i] = std::numeric_limits<float>::quiet_NaN();
+      m.jerk[i] = static_cast<float>(point.jerk_m_s3[i]);
     }
     m.yaw = static_cast<float>(point.yaw_rad);
     m.yawspeed = static_cast<float>(point.yaw_rate_rad_s);

@@ -242,6 +242,27 @@ class FlightController {
     return Vector3<Scalar>(north * scale, east * scale, gravity_m_s2_ - up);
   }
 
+  /// The jerk (NED) beside a limited acceleration: it turns the thrust no faster than an attitude error may, so that
+  /// feedback can hold against a wrong one.
+  Vector3<Scalar> limited_jerk(const Vector3<Scalar>& jerk_m_s3, const Vector3<Scalar>& acceleration_m_s2) const noexcept {
+    using std::sqrt;
+    const Vector3<Scalar> force = acceleration_m_s2 - Vector3<Scalar>(Scalar(0), Scalar(0), gravity_m_s2_);
+    const Scalar most = limits_.max_roll_pitch_rate_rad_s * limits_.max_roll_pitch_rate_rad_s * force.squaredNorm();
+    const Scalar asked = jerk_m_s3.squaredNorm();
+    if (!(asked > most)) return jerk_m_s3;
+    return jerk_m_s3 * sqrt(most / asked);
+  }
+
+  /// The angular acceleration (FRD) within the limits: roll and pitch by one share, yaw by its own.
+  Vector3<Scalar> limited_turn(const Vector3<Scalar>& acceleration_rad_s2) const noexcept {
+    Vector3<Scalar> result = acceleration_rad_s2;
+    shorten(result, limits_.max_roll_pitch_acceleration_rad_s2);
+    const Scalar most = limits_.max_yaw_acceleration_rad_s2;
+    if (result[2] > most) result[2] = most;
+    if (result[2] < -most) result[2] = -most;
+    return result;
+  }
+
  private:
   /// The speed at this distance from which the position loop stops with no more than this deceleration.
   Scalar stoppable(Scalar far_m, Scalar deceleration_m_s2) const noexcept {
@@ -272,12 +293,9 @@ class FlightController {
     shorten(turn, limits_.max_roll_pitch_rate_rad_s);
     turn[2] = gains_.yaw_1_s * two * error.z;
     const Vector3<Scalar> rate_error = reference_rates + turn - state.body_rates_rad_s;
-    Vector3<Scalar> result = rate_error * gains_.roll_pitch_rate_1_s;
-    shorten(result, limits_.max_roll_pitch_acceleration_rad_s2);
-    const Scalar most = limits_.max_yaw_acceleration_rad_s2;
-    const Scalar yaw = gains_.yaw_rate_1_s * rate_error[2];
-    result[2] = yaw > most ? most : (yaw < -most ? -most : yaw);
-    return result;
+    Vector3<Scalar> wanted = rate_error * gains_.roll_pitch_rate_1_s;
+    wanted[2] = gains_.yaw_rate_1_s * rate_error[2];
+    return limited_turn(wanted);
   }
 
   /// Shortens the (x, y) part to a length; its direction stays.

@@ -83,12 +83,17 @@ inline Status check_sample(const Vector3<float>& v) noexcept {
 }
 
 /// A number that is not finite is not asked for. `not_finite` if no position, velocity or acceleration is.
+/// `out_of_range` where a number is beyond most_plausible.
 inline Status check_set_point(const TrajectoryPoint<float>& wanted) noexcept {
+  const auto beyond = [](float value) noexcept {
+    return is_finite(value) && (value > most_plausible || value < -most_plausible);
+  };
+  if (beyond(wanted.yaw_rad) || beyond(wanted.yaw_rate_rad_s)) return Status::out_of_range;
   Status checked = Status::not_finite;
   for (const auto* v : {&wanted.position_m, &wanted.velocity_m_s, &wanted.acceleration_m_s2, &wanted.jerk_m_s3}) {
     for (int i = 0; i < 3; ++i) {
       if (!is_finite((*v)[i])) continue;
-      if ((*v)[i] > most_plausible || (*v)[i] < -most_plausible) return Status::out_of_range;
+      if (beyond((*v)[i])) return Status::out_of_range;
       if (v != &wanted.jerk_m_s3) checked = Status::ok;
     }
   }

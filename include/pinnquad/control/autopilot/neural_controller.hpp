@@ -310,7 +310,9 @@ class NeuralController {
     return detail::completed(set_point_.value(), now, point.yaw_rad);
   }
 
-  /// Outer loop, then the inverse. The network answers the whole demand, feed-forward and feedback together.
+  /// Outer loop, then the inverse. The network answers the whole demand, feed-forward and feedback together. Fresh,
+  /// finite inputs always get an answer: the demand is limited (want()), never refused. An analytic inverse declines
+  /// where an effect of its vehicle has no answer.
   Status ask(const Inverse& inverse, Reaction reaction, Commands<float>& commands, StepReport& report) noexcept {
     MotionInputs<float> wanted;
     const Status outer = want(reaction, wanted);
@@ -323,9 +325,8 @@ class NeuralController {
       return report.cause;
     }
     Commands<float> replaced{};
-    Status status = analytic_(wanted, replaced);
-    if (has_output(status)) status = NetworkGuard::check_commands(replaced.data());
-    if (!has_output(status)) return report.cause;
+    // not refused for its size: the demand is limited, and desaturate() brings what is left into the range
+    if (!has_output(analytic_(wanted, replaced))) return report.cause;
     analytic_bias().add_to(replaced);
     commands = replaced;
     return Status::fell_back;
@@ -350,10 +351,11 @@ class NeuralController {
     // a vehicle that levels: thrust alone, so that level stays level
     if (reaction != Reaction::levels) point.acceleration_m_s2 -= analytic_bias().across_m_s2();
     point.acceleration_m_s2 = outer_loop_.limited(point.acceleration_m_s2);
+    point.jerk_m_s3 = outer_loop_.limited_jerk(point.jerk_m_s3, point.acceleration_m_s2);
     const Status outer = outer_loop_(now, point, wanted, feedback);
     if (outer != Status::ok) return outer;
     wanted.linear_m_s2 += feedback.linear_m_s2;
-    wanted.angular_rad_s2 += feedback.angular_rad_s2;
+    wanted.angular_rad_s2 = outer_loop_.limited_turn(wanted.angular_rad_s2 + feedback.angular_rad_s2);
     // rotors make no lateral force: the network has seen what gravity and rotation leave of it
     const Vector3<float> at_rest = body_derivative<float>(now, {0.0f, 0.0f, vehicle_.site().gravity_m_s2});
     wanted.linear_m_s2[0] = at_rest[0];
