@@ -10,6 +10,7 @@
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/simulation/flights.hpp"
 
 namespace programs {
 
@@ -19,6 +20,7 @@ using namespace pinnquad;
 
 using Distant = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
 using InGroundEffect = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
+using InOtherGroundEffect = Quadrotor<double, StandardAtmosphere, QuadraticDrag, CheesemanBennettGroundEffect>;
 
 AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const ModelRange& range, LoopFlights& flights) {
   constexpr const char* none = "the model's envelope holds no trajectory of this kind, however slow: --no-envelope";
@@ -94,7 +96,9 @@ ModelRange range_of(const BlockModel& model) {
 }
 
 LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
-  return model.features().asks_for_altitude() ? fly_with<InGroundEffect>(model, plan) : fly_with<Distant>(model, plan);
+  if (!model.features().asks_for_altitude()) return fly_with<Distant>(model, plan);
+  const bool has_fit = NearGroundFlight::ground_effect_of(plan.airframe) == GroundEffectModel::conyers;
+  return has_fit ? fly_with<InGroundEffect>(model, plan) : fly_with<InOtherGroundEffect>(model, plan);
 }
 
 }  // namespace programs

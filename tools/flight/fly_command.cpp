@@ -151,9 +151,18 @@ class ChosenFlight {
 
   /// An airframe that the controller can't hold up here is refused before it flies.
   void require_thrust() const {
+    const Status status = with_quadrotor(vehicle_, [](const auto& quadrotor) { return quadrotor.status(); });
+    if (status == Status::out_of_range && ground_effect_ == GroundEffectModel::conyers) {
+      throw std::invalid_argument(name_ + " cannot fly " + PaperFlight::name +
+                                  " so: the ground effect conyers has no fit for a frame and propellers of this size; "
+                                  "--ground-effect cheeseman-bennett has");
+    }
     const double hover = hover_command(vehicle_, plan_.start_m);
     constexpr double most = 0.97;  // of its thrust: flight_limits
     if (hover < most) return;
+    if (!is_finite(hover)) {
+      throw std::invalid_argument(name_ + " cannot fly " + PaperFlight::name + ": no commands hold it in hover there");
+    }
     char text[200];
     std::snprintf(text, sizeof text,
                   " cannot fly %s: its hover takes %.0f %% of its thrust, %.0f %% is what the controller uses",
@@ -238,6 +247,10 @@ class ChosenFlight {
     std::printf("altitude    %.*f to %.*f m above ground\n", report.max_altitude_m < 5 ? 2 : 1, report.min_altitude_m,
                 report.max_altitude_m < 5 ? 2 : 1, report.max_altitude_m);
     std::printf("saturation  a rotor at its limit in %.2f %% of the rows\n", 100 * report.saturated_share);
+    if (options_.ground_effect.empty() && ground_effect_ != PaperFlight::ground_effect) {
+      std::printf("note        the flight's own ground effect, %s, has no fit for a frame and propellers of this size\n",
+                  programs::name_of(PaperFlight::ground_effect));
+    }
     const std::array<double, 3> pcc = programs::axis_correlations(recorded.flight, airframe_);
     std::printf("correlation of angular acceleration and command sum: roll %.3f, pitch %.3f, yaw %.3f\n", pcc[0],
                 pcc[1], pcc[2]);
@@ -279,7 +292,11 @@ void with_all_choices(const FlyOptions& options, const Function& function) {
   const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
   const bool known = programs::with_flight(options.flight, [&](auto tag) {
     using PaperFlight = typename decltype(tag)::type;
-    function(tag, airframe, options.ground_effect.empty() ? PaperFlight::ground_effect : model);
+    GroundEffectModel own = PaperFlight::ground_effect;
+    if constexpr (PaperFlight::ground_effect == GroundEffectModel::conyers) {
+      own = PaperFlight::ground_effect_of(airframe.value);
+    }
+    function(tag, airframe, options.ground_effect.empty() ? own : model);
   });
   if (!known) {
     throw std::invalid_argument("no flight named '" + options.flight + "'; known: " + programs::flight_names());
@@ -331,7 +348,8 @@ void add_options(CLI::App& app, FlyOptions& options) {
       ->capture_default_str();
   add_number(app, "--max-speed", options.max_speed_m_s, 0.5, 8.0, "fastest the pilot flies, m/s (default: 8, d2 4)");
   app.add_option("--ground-effect", options.ground_effect,
-                 "none, cheeseman-bennett or conyers (default: d2 conyers, else none)")
+                 "none, cheeseman-bennett or conyers (default: d2 conyers, cheeseman-bennett where it has no fit for the "
+                 "airframe; else none)")
       ->type_name("MODEL");
   add_number(app, "--gyro-noise", options.gyro_noise_rad_s, 0.0, 10.0, "of the recording, standard deviation, rad/s");
   add_number(app, "--latency", options.latency_ms, 0.0, 1000.0, "of the recorded commands, ms");

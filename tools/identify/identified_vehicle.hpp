@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "airframe/choice.hpp"
@@ -44,7 +46,26 @@ inline NamedAirframe airframe_of(const pinnquad::logs::ImportedDataset& dataset)
 
 namespace detail {
 
-inline std::string why_no_airframe(const pinnquad::Identification& found) {
+/// "rotor lag is 1.33 s, where quadrotors have 0 to 0.2 s": with the columns, and what to look at.
+inline std::string implausible_in_words(const pinnquad::ImplausibleNumber& number) {
+  const std::string key = number.key, unit = number.unit[0] == '\0' ? "" : " " + std::string(number.unit);
+  const auto text = [](double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.3g", value);
+    return std::string(digits);
+  };
+  std::string column = "columns u1 to u4: ", look_at = "were the commands filtered, clipped or stamped late?";
+  for (const auto& [turn, rate] : {std::pair("roll", "w_x"), {"pitch", "w_y"}, {"yaw", "w_z"}}) {
+    if (key.rfind(turn, 0) != 0) continue;
+    column = "column " + std::string(rate) + ": ";
+    look_at = "look at its unit, rad/s, and at the range of the commands u1 to u4, 0 to 1";
+  }
+  if (key.rfind("inertia", 0) == 0) look_at = "look at the arms, in m, and at the range of the commands, 0 to 1";
+  return column + number.words + " is " + text(number.value) + unit + ", where quadrotors have " +
+         text(number.range.least) + " to " + text(number.range.most) + unit + ": " + look_at;
+}
+
+inline std::string why_no_airframe(const pinnquad::Identification& found, const pinnquad::Airframe<double>& like) {
   constexpr std::array<const char*, 4> needed = {"thrust_m_s2", "roll_effectiveness_rad_s2",
                                                  "pitch_effectiveness_rad_s2", "yaw_effectiveness_rad_s2"};
   constexpr std::array<const char*, 4> columns = {"vdot_bz", "w_x", "w_y", "w_z"};
@@ -66,10 +87,25 @@ inline std::string why_no_airframe(const pinnquad::Identification& found) {
                   : "not told, " + interval_text(number.estimate) + ", as " + number.moved + "; fly: " + number.flight);
     }
   }
+  if (const auto number = pinnquad::implausible_number(found, like)) return implausible_in_words(*number);
   return "no vehicle has these numbers";
 }
 
 }  // namespace detail
+
+/// Where roll and pitch are further apart than a quadrotor's; empty else.
+inline std::string unlike_axes_in_words(const pinnquad::Identification& found) {
+  const auto ratio = pinnquad::unlike_axes(found);
+  if (!ratio) return "";
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "roll effectiveness is %.3g rad/s^2 (%s), pitch effectiveness %.3g (%s): a quadrotor's are alike within "
+                "a factor of %.0f; look at the motor order, or fly more of the axis with the wider interval",
+                found.effectiveness_rad_s2[0].value, interval_text(found.effectiveness_rad_s2[0]).c_str(),
+                found.effectiveness_rad_s2[1].value, interval_text(found.effectiveness_rad_s2[1]).c_str(),
+                pinnquad::plausible::roll_over_pitch);
+  return text;
+}
 
 /// Of a dataset's flights, with the mass, the arms, the spins and the propeller of `like`. A lag that the import
 /// removed is in the delay again. Throws InputError, one line, for flights that no vehicle can be identified from.
@@ -81,9 +117,8 @@ inline IdentifiedVehicle identified_vehicle(const pinnquad::logs::ImportedDatase
   vehicle.found = pinnquad::identify(pinnquad::all_rows(flights), pinnquad::axis_signs(like), settings);
   vehicle.found.delay_s.value += dataset.lag_removed_s;
   vehicle.found.response_s.value += dataset.lag_removed_s;
-  const bool backwards = vehicle.found.effectiveness_rad_s2[2].high() < 0;
-  if (!backwards) vehicle.airframe = pinnquad::identified_airframe(vehicle.found, like);
-  if (!vehicle.airframe) vehicle.why_not = detail::why_no_airframe(vehicle.found);
+  vehicle.airframe = pinnquad::identified_airframe(vehicle.found, like);
+  if (!vehicle.airframe) vehicle.why_not = detail::why_no_airframe(vehicle.found, like);
   return vehicle;
 }
 

@@ -61,6 +61,8 @@ inline ToldVehicle told_vehicle(pinnquad::logs::ImportedDataset& dataset, const 
   stop_if_interrupted();
   if (!checked) pinnquad::logs::check_vehicle(dataset, like.value, false);
   pinnquad::logs::require_one_vehicle(dataset);
+  const std::string unlike = unlike_axes_in_words(vehicle.found);
+  if (!unlike.empty()) dataset.warnings.push_back(unlike);
   ToldVehicle told;
   told.found = vehicle.found;
   told.numbers = identified_numbers(vehicle.found);

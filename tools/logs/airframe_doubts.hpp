@@ -11,6 +11,7 @@
 #include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/dynamics/allocation.hpp"
 #include "pinnquad/io/decimal.hpp"
+#include "pinnquad/regression/plausible_vehicle.hpp"
 
 namespace pinnquad::logs {
 
@@ -83,12 +84,14 @@ inline std::vector<std::string> airframe_doubts(const Airframe<double>& a) {
   const std::array<double, 3> turn = greatest_turn_rad_s2(a);
   const std::array<const char*, 3> names = {"roll", "pitch", "yaw"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    outside(std::string("greatest ") + names[axis] + " acceleration", turn[axis], axis < 2 ? 15 : 1,
-            axis < 2 ? 3000 : 500, " rad/s^2", "look at inertia_kg_m2, in kg m^2, and the rotors' places");
+    const PlausibleRange range = plausible::turn_rad_s2[axis];
+    outside(std::string("greatest ") + names[axis] + " acceleration", turn[axis], range.least, range.most, " rad/s^2",
+            "look at inertia_kg_m2, in kg m^2, and the rotors' places");
   }
   outside("thrust coefficient", a.thrust_coefficient, 0.03, 0.3, "",
           "C_T = thrust / (rho n^2 D^4) with n in rev/s and rho in kg/m^3");
-  outside("rotor time constant", a.rotor_time_constant_s, 0, 0.2, " s", "look at rotor_time_constant_s, in s");
+  outside("rotor time constant", a.rotor_time_constant_s, plausible::rotor_lag_s.least, plausible::rotor_lag_s.most,
+          " s", "look at rotor_time_constant_s, in s");
   return doubts;
 }
 

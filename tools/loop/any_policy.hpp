@@ -32,11 +32,15 @@ class AnyPolicy {
   void integrate(const Motion& feedback) noexcept { held_->integrate(feedback); }
   pinnquad::Vector3<double> across_m_s2(const State& state) const noexcept { return held_->across_m_s2(state); }
   pinnquad::FallbackCount count() const noexcept { return held_->count(); }
+  /// A bias that it learns stands at its bound.
+  bool at_bound() const noexcept { return held_->at_bound(); }
   /// Of the policy alone, since it was made.
   double busy_s() const noexcept { return std::chrono::duration<double>(held_->busy).count(); }
 
  private:
   using Clock = std::chrono::steady_clock;
+  template <class Policy>
+  using AtBound = decltype(std::declval<const Policy&>().at_bound());
   struct Any {
     virtual ~Any() = default;
     virtual pinnquad::Status answer(const State&, const Motion&, std::uint64_t, Commands&) noexcept = 0;
@@ -44,6 +48,7 @@ class AnyPolicy {
     virtual void integrate(const Motion&) noexcept = 0;
     virtual pinnquad::Vector3<double> across_m_s2(const State&) const noexcept = 0;
     virtual pinnquad::FallbackCount count() const noexcept = 0;
+    virtual bool at_bound() const noexcept = 0;
     Clock::duration busy{0};
   };
   template <class Policy>
@@ -63,6 +68,10 @@ class AnyPolicy {
       return pinnquad::across_of(policy, state);
     }
     pinnquad::FallbackCount count() const noexcept override { return pinnquad::fallback_count(policy); }
+    bool at_bound() const noexcept override {
+      if constexpr (pinnquad::is_detected<AtBound, Policy>) return policy.at_bound();
+      return false;
+    }
     Policy policy;
   };
   struct Timed {

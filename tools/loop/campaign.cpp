@@ -187,11 +187,12 @@ class Loop {
     Errors errors;
     errors.period_s = period_s;
     errors.squares.reserve(static_cast<std::size_t>(how.duration_s / period_s) + 1);
-    double effort = 0;
+    double effort = 0, at_bound = 0;
     Commands<double> before{};
     const auto observer = [&](double, const TrajectoryPoint<double>& point, const VehicleState<double>& vehicle,
                               const Commands<double>& commands) noexcept {
       errors.squares.push_back((point.position_m - vehicle.body.position_m).squaredNorm());
+      at_bound += policy.at_bound() ? 1 : 0;
       errors.low = errors.low || vehicle.body.position_m[2] >= site.ground_z_m;
       for (std::size_t i = 0; i < commands.size(); ++i) {
         if (errors.squares.size() > 1) effort += std::abs(commands[i] - before[i]);
@@ -218,6 +219,7 @@ class Loop {
                           {"saturated_share", flown.saturated_share},
                           {"effort_1_s", effort / (ticks * period_s)},
                           {"step_ns", 1e9 * policy.busy_s() / ticks},
+                          {"bias_at_bound_share", at_bound / ticks},
                           {"answered_share", nullptr}};
     const auto recovered = errors.recovery_s(onset_s, usual_m);
     if (recovered && !crashed) row["recovery_s"] = *recovered;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -184,6 +185,7 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge<Vehicle>& kno
   for (std::size_t i = 0; i < bias.time_constants_s.size(); ++i) {
     bias.time_constants_s[i] /= gains.learning;
     at_once.time_constants_s[i] = 0;
+    at_once.most[i] = std::numeric_limits<double>::infinity();  // an increment from tick to tick, not a bias learnt
     slower.time_constants_s[i] = 0.05 / gains.learning;
   }
   bias.across_time_constant_s /= gains.learning;

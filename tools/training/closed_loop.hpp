@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 
 #include "airframe/choice.hpp"
 #include "flight/block_feed_forward.hpp"
+#include "flight/block_loop.hpp"
 #include "flight/loop_figures.hpp"
 #include "flight/loop_trajectories.hpp"
 #include "pinnquad/aero/drag.hpp"
@@ -154,12 +156,47 @@ inline std::string unfit_to_fly(const nlohmann::json& flown) {
     std::snprintf(text, sizeof text, "loses the vehicle in the closed loop (%.1f m off)",
                   model["largest_error_m"].get<double>());
   } else if (model["answered_share"] < least_answered) {
-    std::snprintf(text, sizeof text, "answers %.1f %% of a figure-eight that the logs' own limits hold",
+    std::snprintf(text, sizeof text, "answers %.1f %% of a figure-eight that the flights' own limits hold",
                   100 * model["answered_share"].get<double>());
+  } else if (model["rmse_m"] > flown["hover_trim"]["rmse_m"]) {
+    std::snprintf(text, sizeof text, "flies a figure-eight %.1f cm off, where hover trim alone is %.1f cm off",
+                  100 * model["rmse_m"].get<double>(), 100 * flown["hover_trim"]["rmse_m"].get<double>());
   } else {
     return turned_round(flown.value("against_formula", nlohmann::json::object()));
   }
   return text;
+}
+
+/// Of a model that is not fit to fly, and is exported: why, by how much, and what to do. Empty of one that is.
+inline std::string do_not_fly(const std::string& title, const nlohmann::json& flown) {
+  const std::string unfit = unfit_to_fly(flown);
+  if (unfit.empty()) return "";
+  char errors[160];
+  std::snprintf(errors, sizeof errors, " (model %.1f cm off, hover trim %.1f cm, analytic inverse %.1f cm)",
+                100 * flown["model"]["rmse_m"].get<double>(), 100 * flown["hover_trim"]["rmse_m"].get<double>(),
+                100 * flown["formula"]["rmse_m"].get<double>());
+  return title + " " + unfit + errors +
+         "; fly the analytic inverse of the airframe, or train on more and livelier flights of this vehicle";
+}
+
+/// The same of recorded flights, whose airframe was given: it flies as `pinnquad loop` does.
+inline nlohmann::json fly_given(const pinnquad::BlockModel& model, const pinnquad::RowSet& training,
+                                const pinnquad::Airframe<double>& airframe) {
+  try {
+    const LoopFlights flown = fly_loop(model, {loop_trajectories.front(), airframe, true, usual_columns(model, training)});
+    nlohmann::json result = {{"trajectory", "figure-eight"},
+                             {"half_length_m", flown.half_length_m},
+                             {"period_s", flown.period_s},
+                             {"formula", loop_figures(flown.analytic_inverse)},
+                             {"hover_trim", loop_figures(flown.hover_trim)},
+                             {"model", loop_figures(flown.model)},
+                             {"against_formula", nlohmann::json::object()}};
+    result["model"]["answered_share"] = answered_share(flown.model.fallback);
+    if (!lost_vehicle(result, "formula") && result["formula"]["rmse_m"] <= result["hover_trim"]["rmse_m"]) return result;
+    return {{"why_not", "the airframe's own analytic inverse does not fly it"}};
+  } catch (const std::invalid_argument& refused) {
+    return {{"why_not", refused.what()}};
+  }
 }
 
 /// Results of the flight, for report.json and the page; `why_not` alone where there was none. Under the guard of its

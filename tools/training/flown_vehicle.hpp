@@ -60,26 +60,28 @@ inline double usual_thrust_m_s2(const pinnquad::Dataset& flights, double curve) 
   return thrusts.empty() ? 0 : pinnquad::detail::median_of(std::move(thrusts));
 }
 
-inline bool is_told_above_zero(const pinnquad::Estimate& estimate) {
-  return pinnquad::is_told(estimate, 0.5) && estimate.value > 0;
-}
-
 /// A vehicle that its flights do not identify, by the numbers that they do tell; the rest is that of `like`, and named.
 /// Turning that is not told is that of its rotors with the thrust that the flights show, on its moments of inertia.
 inline NamedAirframe assumed_airframe(const NamedAirframe& like, pinnquad::Identification found,
                                       const pinnquad::Dataset& flights, std::vector<std::string>& unknown) {
   const std::array<double, 4> own = pinnquad::logs::rotor_effects(like.value);
-  const auto complete = [](pinnquad::Estimate& estimate, double instead) {
-    if (is_told_above_zero(estimate)) return true;
+  const auto complete = [](pinnquad::Estimate& estimate, double instead, bool plausible = true) {
+    if (plausible && pinnquad::detail::is_taken(estimate)) return true;
     estimate = {instead, 0};
     return false;
   };
   complete(found.thrust_m_s2, usual_thrust_m_s2(flights, like.value.rotors[0].thrust_curve));
+  const bool of_quadrotor = !pinnquad::implausible_number(found, like.value);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (complete(found.effectiveness_rad_s2[axis], own[1 + axis] * found.thrust_m_s2.value / own[0])) continue;
+    const double instead = own[1 + axis] * found.thrust_m_s2.value / own[0];
+    if (complete(found.effectiveness_rad_s2[axis], instead, of_quadrotor)) continue;
     unknown.push_back(std::string(axis_names[axis]) + " effectiveness");
   }
-  if (!complete(found.lag_s, like.value.rotor_time_constant_s)) unknown.emplace_back("rotor lag");
+  if (!complete(found.lag_s, like.value.rotor_time_constant_s, of_quadrotor)) unknown.emplace_back("rotor lag");
+  if (!of_quadrotor) {  // one law, fitted together: none of its numbers stands
+    found.delay_s = found.rise_s = found.fall_s = found.fall_after_rise_s = {};
+    found.gyroscopic = found.imbalance = {};
+  }
   const auto made = pinnquad::identified_airframe(found, like.value);
   if (!made) unknown.insert(unknown.begin(), "thrust");
   return {like.name + ", assumed", made ? made->value : like.value};
@@ -98,13 +100,13 @@ inline std::vector<std::string> contradictions(const pinnquad::Identification& f
   const std::array<double, 4> own = pinnquad::logs::rotor_effects(given.value);
   const double curve = given.value.rotors[0].thrust_curve;
   const pinnquad::Estimate& thrust = found.thrust_m_s2;
-  if (is_told_above_zero(thrust)) {
+  if (pinnquad::detail::is_taken(thrust)) {
     compare("the hover command", "", hover_command(curve, own[0]), hover_command(curve, thrust.high()),
             hover_command(curve, thrust.low()));
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const pinnquad::Estimate& turn = found.effectiveness_rad_s2[axis];
-    if (!is_told_above_zero(turn)) continue;
+    if (!pinnquad::detail::is_taken(turn)) continue;
     compare(std::string(axis_names[axis]) + " effectiveness", " rad/s^2", own[1 + axis], turn.low(), turn.high());
   }
   return lines;

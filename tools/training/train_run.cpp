@@ -196,8 +196,11 @@ class Training {
     if (!vehicle_.is_known()) {
       report_.warn("no --airframe, and the flights do not identify their vehicle: " + vehicle_.asked->why_not +
                    "; in the airframe of the header, " + plan_.airframe.name +
-                   ", these are not the vehicle's: " + programs::listed(vehicle_.unknown));
+                   ", these are not the vehicle's: " + programs::listed(vehicle_.unknown) +
+                   "; --airframe FILE.toml says what flew");
     }
+    const std::string unlike = vehicle_.asked ? programs::unlike_axes_in_words(vehicle_.asked->found) : "";
+    if (!unlike.empty()) report_.warn(unlike);
     for (const std::string& doubt : vehicle_.doubts) report_.warn("the flights contradict --airframe: " + doubt);
     for (const programs::Fold& fold : plan_.folds) {
       if (fold.part_validates) {
@@ -412,11 +415,14 @@ class Training {
 
   void write(const Exported& made, const programs::ModelKind& kind, const Verdict& verdict) {
     const std::optional<SignedSums<double>>& bias = judged_.kinds[*chosen_].bias_time_constants_s;
-    const Provenance from =
+    const std::string do_not_fly = programs::do_not_fly(kind.title, made.flown);
+    if (!do_not_fly.empty()) report_.warn("DO NOT FLY what is exported: " + do_not_fly);
+    Provenance from =
         programs::provenance_of(*made.model,
                                 programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
                                                         plan_.settings, made.seed, plan_.epochs, verdict),
                                 bias, vehicle_.is_known());
+    from.do_not_fly = do_not_fly;
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
     const pinnquad::Exported written = made.model->export_to({header, block, made.model->has_trust() ? trust : ""},
@@ -428,7 +434,7 @@ class Training {
                            made.fold->split.test.empty() ? made.fold->split.validation : made.fold->split.test);
     std::printf("  %s: struct %s, %s%s%s\n", header.c_str(), options_.model_name.c_str(), kind.title,
                 kind.seeded ? (" of seed " + std::to_string(made.seed)).c_str() : "",
-                verdict.worse_than_mean() ? "; NOT FOR FLIGHT, and its header says so" : "");
+                verdict.worse_than_mean() || !do_not_fly.empty() ? "; NOT FOR FLIGHT, and its header says so" : "");
     if (trusted) {
       std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and command residual\n",
                   trust.c_str(), options_.model_name.c_str());
@@ -450,7 +456,8 @@ class Training {
             (rotated() ? "fitted anew to all flights, validated on " + made.fold->validation.front() +
                              ": the figures are of the fits of the rotation"
                        : "the very model that was judged") +
-            (verdict.worse_than_mean() ? ". NOT FOR FLIGHT: worse than the mean of the commands." : ".");
+            (verdict.worse_than_mean() ? ". NOT FOR FLIGHT: worse than the mean of the commands." : ".") +
+            (do_not_fly.empty() ? "" : " DO NOT FLY: " + do_not_fly + ".");
   }
 
   /// Proof of an export's signs, as `certify` finds it in the header.
@@ -502,9 +509,11 @@ class Training {
     if (const auto doubt = programs::thrust_doubt(*structure, own_thrust)) report_.warn(*doubt);
   }
 
-  /// The model in a closed loop on the vehicle of the logs; what looks ahead is not flown on measured motion.
+  /// The model in a closed loop on the vehicle of the logs, of recorded flights on their airframe; what looks ahead is
+  /// not flown on measured motion.
   nlohmann::json fly(const Exported& made, const programs::ModelKind& kind) const {
-    if (kind.reach == programs::TimeReach::centred || !vehicle_.asked) return {};
+    if (kind.reach == programs::TimeReach::centred) return {};
+    if (!vehicle_.asked) return programs::fly_given(*made.model->block(), made.fold->split.train, plan_.airframe.value);
     return programs::fly_logged(*made.model->block(), made.fold->split.train, *vehicle_.asked,
                                 !dataset_.lacks("velocity"));
   }
@@ -513,29 +522,29 @@ class Training {
     if (flown.is_null()) return;
     report_.flown(flown);
     if (flown.contains("why_not")) {
-      report_.warn("the model was not flown: " + flown["why_not"].get<std::string>());
+      const std::string why_not = "the model was not flown: " + flown["why_not"].get<std::string>();
+      vehicle_.asked ? report_.warn(why_not) : announce("  " + why_not);
       return;
     }
     const auto centimetres = [&](const char* who) { return decimals(100 * flown[who]["rmse_m"].get<double>(), 1); };
     std::printf(
-        "  flown on the vehicle that was identified, figure-eight of %.1f s: %s cm off; by the analytic inverse %s, "
+        "  flown on the vehicle that %s, figure-eight of %.1f s: %s cm off; by the analytic inverse %s, "
         "without feed-forward %s\n",
-        flown["period_s"].get<double>(), centimetres("model").c_str(), centimetres("formula").c_str(),
+        vehicle_.asked ? "was identified" : "was given", flown["period_s"].get<double>(), centimetres("model").c_str(), centimetres("formula").c_str(),
         centimetres("hover_trim").c_str());
-    std::printf("    its sums of commands beside the formula's there, slope (rms difference): %s\n",
-                programs::comparison_in_words(flown["against_formula"]).c_str());
+    const std::string compared = programs::comparison_in_words(flown["against_formula"]);
+    if (!compared.empty()) {
+      std::printf("    its sums of commands beside the formula's there, slope (rms difference): %s\n", compared.c_str());
+    }
     const double answered = flown["model"]["answered_share"];
     if (answered < 0.99 && programs::unfit_to_fly(flown).empty()) {
       report_.warn("under its guard the model answered " + decimals(100 * answered, 1) +
-                   " % of the figure-eight, which the logs' own limits hold: the analytic inverse flew the rest");
+                   " % of the figure-eight, which the flights' own limits hold: the analytic inverse flew the rest");
     }
     const std::string status = flown["model"]["status"];
     if (status != to_string(Status::ok)) {
       report_.warn("in the closed loop the model ended the flight after " + decimals(flown["model"]["flown_s"], 1) +
                    " s: " + status);
-    } else if (flown["model"]["rmse_m"] > flown["hover_trim"]["rmse_m"]) {
-      report_.warn("in the closed loop the model tracks worse than no feed-forward (" + centimetres("model") +
-                   " cm against " + centimetres("hover_trim") + " cm)");
     }
   }
 

@@ -89,6 +89,8 @@ class AdaptiveInverse {
 
   const FeedForward& inverse() const noexcept { return inverse_; }
   const MotionBias<Scalar>& bias() const noexcept { return bias_; }
+  /// True where the flight asks for more than the bias may make good.
+  bool at_bound() const noexcept { return bias_.status() == Status::limited; }
   void reset() noexcept {
     bias_.reset();
     motion_.interrupt();
@@ -153,8 +155,10 @@ class AdaptiveInverse {
   detail::TickClock<Scalar> clock_;
 };
 
-/// Two that learn: the first answers; where it declines, or has needed a bias beyond its bound for `patience_s`, the
-/// second does, by its own bias, until the first has needed none beyond it for as long.
+/// Two that learn: the first answers; where it declines, or has needed a bias beyond its bound for `patience_s` in all,
+/// the second does, by its own bias, until the first has needed none beyond it for as long at a stretch. A bias that
+/// is at its bound now and then lacks as much on the mean as one that stays there: nine times as long within the bound
+/// makes good what was beyond it.
 template <class Scalar, class First, class Second>
 class HandsOver {
  public:
@@ -167,6 +171,8 @@ class HandsOver {
   const First& first() const noexcept { return first_; }
   const Second& second() const noexcept { return second_; }
   bool handed_over() const noexcept { return handed_over_; }
+  /// Of the one that answers.
+  bool at_bound() const noexcept { return handed_over_ ? second_.at_bound() : first_.at_bound(); }
 
   /// `fell_back` where the second answers.
   Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& wanted, std::uint64_t time_us,
@@ -180,8 +186,13 @@ class HandsOver {
     first_.learn(now_us, known, state, commands);
     second_.learn(now_us, known, state, commands);
     const Scalar step_s = clock_.step_s(now_us);
-    const bool beyond = first_.bias().status() == Status::limited && second_.bias().status() != Status::limited;
-    for_s_ = beyond != handed_over_ ? for_s_ + step_s : Scalar(0);
+    const bool beyond = first_.at_bound() && !second_.at_bound();
+    if (beyond != handed_over_) {
+      for_s_ += step_s;
+    } else {
+      for_s_ -= handed_over_ ? for_s_ : step_s / Scalar(9);
+      if (for_s_ < Scalar(0)) for_s_ = Scalar(0);
+    }
     if (for_s_ < patience_s_) return;
     handed_over_ = beyond;
     for_s_ = Scalar(0);

@@ -13,6 +13,7 @@
 
 #include "pinnquad/control/motion_bias.hpp"
 #include "pinnquad/deploy/provenance.hpp"
+#include "pinnquad/io/file_error.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"
 
@@ -47,6 +48,20 @@ inline std::string known_slopes_in_words(const SlopesOfSums& slopes, double own_
 
 namespace detail {
 
+/// Lines of a comment, broken at blanks.
+inline void write_comment(std::ostream& out, const std::string& text) {
+  constexpr std::size_t widest = 117;  // beside "// "
+  std::size_t from = 0;
+  while (text.size() - from > widest) {
+    std::size_t end = text.rfind(' ', from + widest);
+    if (end == std::string::npos || end <= from) end = text.find(' ', from + widest);
+    if (end == std::string::npos) break;
+    out << "// " << text.substr(from, end - from) << '\n';
+    from = end + 1;
+  }
+  out << "// " << text.substr(from) << '\n';
+}
+
 /// Lines of a comment. `own`: the airframe that the slopes are compared with.
 inline void write_opening_comment(std::ostream& out, const WrittenRecords& records, const Airframe<double>& own) {
   const bool over_own = records.airframe_known;
@@ -55,6 +70,7 @@ inline void write_opening_comment(std::ostream& out, const WrittenRecords& recor
   if (records.verdict && records.verdict->worse_than_mean()) {
     out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
   }
+  if (!records.do_not_fly.empty()) write_comment(out, "DO NOT FLY: " + printable(records.do_not_fly) + ".");
   if (!over_own) {
     out << "// AIRFRAME ASSUMED: the flights do not tell the vehicle wholly; the analytic inverse is another one's.\n";
   }

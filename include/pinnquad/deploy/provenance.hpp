@@ -58,6 +58,7 @@ struct Provenance {
   /// Proven: least slopes of the signed sums, s^2/rad. A model with a certificate has its own.
   std::optional<AxisSlopes> proven_slopes = std::nullopt;
   SlopesOfSums slopes{};       ///< as the training rows know them
+  std::string do_not_fly{};    ///< why not, a sentence without a full stop; empty: nothing is said
   bool airframe_known = true;  ///< false: slopes are not told over those of the airframe, which is another one
 
   // what was found out besides, for guards and certificates

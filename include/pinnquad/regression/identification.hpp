@@ -99,12 +99,17 @@ class Identifier {
       estimate.half_width = std::hypot(estimate.half_width, period_s * period_s / (12 * response_.rise_s));
       return estimate;
     };
-    // a fit that fails runs into a bound, or turns the vehicle about
-    const auto holds = [this](const BlockSolution& found) {
+    // one that steps to and fro has not converged: its last step leads away
+    const auto stands = [](double solved_s, double at_s) {
+      constexpr double far = 0.1, far_s = 0.005;
+      return std::abs(solved_s - at_s) <= far * at_s + far_s;
+    };
+    // a fit that fails runs into a bound, turns the vehicle about, or does not converge
+    const auto holds = [this, &stands](const BlockSolution& found) {
       constexpr double edge = 0.99;
       return response_.rise_s < edge * RotationFit::longest_s &&
              std::abs(response_.delay_s) < edge * RotationFit::longest_delay_s && found.values()[0] > 0 &&
-             found.values()[of_axis] > 0;
+             found.values()[of_axis] > 0 && stands(found.values()[first], response_.rise_s);
     };
     response_ = nearest;
     BlockSolution solution = fit.converge(response_, RotationFit::lag_and_delay());
@@ -142,6 +147,7 @@ class Identifier {
     RotorResponse each = response_;
     const BlockSolution two = fit.converge(each, RotationFit::rise_fall_and_delay());
     if (!two.told(first) || !two.told(first + 1)) return;
+    if (!stands(two.values()[first], each.rise_s) || !stands(two.values()[first + 1], each.fall_s)) return;
     result.rise_s = resolved(two.estimate(first));
     result.fall_s = resolved(two.estimate(first + 1));
     result.fall_after_rise_s =

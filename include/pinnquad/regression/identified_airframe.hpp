@@ -15,13 +15,9 @@
 
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/regression/identification.hpp"
+#include "pinnquad/regression/plausible_vehicle.hpp"
 
 namespace pinnquad {
-
-/// True where the interval is no wider than this share of the value: then the number stands on the flights.
-inline bool is_told(const Estimate& estimate, double share) noexcept {
-  return estimate.half_width <= share * std::abs(estimate.value);
-}
 
 /// An airframe, and what of it the flights do not say.
 struct IdentifiedAirframe {
@@ -30,14 +26,15 @@ struct IdentifiedAirframe {
 };
 
 /// The airframe that answers commands as identified, of the mass, the arms, the spins and the propeller of `like`. A
-/// number that is not told to within 50 % is that of `like`. None where thrust, roll or pitch are not told, or turn the
-/// vehicle against the airframe's signs, and where no vehicle can have the numbers.
+/// number that is not told to within 50 % is that of `like`. None where thrust, roll or pitch are not told, where the
+/// commands turn the vehicle against the airframe's signs, and where no quadrotor has the numbers (implausible_number()).
 inline std::optional<IdentifiedAirframe> identified_airframe(const Identification& found,
                                                              const Airframe<double>& like) {
-  constexpr double share = 0.5, little_1_m = 0.05, pi = 3.141592653589793;
-  const auto positive = [&](const Estimate& estimate) { return is_told(estimate, share) && estimate.value > 0; };
+  constexpr double little_1_m = 0.05, pi = 3.141592653589793;
+  const auto positive = [](const Estimate& estimate) { return detail::is_taken(estimate); };
   if (!positive(found.thrust_m_s2) || !positive(found.effectiveness_rad_s2[0]) ||
-      !positive(found.effectiveness_rad_s2[1])) {
+      !positive(found.effectiveness_rad_s2[1]) || found.effectiveness_rad_s2[2].high() < 0 ||
+      implausible_number(found, like)) {
     return {};
   }
   IdentifiedAirframe result;

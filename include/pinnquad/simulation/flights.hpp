@@ -143,6 +143,12 @@ struct NearGroundFlight {
   using SwitchableVehicle = SwitchableQuadrotor<StandardAtmosphere, QuadraticDrag>;
   static constexpr GroundEffectModel ground_effect = GroundEffectModel::conyers;
 
+  /// Conyers' where his fit holds for the airframe, else Cheeseman and Bennett's, which hold for every one.
+  static GroundEffectModel ground_effect_of(const Airframe<double>& airframe) noexcept {
+    const bool holds = Conyers{}.status(airframe) == Status::ok;
+    return holds ? GroundEffectModel::conyers : GroundEffectModel::cheeseman_bennett;
+  }
+
   static FlightPlan plan() {
     constexpr double start_height_m = 0.2;
     FlightPlan plan;
