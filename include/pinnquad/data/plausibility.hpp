@@ -194,6 +194,22 @@ inline std::optional<detail::Implausible> find_implausible(const Flight& flight)
   return find_acceleration_mistake(flight);
 }
 
+/// The columns whose axis and sign the motion of a flight doesn't confirm, "w_x, w_z, v_bx": too little of it.
+inline std::string motion_not_checked(const Flight& flight) {
+  using namespace detail;
+  std::string columns;
+  const auto say = [&columns](const MotionBlocks& sums, std::size_t first_field) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      if (!sums.confirms(axis)) columns += (columns.empty() ? "" : ", ") + field_name(first_field, axis);
+    }
+  };
+  say(turning_pair(flight, {}).sums(turning_step_s), rates_field);
+  const bool has_velocity = std::any_of(flight.begin(), flight.end(),
+                                        [](const Sample& sample) { return sample.velocity_m_s.squaredNorm() > 0; });
+  if (has_velocity) say(world_velocity_pair(flight).sums(turning_step_s), velocity_field);
+  return columns;
+}
+
 /// Throws InputError where find_implausible() finds something in a flight that was read from `path`:
 ///   flight.csv:17:5: expected -1000 to 1000 m/s^2 in column vdot_bx, found 1e+39
 inline void require_plausible(const std::string& path, const Flight& flight) {

@@ -60,6 +60,8 @@ inline OwnFlight own_flight(std::size_t n) {
   flight.derivative = round / 8 % 2 == 1;
   flight.small = round / 16 % 2 == 1;
   flight.duration_s = std::array<double, 4>{8, 20, 40, 60}[(round + n / 28) % 4];
+  constexpr double shortest_on_legs_s = 20;  // of a shorter one nearly all rows are on the ground
+  if (flight.kind == FlightKind::take_off_and_landing) flight.duration_s = std::max(flight.duration_s, shortest_on_legs_s);
   flight.seed = 1000 + n;
   return flight;
 }
