@@ -368,7 +368,7 @@ inline std::optional<detail::Implausible> find_acceleration_mistake(const Flight
         .sums(acceleration_step_s);
   };
   const MotionBlocks angular = sums([](const Sample& sample) { return sample.body_rates_rad_s; },
-                                  [](const Sample& sample) { return sample.angular_acceleration_rad_s2; });
+                                    [](const Sample& sample) { return sample.angular_acceleration_rad_s2; });
   if (auto mistake = wrong_axis(angular, angular_field, rates_field)) return mistake;
   if (auto mistake = find_velocity_mistake(flight)) return mistake;
   if (auto mistake = find_altitude_mistake(flight)) return mistake;

@@ -61,7 +61,8 @@ inline OwnFlight own_flight(std::size_t n) {
   flight.small = round / 16 % 2 == 1;
   flight.duration_s = std::array<double, 4>{8, 20, 40, 60}[(round + n / 28) % 4];
   constexpr double shortest_on_legs_s = 20;  // of a shorter one nearly all rows are on the ground
-  if (flight.kind == FlightKind::take_off_and_landing) flight.duration_s = std::max(flight.duration_s, shortest_on_legs_s);
+  if (flight.kind == FlightKind::take_off_and_landing)
+    flight.duration_s = std::max(flight.duration_s, shortest_on_legs_s);
   flight.seed = 1000 + n;
   return flight;
 }
@@ -137,7 +138,8 @@ inline std::vector<LoggedInstant> flown_instants(const OwnFlight& plan) {
     const bool event = t >= event_s && !on_legs && plan.kind != FlightKind::calm;
     const bool standing =
         on_legs && (t < stands_s || (t > plan.duration_s - land_s && now.body.position_m[2] > -ground_m));
-    const bool tumbles = event && plan.kind == FlightKind::crash, held = event && plan.kind == FlightKind::catch_by_hand;
+    const bool tumbles = event && plan.kind == FlightKind::crash,
+               held = event && plan.kind == FlightKind::catch_by_hand;
     SetPoint<double> wanted;
     wanted.velocity_m_s = speed.next(engine);
     wanted.stick_rad_s = stick.next(engine);
@@ -237,8 +239,8 @@ inline std::string own_mapping(const OwnFlight& plan) {
     for (int i = first; i < first + count; ++i) text += (i > first ? ", " : "") + ("\"v[" + std::to_string(i) + "]\"");
     return text + "]\n";
   };
-  return std::string("world = \"") + (plan.enu_flu ? "enu" : "ned") + "\"\nbody = \"" +
-         (plan.enu_flu ? "flu" : "frd") + "\"\n[ground]\nheight_m = \"before_flight\"\nby_contact = true\n" +
+  return std::string("world = \"") + (plan.enu_flu ? "enu" : "ned") + "\"\nbody = \"" + (plan.enu_flu ? "flu" : "frd") +
+         "\"\n[ground]\nheight_m = \"before_flight\"\nby_contact = true\n" +
          "[attitude]\ntopic = \"attitude\"\norder = \"wxyz\"\ndirection = \"body_to_world\"\nquaternion = " +
          columns(0, 4) + "[body_rates]\ntopic = \"body_rates\"\ncolumns = " + columns(0, 3) +
          (plan.derivative ? "[angular_acceleration]\ntopic = \"body_rates\"\ncolumns = " + columns(3, 3) : "") +
@@ -296,40 +298,40 @@ inline std::vector<PlantedFault> planted_faults() {
     };
   };
   using Vector = pinnquad::Vector3<double>;
-  return {
-      {"attitude in degrees", scale_angles(pinnquad::degrees_per_radian)},
-      {"attitude in radians, read as degrees", scale_angles(1 / pinnquad::degrees_per_radian)},
-      {"rates in deg/s", scale_rates(pinnquad::degrees_per_radian)},
-      {"rates 57 times too small", scale_rates(1 / pinnquad::degrees_per_radian)},
-      {"roll negated", negate_angle(0)},
-      {"pitch negated", negate_angle(1)},
-      {"yaw negated", negate_angle(2)},
-      {"w_x negated", negate_rate(0)},
-      {"w_y negated", negate_rate(1)},
-      {"w_z negated", negate_rate(2)},
-      {"roll and pitch exchanged", [](Row& row) { std::swap(row.angles[0], row.angles[1]); }},
-      {"w_x and w_y exchanged", exchange_rates(0, 1)},
-      {"w_y and w_z exchanged", exchange_rates(1, 2)},
-      {"rates in the world's axes",
-       turn_rates([angles_of](const Row& row, const Vector& v) { return pinnquad::body_to_world(angles_of(row), v); })},
-      {"rates in FLU", turn_rates([](const Row&, const Vector& v) { return pinnquad::swap_flu_frd(v); })},
-      {"a conjugated attitude",
-       [angles_of](Row& row) {
-         const auto euler = pinnquad::to_euler(pinnquad::conjugate(angles_of(row)));
-         row.angles = {euler.roll_rad, euler.pitch_rad, euler.yaw_rad};
-       }},
-      {"derivatives of rates negated", [](Row& row) { row.derivatives *= -1; }},
-      {"derivatives of rates exchanged", [](Row& row) { std::swap(row.derivatives[0], row.derivatives[1]); }},
-      {"a gyro that has stopped",
-       [](Row& row) {
-         row.rates = Vector(0.01, 0.01, 0.01);
-         row.derivatives.setZero();
-       }},
-      {"velocity in km/h", [](Row& row) { row.velocity *= 3.6; }},
-      {"velocity in the body's axes",
-       [angles_of](Row& row) { row.velocity = pinnquad::world_to_body(angles_of(row), row.velocity); }},
-      {"velocity negated along down", [](Row& row) { row.velocity[2] *= -1; }},
-      {"altitude negated", [](Row& row) { row.altitude *= -1; }}};
+  return {{"attitude in degrees", scale_angles(pinnquad::degrees_per_radian)},
+          {"attitude in radians, read as degrees", scale_angles(1 / pinnquad::degrees_per_radian)},
+          {"rates in deg/s", scale_rates(pinnquad::degrees_per_radian)},
+          {"rates 57 times too small", scale_rates(1 / pinnquad::degrees_per_radian)},
+          {"roll negated", negate_angle(0)},
+          {"pitch negated", negate_angle(1)},
+          {"yaw negated", negate_angle(2)},
+          {"w_x negated", negate_rate(0)},
+          {"w_y negated", negate_rate(1)},
+          {"w_z negated", negate_rate(2)},
+          {"roll and pitch exchanged", [](Row& row) { std::swap(row.angles[0], row.angles[1]); }},
+          {"w_x and w_y exchanged", exchange_rates(0, 1)},
+          {"w_y and w_z exchanged", exchange_rates(1, 2)},
+          {"rates in the world's axes", turn_rates([angles_of](const Row& row, const Vector& v) {
+             return pinnquad::body_to_world(angles_of(row), v);
+           })},
+          {"rates in FLU", turn_rates([](const Row&, const Vector& v) { return pinnquad::swap_flu_frd(v); })},
+          {"a conjugated attitude",
+           [angles_of](Row& row) {
+             const auto euler = pinnquad::to_euler(pinnquad::conjugate(angles_of(row)));
+             row.angles = {euler.roll_rad, euler.pitch_rad, euler.yaw_rad};
+           }},
+          {"derivatives of rates negated", [](Row& row) { row.derivatives *= -1; }},
+          {"derivatives of rates exchanged", [](Row& row) { std::swap(row.derivatives[0], row.derivatives[1]); }},
+          {"a gyro that has stopped",
+           [](Row& row) {
+             row.rates = Vector(0.01, 0.01, 0.01);
+             row.derivatives.setZero();
+           }},
+          {"velocity in km/h", [](Row& row) { row.velocity *= 3.6; }},
+          {"velocity in the body's axes",
+           [angles_of](Row& row) { row.velocity = pinnquad::world_to_body(angles_of(row), row.velocity); }},
+          {"velocity negated along down", [](Row& row) { row.velocity[2] *= -1; }},
+          {"altitude negated", [](Row& row) { row.altitude *= -1; }}};
 }
 
 /// The flight with the fault in all rows.
@@ -346,8 +348,8 @@ inline pinnquad::Flight with_fault(pinnquad::Flight flight, const PlantedFault& 
                           {},
                           {},
                           sample.altitude_m};
-    const auto attitude = pinnquad::from_euler(
-        pinnquad::EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
+    const auto attitude =
+        pinnquad::from_euler(pinnquad::EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
     row.force = sample.linear_acceleration_m_s2 + pinnquad::cross(row.rates, sample.velocity_m_s) - gravity(row);
     row.velocity = pinnquad::body_to_world(attitude, sample.velocity_m_s);
     fault.change(row);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// No good log is refused, however it was flown; a fault is found wherever the flight has motion enough. PINNQUAD_FLIGHTS
-// in the environment sets how many flights are flown (56 by default: each kind at each set of rates, in both axes).
+// No good log is refused, however it was flown; a fault is found wherever the flight has motion enough. In the
+// environment PINNQUAD_FLIGHTS sets how many are flown: 56 by default, each kind at each set of rates, in both axes.
 #include <doctest/doctest.h>
 
 #include <cstdlib>

@@ -189,7 +189,8 @@ TEST_CASE("a calm flight at PX4's default rates is imported, and says what it le
   const auto dataset = pinnquad::logs::read_dataset({log}, settings);
   CHECK(dataset.flights.size() == 1);
   bool told = false;
-  for (const std::string& note : dataset.notes) told = told || note.find("not checked: too little motion") != std::string::npos;
+  for (const std::string& note : dataset.notes)
+    told = told || note.find("not checked: too little motion") != std::string::npos;
   CHECK(told);
 }
 
