@@ -124,6 +124,14 @@ TEST_CASE("a cell like none of its neighbours is named, in a column that stands 
       "the median 0");
 }
 
+TEST_CASE("a wild cell beside a gap is not judged: its neighbour was dropped") {
+  Flight flight = with_cell(498, 8, 150);
+  CHECK(refusal(flight) != "");
+  std::size_t row = 0;
+  flight.keep_rows([&row](std::size_t) { return row++ != 499; });
+  CHECK(refusal(flight) == "");
+}
+
 TEST_CASE("commands: what they are instead, and how to convert them") {
   const auto said = [](double factor, double offset) {
     return refusal(changed([&](Sample& s) {

@@ -409,6 +409,15 @@ def test_px4s_simulation(pinnquad, sih, recorded):
     assert re.search(r"payload: columns u1 to u4: thrust .* 4\.1\d .* 1[67] % less than in 3", said[0])
 
 
+@pytest.mark.parametrize("name", ["turning", "derivative"])
+def test_a_tumble_at_the_end(pinnquad, recorded, name):
+    """One row in a hundred, the last 0.4 s, blames no column."""
+    with lzma.open(recorded(f"cases/crash_blames_columns/{name}.csv.xz")) as packed:
+        Path("log.csv").write_bytes(packed.read())
+    mapping = recorded("cases/crash_blames_columns/mapping.toml")
+    pinnquad(f"import log.csv --rate 200 --airframe racer_5_inch --out dataset --mapping {mapping}")
+
+
 @pytest.mark.parametrize("pattern, new, words, code", [
     ('order = "px4"', 'order = "betaflight"', ("u1 to u4", "% of roll"), 0),
     ('order = "wxyz"', 'order = "xyzw"', ("w_x", "order w, x, y, z"), 2),

@@ -368,6 +368,8 @@ class Import {
         flight.trajectory = passage.trajectory;
         flight.name = free_name(dataset_.flights, passage.name, ++part);
         require_plausible_flight(flight, passage.source);
+        const std::string unchecked = motion_not_checked(flight);
+        if (!unchecked.empty()) add(dataset_.notes, flight.name + ": not checked: too little motion: " + unchecked);
         dataset_.flights.add(std::move(flight));
         dataset_.sources.push_back(passage.source);
       }

@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/data/dataset.hpp"
@@ -142,7 +143,7 @@ inline bool is_frozen_rate(const Flight& flight, Eigen::Index axis) {
 }
 
 /// Rates that have stopped, if one of them should not have.
-inline std::optional<Implausible> find_stopped_rate(const Flight& flight, const MotionSums& sums) {
+inline std::optional<Implausible> find_stopped_rate(const Flight& flight, const MotionBlocks& sums) {
   constexpr double turns = 0.5, least = 1e-3;  // rad over a step
   std::string stopped;
   std::size_t first = 0;
@@ -152,7 +153,8 @@ inline std::optional<Implausible> find_stopped_rate(const Flight& flight, const 
     const double both = sums.changes[axis] + sums.integrals[axis];
     // roll and pitch alone turn less about another axis: a heading that a file holds at 0 is no gyro's fault
     const bool moves = both > least * least * sums.steps && sums.changes[axis] > sums.changes.maxCoeff() / 16;
-    contradicted = contradicted || (moves && 2 * sums.products(axis, axis) < turns * both);
+    const bool plain = is_plain(sums.each([&](const MotionSums& block) { return block.changes[axis]; }));
+    contradicted = contradicted || (moves && plain && 2 * sums.products(axis, axis) < turns * both);
     if (stopped.empty()) first = rates_field + static_cast<std::size_t>(axis);
     stopped += (stopped.empty() ? "" : ", ") + field_name(rates_field, axis);
   }
@@ -162,7 +164,7 @@ inline std::optional<Implausible> find_stopped_rate(const Flight& flight, const 
 }
 
 /// A rate that turns the attitude about another axis, or the other way.
-inline Implausible wrong_rate(const MotionSums& sums, const AxisMistake& mistake) {
+inline Implausible wrong_rate(const MotionBlocks& sums, const AxisMistake& mistake) {
   const std::size_t field = rates_field + static_cast<std::size_t>(mistake.column);
   const std::string rate = field_name(rates_field, mistake.column), angle = field_name(angles_field, mistake.column);
   const std::string evidence = ", correlation " + hundredths(sums.correlation(mistake.axis, mistake.column));
@@ -187,8 +189,7 @@ inline std::optional<detail::Implausible> find_turning_mistake(const Flight& fli
   using namespace detail;
   constexpr double follows = 0.6, clearly = 0.4;
   const MotionPair pair = turning_pair(flight, {});
-  const MotionSums sums = pair.sums(turning_step_s);
-  if (sums.steps < fewest_motion_steps) return std::nullopt;
+  const MotionBlocks sums = pair.sums(turning_step_s);
   const std::array<bool, 3> moving = sums.moving();
   const double as_it_stands = sums.agreement(moving);
   if (as_it_stands < agrees) {
@@ -196,8 +197,9 @@ inline std::optional<detail::Implausible> find_turning_mistake(const Flight& fli
     double most = as_it_stands;
     TurningReading best;
     const auto judge = [&](const TurningReading& reading) {
-      const double agreement = turning_pair(flight, reading).sums(turning_step_s).agreement(moving);
-      if (!(agreement > most)) return;
+      const MotionBlocks so = turning_pair(flight, reading).sums(turning_step_s);
+      const double agreement = so.agreement(moving);
+      if (!(agreement > most) || !sums.agrees_less_than(so, moving)) return;
       most = agreement;
       best = reading;
     };
@@ -234,7 +236,7 @@ inline std::optional<detail::Implausible> find_turning_mistake(const Flight& fli
 namespace detail {
 
 /// The first of three accelerations that follows another axis, or its own against the sign, or in another unit.
-inline std::optional<Implausible> wrong_axis(const MotionSums& sums, std::size_t first_field,
+inline std::optional<Implausible> wrong_axis(const MotionBlocks& sums, std::size_t first_field,
                                              std::size_t first_integrated_field) {
   constexpr double follows = 0.35, better = 0.25;  // correlations
   const auto mistake = find_axis_mistake(sums, follows, better);
@@ -288,8 +290,7 @@ inline std::optional<Implausible> find_velocity_mistake(const Flight& flight) {
   constexpr double follows = 0.8, better = 0.25, straight = 0.9, alike = 1.3;
   constexpr std::array<const char*, 3> along = {"north", "east", "down"};
   const MotionPair pair = world_velocity_pair(flight);
-  const MotionSums sums = pair.sums(turning_step_s);
-  if (sums.steps < fewest_motion_steps) return std::nullopt;
+  const MotionBlocks sums = pair.sums(turning_step_s);
   const std::string expected =
       "a velocity that changes by the accelerations vdot_bx to vdot_bz in columns v_bx, v_by, v_bz";
   if (const auto mistake = find_axis_mistake(sums, follows, better)) {
@@ -312,8 +313,10 @@ inline std::optional<Implausible> find_velocity_mistake(const Flight& flight) {
   const double as_it_stands = sums.agreement(moving);
   for (const auto& [turns, text] : {std::pair{0, "velocities in the world's axes (turn them into the body)"},
                                     {2, "velocities in the body's axes that were turned into them once more"}}) {
-    const double so = world_velocity_pair(flight, turns).sums(turning_step_s).agreement(moving);
-    if (!(as_it_stands < agrees && so > related && 1 - so < far_better * (1 - as_it_stands))) continue;
+    if (!(as_it_stands < agrees)) break;
+    const MotionBlocks turned = world_velocity_pair(flight, turns).sums(turning_step_s);
+    const double so = turned.agreement(moving);
+    if (!(so > related && 1 - so < far_better * (1 - as_it_stands) && sums.agrees_less_than(turned, moving))) continue;
     return Implausible{0, velocity_field, expected,
                        text + ("; agreement " + hundredths(as_it_stands)) + " as it stands, " + hundredths(so) + " so"};
   }
@@ -333,8 +336,7 @@ inline std::optional<Implausible> find_altitude_mistake(const Flight& flight) {
       [&](std::size_t row) {
         return Vector3<double>(-body_to_world(from_euler(angles_of(flight[row])), flight[row].velocity_m_s)[2], 0, 0);
       });
-  const MotionSums sums = pair.sums(turning_step_s);
-  if (sums.steps < fewest_motion_steps) return std::nullopt;
+  const MotionBlocks sums = pair.sums(turning_step_s);
   const auto mistake = find_axis_mistake(sums, follows, follows);
   if (!mistake) return std::nullopt;
   return Implausible{0, altitude_field, "a height that rises with the velocity v_bx to v_bz in column altitude",
@@ -365,21 +367,25 @@ inline std::optional<detail::Implausible> find_acceleration_mistake(const Flight
                [&](std::size_t row) { return Vector3<double>(rate(flight[row])); })
         .sums(acceleration_step_s);
   };
-  const MotionSums angular = sums([](const Sample& sample) { return sample.body_rates_rad_s; },
-                                  [](const Sample& sample) { return sample.angular_acceleration_rad_s2; });
-  if (angular.steps < fewest_motion_steps) return std::nullopt;
+  const MotionBlocks angular = sums([](const Sample& sample) { return sample.body_rates_rad_s; },
+                                    [](const Sample& sample) { return sample.angular_acceleration_rad_s2; });
   if (auto mistake = wrong_axis(angular, angular_field, rates_field)) return mistake;
   if (auto mistake = find_velocity_mistake(flight)) return mistake;
   if (auto mistake = find_altitude_mistake(flight)) return mistake;
-  std::array<MotionSums, acceleration_kinds> linear;
+  std::vector<MotionBlocks> linear;
   std::array<double, acceleration_kinds> left{};
-  for (std::size_t kind = 0; kind < linear.size(); ++kind) {
-    linear[kind] = sums([](const Sample& sample) { return sample.velocity_m_s; },
-                        [kind](const Sample& sample) { return as_body_derivative(sample)[kind]; });
-    left[kind] = linear[kind].changes.sum() + linear[kind].integrals.sum() - 2 * linear[kind].products.trace();
+  const auto left_of = [](const MotionSums& block) {
+    return block.changes.sum() + block.integrals.sum() - 2 * block.products.trace();
+  };
+  for (std::size_t kind = 0; kind < acceleration_kinds; ++kind) {
+    linear.push_back(sums([](const Sample& sample) { return sample.velocity_m_s; },
+                          [kind](const Sample& sample) { return as_body_derivative(sample)[kind]; }));
+    left[kind] = left_of(linear[kind]);
   }
   const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
-  if (left[0] > unexplained * linear[0].changes.sum() && left[best] < better * left[0]) {
+  std::vector<double> gains = linear[0].each(left_of);
+  for (std::size_t block = 0; block < gains.size(); ++block) gains[block] -= left_of(linear[best].blocks[block]);
+  if (left[0] > unexplained * linear[0].changes.sum() && left[best] < better * left[0] && is_plain(gains)) {
     return Implausible{
         0, linear_field, "the derivative of the velocity in the body's axes in column " + field_name(linear_field, 0),
         std::string(acceleration_kind_texts[best]) + ", by how rates and velocity change from row to row"};

@@ -126,8 +126,15 @@ inline std::optional<Implausible> find_out_of_range(const Flight& flight) {
   return std::nullopt;
 }
 
-/// The cell of a column that is furthest from its median and has no neighbour like it.
-inline std::optional<Implausible> find_outlier(const Flight& flight, std::size_t field) {
+inline double row_period_s(const Flight& flight) {
+  RowSet all;
+  all.add(flight, {0, flight.size()});
+  return sample_period_s(all);
+}
+
+/// The cell of a column that is furthest from its median and has no neighbour like it. Beside a gap nothing is known of
+/// a neighbour: a knock whose next row was dropped is no wrong cell.
+inline std::optional<Implausible> find_outlier(const Flight& flight, std::size_t field, double period_s) {
   const ColumnPlausibility& column = column_plausibility[field];
   if (!(column.smallest_scale > 0) || flight.empty()) return std::nullopt;
   constexpr double normal = 1.4826;  // standard deviation of a normal column over its median absolute deviation
@@ -141,6 +148,11 @@ inline std::optional<Implausible> find_outlier(const Flight& flight, std::size_t
   double furthest = most_robust_deviations * scale;
   for (std::size_t row = 0; row < distance.size(); ++row) {
     if (!(distance[row] > furthest)) continue;
+    constexpr double gap = 1.5;  // periods
+    const auto parted = [&](std::size_t at) {
+      return at + 1 < flight.size() && !(flight[at + 1].time_s - flight[at].time_s <= gap * period_s);
+    };
+    if ((row > 0 && parted(row - 1)) || parted(row)) continue;
     const double before = row > 0 ? distance[row - 1] : 0;
     const double after = row + 1 < distance.size() ? distance[row + 1] : 0;
     if (std::max(before, after) > distance[row] / 2) continue;
@@ -154,9 +166,7 @@ inline std::optional<Implausible> find_outlier(const Flight& flight, std::size_t
 
 /// Rows further apart than those of any flight: a clock of another unit.
 inline std::optional<Implausible> find_other_clock(const Flight& flight) {
-  RowSet all;
-  all.add(flight, {0, flight.size()});
-  const double period_s = sample_period_s(all);
+  const double period_s = row_period_s(flight);
   if (is_clock_time(period_s)) return std::nullopt;
   return Implausible{1, 0, "rows at most " + number_text(longest_clock_s) + " s apart " + column_text(0),
                      number_text(period_s) + " (milliseconds? Then write t / 1000)"};
@@ -188,10 +198,27 @@ inline std::optional<detail::Implausible> find_implausible(const Flight& flight)
   if (auto found = detail::find_other_clock(flight)) return found;
   if (auto found = find_turning_mistake(flight)) return found;
   if (auto found = detail::find_out_of_range(flight)) return found;
+  const double period_s = detail::row_period_s(flight);
   for (std::size_t field = 0; field < sample_value_count; ++field) {
-    if (auto found = detail::find_outlier(flight, field)) return found;
+    if (auto found = detail::find_outlier(flight, field, period_s)) return found;
   }
   return find_acceleration_mistake(flight);
+}
+
+/// The columns whose axis and sign the motion of a flight doesn't confirm, "w_x, w_z, v_bx": too little of it.
+inline std::string motion_not_checked(const Flight& flight) {
+  using namespace detail;
+  std::string columns;
+  const auto say = [&columns](const MotionBlocks& sums, std::size_t first_field) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      if (!sums.confirms(axis)) columns += (columns.empty() ? "" : ", ") + field_name(first_field, axis);
+    }
+  };
+  say(turning_pair(flight, {}).sums(turning_step_s), rates_field);
+  const bool has_velocity = std::any_of(flight.begin(), flight.end(),
+                                        [](const Sample& sample) { return sample.velocity_m_s.squaredNorm() > 0; });
+  if (has_velocity) say(world_velocity_pair(flight).sums(turning_step_s), velocity_field);
+  return columns;
 }
 
 /// Throws InputError where find_implausible() finds something in a flight that was read from `path`:

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/logs/read_dataset.hpp"
 #include "pinnquad/logs/read_log.hpp"
 
 using pinnquad::logs::FlightLog;
@@ -174,6 +175,23 @@ TEST_CASE("tables of real flights: rows, labels, absent cells") {
     }
     CHECK(different == 0);
   }
+}
+
+/// A hundred rows between take-off and landing: v_bz moves, the others hardly do.
+TEST_CASE("a calm flight at PX4's default rates is imported, and says what it leaves unchecked") {
+  const std::string log = reference_folder() + "/cases/hover_false_vdot/hover_false_vdot.ulg";
+  if (!std::filesystem::exists(log)) {
+    MESSAGE("skipped: " << log << " does not exist");
+    return;
+  }
+  pinnquad::logs::LogSettings settings;
+  settings.mapping = "px4";
+  const auto dataset = pinnquad::logs::read_dataset({log}, settings);
+  CHECK(dataset.flights.size() == 1);
+  bool told = false;
+  for (const std::string& note : dataset.notes)
+    told = told || note.find("not checked: too little motion") != std::string::npos;
+  CHECK(told);
 }
 
 int main(int argc, char** argv) {
