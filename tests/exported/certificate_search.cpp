@@ -362,7 +362,7 @@ class SumsInDouble {
     }
     return sums;
   }
-  /// What rounding in double may do to a sum of the last motion.
+  /// A bound on what rounding in double does to a sum of the last motion.
   double doubt() const { return 1e-12 * largest_; }
 
  private:

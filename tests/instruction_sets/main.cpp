@@ -46,8 +46,8 @@ bool agrees(const std::vector<std::size_t>& sizes, const Parameters& parameters,
   return true;
 }
 
-/// Gelu, SiLU, softplus, sine, ELU and leaky ReLU between seven dense layers, in double; four ways to the same outputs and two to a
-/// Jacobian.
+/// Gelu, SiLU, softplus, sine, ELU and leaky ReLU between seven dense layers, in double; four ways to the same outputs
+/// and two to a Jacobian.
 bool agrees_smoothly(const float* x, const float* y) {
   const auto p = instruction_sets::some_parameters<instruction_sets::SmoothNet>();
   std::vector<double> values(x, x + 16);

@@ -48,7 +48,7 @@ class HelpFormatter : public CLI::Formatter {
     if (!commands(app).empty()) text += app->get_require_subcommand_min() == 0 ? " [COMMAND]" : " COMMAND";
     return text + "\n";
   }
-  /// What an option takes: its type, the default, how many.
+  /// An option's values: their type, the default, how many.
   std::string make_option_opts(const CLI::Option* option) const override {
     if (!option->get_option_text().empty()) return " " + option->get_option_text();
     std::string text;

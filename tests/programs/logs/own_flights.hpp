@@ -67,7 +67,7 @@ inline OwnFlight own_flight(std::size_t n) {
   return flight;
 }
 
-/// What a log has of one instant, NED and FRD.
+/// A log's numbers of one instant, NED and FRD.
 struct LoggedInstant {
   pinnquad::Quaternion<double> attitude;
   pinnquad::Vector3<double> rates_rad_s, derivative_rad_s2, force_m_s2, velocity_m_s, position_m;
