@@ -161,6 +161,28 @@ TEST_CASE("a bias beyond its bound hands over to the second with its own, and co
   CHECK(status == Status::ok);
 }
 
+TEST_CASE("a bias that is beyond its bound now and then hands over too") {
+  BiasSettings<double> narrow;
+  narrow.most = {0.1, 0.1, 0.1, 0.1};
+  narrow.time_constants_s = {0, 0, 0, 0};
+  const Learning first(Scripted{0.5}, airframe(), narrow), second(Scripted{0.6}, airframe());
+  HandsOver<double, Learning, Learning> both(first, second);
+  std::uint64_t now_us = 1'000'000;
+  const auto swing = [&](double within_s) {
+    for (int i = 0; i < 40; ++i) {
+      hover(both, 0.65, 0.1, now_us);
+      hover(both, 0.51, within_s, now_us);
+    }
+  };
+  swing(1.9);  // a twentieth of the time: it stays
+  CHECK(!both.handed_over());
+  swing(0.1);
+  CHECK(both.handed_over());
+  CHECK(both.at_bound() == both.second().at_bound());
+  hover(both, 0.51, 3, now_us);
+  CHECK(!both.handed_over());
+}
+
 TEST_CASE("where both stand at their bounds, as with a payload that none carries, the first stays") {
   BiasSettings<double> narrow;
   narrow.most = {0.1, 0.1, 0.1, 0.1};

@@ -317,6 +317,27 @@ def column(*columns, to):
     return change
 
 
+@pytest.fixture
+def slowed():
+    """slowed(flight, target): the flight of a vehicle 16 times as large, whose time is 4 times as slow (Froude): it
+    accelerates alike, and its rotors lag four times as long."""
+    powers = {"t": 1, "v_bx": 1, "v_by": 1, "v_bz": 1, "w_x": -1, "w_y": -1, "w_z": -1, "wdot_x": -2, "wdot_y": -2,
+              "wdot_z": -2}
+
+    def slow(flight, target):
+        names = Path(flight).read_text().splitlines()[0].split(",")
+        factors = [4.0 ** powers.get(name, 0) for name in names]
+
+        def change(line, cells):
+            for at, factor in enumerate(factors) if line > 1 else ():
+                if factor != 1:
+                    cells[at] = repr(float(cells[at]) * factor)
+
+        return edited(flight, target, change)
+
+    return slow
+
+
 def replaced(source, target, *pairs):
     """Writes a text with each pattern (of lines) replaced; each must be there."""
     text = Path(source).read_text()

@@ -9,7 +9,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from conftest import column, edited, no_partial_files
+from conftest import column, edited, no_partial_files, replaced
 
 FLOWN = "d1 --airframe px4_sih --seed 3 --samples 6000"
 FLIGHT = {name: at for at, name in enumerate(
@@ -151,6 +151,23 @@ def test_refused(pinnquad, flight, change, word, code):
     pinnquad.refused("identify --flight bad.csv --out vehicle.toml", at="bad.csv", keyword=word, code=code)
     assert not Path("vehicle.toml").exists()
     no_partial_files(".")
+
+
+def test_a_lag_that_no_quadrotor_has(pinnquad, flown, slowed):
+    """A vehicle of four times the time constants: nothing is written, and the range is said."""
+    slowed(flown("d1 --airframe crazyflie_2_1 --max-speed 2 --interval 10 --samples 6000"), "slow.csv")
+    said = pinnquad.refused("identify --flight slow.csv --airframe crazyflie_2_1 --out vehicle.toml", at="slow.csv",
+                            keyword="rotor lag is 0.24", code=1)
+    assert "quadrotors have 0 to 0.2 s" in said.lines[0] and not Path("vehicle.toml").exists()
+
+
+def test_roll_and_pitch_that_are_unlike(pinnquad):
+    """One of four times the other's moment of inertia is told, and identified."""
+    pinnquad("airframe convert px4_sih --out usual.toml")
+    replaced("usual.toml", "long.toml", ("^inertia_kg_m2 = .*", "inertia_kg_m2 = [0.012, 0.048, 0.055]"))
+    pinnquad("fly d1 --airframe long.toml --seed 3 --samples 6000 --out long.csv")
+    said = pinnquad("identify --flight long.csv --airframe long.toml --out made.toml").out
+    assert re.search("^warning: roll effectiveness is .* pitch effectiveness .* factor of 3", said, re.M), said
 
 
 def test_a_flight_of_a_dataset_is_named(pinnquad, flight, dataset):

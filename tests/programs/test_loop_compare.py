@@ -7,7 +7,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, until
+from conftest import SOURCE, replaced, until
 
 MODEL = SOURCE / "examples/models/structured_quadrotor.block"
 ROW = {"controller", "condition", "trajectory", "gains", "seed", "rmse_cm", "worst_cm", "recovery_s", "crashed"}
@@ -143,3 +143,27 @@ def test_a_folder_that_is_a_file(pinnquad):
     Path("c").write_text("mine")
     pinnquad.refused("loop --model", MODEL, "--out=c", "--seeds=1", keyword="c")
     assert Path("c").read_text() == "mine"
+
+
+def test_no_cliff_with_mass(pinnquad):
+    """A model of 1.5 kg on vehicles of up to 60 % more: incremental inversion makes it good, and no bound ends that."""
+    pinnquad("airframe convert paper_quadrotor --out usual.toml")
+    for percent in 0, 30, 35, 40, 50:
+        replaced("usual.toml", "heavy.toml", ("^mass_kg = .*", f"mass_kg = {1.5 * (1 + percent / 100)}"))
+        result = compared(pinnquad, "--airframe=heavy.toml", "--controllers=structured_indi", "--conditions=calm",
+                          "--trajectories=circle", "--gains=equal", "--seeds=1", "--duration=22", out=f"at{percent}")
+        assert errors_of(result, "calm")["structured_indi"] < 0.35, percent
+        assert result["rows"][0]["bias_at_bound_share"] == 0
+
+
+def test_a_bias_at_its_bound_is_said(pinnquad):
+    """Adaptive, of a vehicle that hovers at 0.72 and is told so, in a payload of 20 % beyond: more than 0.8 of the sum."""
+    replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "heavy.toml", ("^mass_kg = .*", "mass_kg = 2.05"))
+    words = ("--airframe=heavy.toml", "--controllers=adaptive", "--trajectories=eight", "--gains=equal", "--seeds=1",
+             "--duration=15", "--conditions=payload")
+    said = pinnquad("loop --model", MODEL, "--out=heavy", *words).out
+    row = json.loads(Path("heavy/loop.json").read_text())["rows"][0]
+    assert row["bias_at_bound_share"] > 0.1, row
+    assert "warning: adaptive, payload: its bias stood at its bound" in said, said
+    said = pinnquad("loop --model", MODEL, "--out=usual", *words[1:]).out
+    assert "warning" not in said, said

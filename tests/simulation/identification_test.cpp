@@ -202,6 +202,75 @@ TEST_CASE("rotors that rise faster than they fall, a thrust curve and a battery 
   CHECK(made->value.rotors[1].fall_time_constant_s == found.fall_s.value);
 }
 
+TEST_CASE("numbers that no quadrotor has make no airframe") {
+  const Airframe<double> like = airframe_value<Px4Sih, double>();
+  Identification usual;
+  usual.thrust_m_s2 = {5, 0.1};
+  usual.effectiveness_rad_s2 = {{{40, 1}, {40, 1}, {3.3, 0.1}}};
+  usual.lag_s = {0.05, 0.005};
+  usual.delay_s = {0.005, 0.002};
+  REQUIRE(identified_airframe(usual, like).has_value());
+  CHECK(!unlike_axes(usual));
+  const auto refused = [&](const std::string& key, const auto& change) {
+    CAPTURE(key);
+    Identification found = usual;
+    change(found);
+    CHECK_FALSE(identified_airframe(found, like).has_value());
+    const auto number = implausible_number(found, like);
+    REQUIRE(number.has_value());
+    CHECK(number->key == key);
+    CHECK(!number->range.holds(number->value));
+  };
+  refused("rotor_lag_s", [](Identification& found) { found.lag_s = {1.33, 0.1}; });
+  refused("fall_s", [](Identification& found) {
+    found.rise_s = {0.05, 0.01};
+    found.fall_s = {0.3, 0.02};
+    found.fall_after_rise_s = {0.25, 0.03};
+  });
+  refused("delay_s", [](Identification& found) { found.delay_s = {-0.528, 0.074}; });
+  refused("delay_s", [](Identification& found) { found.delay_s = {0.3, 0.05}; });
+  refused("roll_effectiveness_rad_s2", [](Identification& found) { found.effectiveness_rad_s2[0] = {3, 0.5}; });
+  refused("pitch_effectiveness_rad_s2", [](Identification& found) { found.effectiveness_rad_s2[1] = {2300, 50}; });
+  refused("yaw_effectiveness_rad_s2", [](Identification& found) { found.effectiveness_rad_s2[2] = {300, 5}; });
+  refused("inertia_x", [](Identification& found) { found.effectiveness_rad_s2 = {{{1400, 5}, {1400, 5}, {3, 1}}},
+                                                   found.thrust_m_s2 = {2.6, 0.1}; });
+  // what the flights do not tell to a half is not taken, and refuses nothing
+  Identification vague = usual;
+  vague.lag_s = {1.33, 1.2};
+  vague.delay_s = {0.3, 0.4};
+  CHECK(identified_airframe(vague, like).has_value());
+  Identification unlike = usual;
+  unlike.effectiveness_rad_s2[1] = {12, 1};
+  CHECK(unlike_axes(unlike).value_or(0) == doctest::Approx(40.0 / 12));
+  CHECK(identified_airframe(unlike, like).has_value());
+}
+
+TEST_CASE("of commands that were filtered before they were logged no lag is told that the fit did not converge to") {
+  std::mt19937_64 engine(3);
+  const Vehicle vehicle(airframe_value<Px4Sih, double>(), paper_site<double>(), QuadraticDrag{}, LinearDamping{});
+  FlightPlan plan;
+  plan.controls_per_sample = 5;
+  plan.samples = 6000;
+  RecorderErrors errors;
+  errors.gyro_noise_rad_s = 0.02;
+  errors.velocity_noise_m_s = 0.03;
+  errors.attitude_noise_rad = 0.005;
+  Flight rows = fly(
+                    vehicle, AgileFlight::pilot(vehicle, engine), plan, [](const auto&) {},
+                    NoisyRecorder<std::mt19937_64>(std::mt19937_64(5), errors))
+                    .flight;
+  constexpr double filter_s = 0.1;
+  const double share = 1 - std::exp(-plan.sample_period_s() / filter_s);
+  Commands<double> logged = rows[0].commands;
+  for (Sample& sample : rows) {
+    for (std::size_t k = 0; k < rotor_count; ++k) logged[k] += share * (sample.commands[k] - logged[k]);
+    sample.commands = logged;
+  }
+  const Identification found = identify({rows, {0, rows.size()}}, signs_of(airframe_value<Px4Sih, double>()));
+  CHECK_FALSE(is_told(found.lag_s, 0.5));
+  CHECK((found.delay_held || std::abs(found.delay_s.value) <= 0.3));
+}
+
 TEST_CASE("a vehicle that stands still, or that turns against its commands, is none") {
   std::mt19937_64 engine(9);
   const DrawnVehicle drawn = drawn_vehicle(0, engine);
