@@ -183,7 +183,8 @@ inline std::string do_not_fly(const std::string& title, const nlohmann::json& fl
 inline nlohmann::json fly_given(const pinnquad::BlockModel& model, const pinnquad::RowSet& training,
                                 const pinnquad::Airframe<double>& airframe) {
   try {
-    const LoopFlights flown = fly_loop(model, {loop_trajectories.front(), airframe, true, usual_columns(model, training)});
+    const LoopFlights flown =
+        fly_loop(model, {loop_trajectories.front(), airframe, true, usual_columns(model, training)});
     nlohmann::json result = {{"trajectory", "figure-eight"},
                              {"half_length_m", flown.half_length_m},
                              {"period_s", flown.period_s},
@@ -192,8 +193,10 @@ inline nlohmann::json fly_given(const pinnquad::BlockModel& model, const pinnqua
                              {"model", loop_figures(flown.model)},
                              {"against_formula", nlohmann::json::object()}};
     result["model"]["answered_share"] = answered_share(flown.model.fallback);
-    if (!lost_vehicle(result, "formula") && result["formula"]["rmse_m"] <= result["hover_trim"]["rmse_m"]) return result;
-    return {{"why_not", "the airframe's own analytic inverse does not fly it"}};
+    if (lost_vehicle(result, "formula") || result["formula"]["rmse_m"] > result["hover_trim"]["rmse_m"]) {
+      return {{"why_not", "the airframe's own analytic inverse does not fly it"}};
+    }
+    return result;
   } catch (const std::invalid_argument& refused) {
     return {{"why_not", refused.what()}};
   }

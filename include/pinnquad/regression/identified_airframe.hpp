@@ -27,7 +27,8 @@ struct IdentifiedAirframe {
 
 /// The airframe that answers commands as identified, of the mass, the arms, the spins and the propeller of `like`. A
 /// number that is not told to within 50 % is that of `like`. None where thrust, roll or pitch are not told, where the
-/// commands turn the vehicle against the airframe's signs, and where no quadrotor has the numbers (implausible_number()).
+/// commands turn the vehicle against the airframe's signs, and where no quadrotor has the numbers
+/// (implausible_number()).
 inline std::optional<IdentifiedAirframe> identified_airframe(const Identification& found,
                                                              const Airframe<double>& like) {
   constexpr double little_1_m = 0.05, pi = 3.141592653589793;
