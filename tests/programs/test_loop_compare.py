@@ -157,7 +157,7 @@ def test_no_cliff_with_mass(pinnquad):
 
 
 def test_a_bias_at_its_bound_is_said(pinnquad):
-    """Adaptive, of a vehicle that hovers at 0.72 and is told so, in a payload of 20 % beyond: more than 0.8 of the sum."""
+    """Adaptive, of a vehicle that hovers at 0.72 and is told so, in a payload of 20 %: more than 0.8 of the sum."""
     replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "heavy.toml", ("^mass_kg = .*", "mass_kg = 2.05"))
     words = ("--airframe=heavy.toml", "--controllers=adaptive", "--trajectories=eight", "--gains=equal", "--seeds=1",
              "--duration=15", "--conditions=payload")

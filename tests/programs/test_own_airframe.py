@@ -55,7 +55,7 @@ spin = "{spin}"
 
 @pytest.fixture
 def asymmetric():
-    """A vehicle of unequal arms, its centre of gravity off the middle; the ground effect of Conyers has no fit for it."""
+    """A vehicle of unequal arms, its centre of gravity off the middle; Conyers' ground effect has no fit for it."""
     Path("asym.toml").write_text(ASYMMETRIC)
     return "--airframe asym.toml"
 
@@ -68,7 +68,7 @@ def test_an_asymmetric_vehicle_hovers_near_the_ground(pinnquad, asymmetric):
 
 
 def test_what_flies_worse_than_hover_trim_is_not_exported_without_a_word(pinnquad, asymmetric):
-    """The one that errs least leaves the flight to its guard: the best that flies is exported, or its header, report and
+    """The one that errs least leaves the flight to its guard: the best that flies is exported, or header, report and
     terminal say DO NOT FLY."""
     pinnquad(f"fly d1 {asymmetric} --seed 11 --interval 20 --samples 9000 --out a.csv")
     words = f"train --flight a.csv {asymmetric} --models physics,ridge,ridge_causal --seeds 1"

@@ -257,7 +257,8 @@ def test_what_identify_refuses_no_header_holds(pinnquad, dataset, flown, slowed)
     vehicle = report_of("own")["vehicle"]
     assert vehicle["airframe"] == "assumed" and why.split(",")[1] in vehicle["not_identified_because"], vehicle
     assert {"roll effectiveness", "pitch effectiveness", "rotor lag"} <= set(vehicle["unknown"])
-    assert re.search("^train: warning: .*do not identify .*rotor lag is 0.24.*--airframe FILE.toml", done.err, re.M), done
+    told = "^train: warning: .*do not identify .*rotor lag is 0.24.*--airframe FILE.toml"
+    assert re.search(told, done.err, re.M), done
     lag = re.search(r"rotor_time_constant_s = Scalar\(([^)]*)\)", Path("own/model.hpp").read_text())
     assert float(lag.group(1)) < 0.1
 

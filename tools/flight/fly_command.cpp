@@ -248,9 +248,8 @@ class ChosenFlight {
                 report.max_altitude_m < 5 ? 2 : 1, report.max_altitude_m);
     std::printf("saturation  a rotor at its limit in %.2f %% of the rows\n", 100 * report.saturated_share);
     if (options_.ground_effect.empty() && ground_effect_ != PaperFlight::ground_effect) {
-      std::printf(
-          "note        the flight's own ground effect, %s, has no fit for a frame and propellers of this size\n",
-          programs::name_of(PaperFlight::ground_effect));
+      std::printf("note        the flight's own ground effect, %s, has no fit for a frame and propellers so large\n",
+                  programs::name_of(PaperFlight::ground_effect));
     }
     const std::array<double, 3> pcc = programs::axis_correlations(recorded.flight, airframe_);
     std::printf("correlation of angular acceleration and command sum: roll %.3f, pitch %.3f, yaw %.3f\n", pcc[0],
@@ -348,10 +347,9 @@ void add_options(CLI::App& app, FlyOptions& options) {
       ->type_name("NAME|FILE.toml")
       ->capture_default_str();
   add_number(app, "--max-speed", options.max_speed_m_s, 0.5, 8.0, "fastest the pilot flies, m/s (default: 8, d2 4)");
-  app.add_option(
-         "--ground-effect", options.ground_effect,
-         "none, cheeseman-bennett or conyers (default: d2 conyers, cheeseman-bennett where it has no fit for the "
-         "airframe; else none)")
+  app.add_option("--ground-effect", options.ground_effect,
+                 "none, cheeseman-bennett or conyers (default: d2 conyers, cheeseman-bennett where it has no fit for "
+                 "the airframe; else none)")
       ->type_name("MODEL");
   add_number(app, "--gyro-noise", options.gyro_noise_rad_s, 0.0, 10.0, "of the recording, standard deviation, rad/s");
   add_number(app, "--latency", options.latency_ms, 0.0, 1000.0, "of the recorded commands, ms");

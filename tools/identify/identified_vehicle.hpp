@@ -98,13 +98,12 @@ inline std::string unlike_axes_in_words(const pinnquad::Identification& found) {
   const auto ratio = pinnquad::unlike_axes(found);
   if (!ratio) return "";
   char text[240];
-  std::snprintf(
-      text, sizeof text,
-      "roll effectiveness is %.3g rad/s^2 (%s), pitch effectiveness %.3g (%s): a quadrotor's are alike within "
-      "a factor of %.0f; look at the motor order, or fly more of the axis with the wider interval",
-      found.effectiveness_rad_s2[0].value, interval_text(found.effectiveness_rad_s2[0]).c_str(),
-      found.effectiveness_rad_s2[1].value, interval_text(found.effectiveness_rad_s2[1]).c_str(),
-      pinnquad::plausible::roll_over_pitch);
+  std::snprintf(text, sizeof text,
+                "roll effectiveness is %.3g rad/s^2 (%s), pitch effectiveness %.3g (%s): a quadrotor's are alike "
+                "within a factor of %.0f; look at the motor order, or fly more of the axis with the wider interval",
+                found.effectiveness_rad_s2[0].value, interval_text(found.effectiveness_rad_s2[0]).c_str(),
+                found.effectiveness_rad_s2[1].value, interval_text(found.effectiveness_rad_s2[1]).c_str(),
+                pinnquad::plausible::roll_over_pitch);
   return text;
 }
 

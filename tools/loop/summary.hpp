@@ -118,11 +118,10 @@ inline std::vector<std::string> bias_warnings(const nlohmann::json& rows) {
   std::vector<std::string> lines;
   for (const auto& [flown, share] : most) {
     char text[200];
-    std::snprintf(
-        text, sizeof text,
-        "%s, %s: its bias stood at its bound for up to %.0f %% of a flight, and what is beyond it stays as an "
-        "error: tell it the mass and the rotors that fly (--airframe)",
-        flown[0].c_str(), flown[1].c_str(), std::max(1.0, 100 * share));
+    std::snprintf(text, sizeof text,
+                  "%s, %s: its bias stood at its bound for up to %.0f %% of a flight, and what is beyond it stays as "
+                  "an error: tell it the mass and the rotors that fly (--airframe)",
+                  flown[0].c_str(), flown[1].c_str(), std::max(1.0, 100 * share));
     lines.emplace_back(text);
   }
   return lines;

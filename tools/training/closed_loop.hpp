@@ -193,9 +193,10 @@ inline nlohmann::json fly_given(const pinnquad::BlockModel& model, const pinnqua
                              {"model", loop_figures(flown.model)},
                              {"against_formula", nlohmann::json::object()}};
     result["model"]["answered_share"] = answered_share(flown.model.fallback);
-    if (!lost_vehicle(result, "formula") && result["formula"]["rmse_m"] <= result["hover_trim"]["rmse_m"])
-      return result;
-    return {{"why_not", "the airframe's own analytic inverse does not fly it"}};
+    if (lost_vehicle(result, "formula") || result["formula"]["rmse_m"] > result["hover_trim"]["rmse_m"]) {
+      return {{"why_not", "the airframe's own analytic inverse does not fly it"}};
+    }
+    return result;
   } catch (const std::invalid_argument& refused) {
     return {{"why_not", refused.what()}};
   }

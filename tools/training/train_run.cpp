@@ -531,7 +531,8 @@ class Training {
         "  flown on the vehicle that %s, figure-eight of %.1f s: %s cm off; by the analytic inverse %s, "
         "without feed-forward %s\n",
         vehicle_.asked ? "was identified" : "was given", flown["period_s"].get<double>(), centimetres("model").c_str(),
-        centimetres("formula").c_str(), centimetres("hover_trim").c_str());
+        centimetres("formula").c_str(),
+        centimetres("hover_trim").c_str());
     const std::string compared = programs::comparison_in_words(flown["against_formula"]);
     if (!compared.empty()) {
       std::printf("    its sums of commands beside the formula's there, slope (rms difference): %s\n",

@@ -90,8 +90,8 @@ inline std::optional<ImplausibleNumber> implausible_effectiveness(const Identifi
 }
 
 /// The first number that no quadrotor has, with the arms of `like`. The delay, of which no airframe is made, counts
-/// where its whole interval lies outside: the law that was fitted is then not the vehicle's. None: all are plausible,
-/// or unknown.
+/// where its whole interval lies outside: the law that was fitted is then not the vehicle's. None: all are
+/// plausible, or not told.
 inline std::optional<ImplausibleNumber> implausible_number(const Identification& found, const Airframe<double>& like) {
   if (const auto lag = implausible_lag(found)) return lag;
   const PlausibleRange delays = plausible::delay_s;
