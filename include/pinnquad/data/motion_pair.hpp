@@ -31,8 +31,8 @@ inline bool is_plain(const std::vector<double>& gains) {
 }
 
 /// Blocks of `is_plain`: so many, unless they get shorter than what motions of one manoeuvre have in common.
-inline constexpr double most_blocks = 40, shortest_block_s = 0.2;
 inline std::size_t block_count(double duration_s) {
+  constexpr double most_blocks = 40, shortest_block_s = 0.2;
   return static_cast<std::size_t>(std::clamp(std::floor(duration_s / shortest_block_s), 1.0, most_blocks));
 }
 
