@@ -244,7 +244,8 @@ class FlightController {
 
   /// The jerk (NED) beside a limited acceleration: it turns the thrust no faster than an attitude error may, so that
   /// feedback can hold against a wrong one.
-  Vector3<Scalar> limited_jerk(const Vector3<Scalar>& jerk_m_s3, const Vector3<Scalar>& acceleration_m_s2) const noexcept {
+  Vector3<Scalar> limited_jerk(const Vector3<Scalar>& jerk_m_s3,
+                               const Vector3<Scalar>& acceleration_m_s2) const noexcept {
     using std::sqrt;
     const Vector3<Scalar> force = acceleration_m_s2 - Vector3<Scalar>(Scalar(0), Scalar(0), gravity_m_s2_);
     const Scalar most = limits_.max_roll_pitch_rate_rad_s * limits_.max_roll_pitch_rate_rad_s * force.squaredNorm();
