@@ -138,7 +138,8 @@ TEST_CASE("jumping and silent set points at 8 m/s with a weak motor: no tick wit
         CHECK_FALSE(jumps.figures.crashed);
         CHECK(jumps.figures.takeovers == 0);
         std::printf("jumps of %.0f m, %s, %s: error up to %.2f m, RMSE %.2f m\n", jump_m,
-                    silent ? "silence" : "no silence", by_analytic ? "analytic inverse" : "network", jumps.figures.max_error_m, jumps.figures.rmse_m);
+                    silent ? "silence" : "no silence", by_analytic ? "analytic inverse" : "network",
+                    jumps.figures.max_error_m, jumps.figures.rmse_m);
       }
     }
   }
