@@ -335,7 +335,7 @@ def slowed():
     """slowed(flight, target): the flight of a vehicle 16 times as large, whose time is 4 times as slow (Froude): it
     accelerates alike, and its rotors lag four times as long."""
     powers = {"t": 1, "v_bx": 1, "v_by": 1, "v_bz": 1, "w_x": -1, "w_y": -1, "w_z": -1, "wdot_x": -2, "wdot_y": -2,
-              "wdot_z": -2}
+              "wdot_z": -2, "altitude": 2}
 
     def slow(flight, target):
         names = Path(flight).read_text().splitlines()[0].split(",")

@@ -146,14 +146,16 @@ def test_a_folder_that_is_a_file(pinnquad):
 
 
 def test_no_cliff_with_mass(pinnquad):
-    """A model of 1.5 kg on vehicles of up to 60 % more: incremental inversion makes it good, and no bound ends that."""
+    """A model of 1.5 kg on vehicles of up to half more: incremental inversion by it flies them as INDI by the airframe
+    does."""
     pinnquad("airframe convert paper_quadrotor --out usual.toml")
     for percent in 0, 30, 35, 40, 50:
         replaced("usual.toml", "heavy.toml", ("^mass_kg = .*", f"mass_kg = {1.5 * (1 + percent / 100)}"))
-        result = compared(pinnquad, "--airframe=heavy.toml", "--controllers=structured_indi", "--conditions=calm",
+        result = compared(pinnquad, "--airframe=heavy.toml", "--controllers=indi,structured_indi", "--conditions=calm",
                           "--trajectories=circle", "--gains=equal", "--seeds=1", "--duration=22", out=f"at{percent}")
-        assert errors_of(result, "calm")["structured_indi"] < 0.35, percent
-        assert result["rows"][0]["bias_at_bound_share"] == 0
+        errors = errors_of(result, "calm")
+        assert errors["structured_indi"] < 1.1 * errors["indi"] + 0.03, (percent, errors)
+        assert all(row["bias_at_bound_share"] == 0 for row in result["rows"])
 
 
 def test_a_bias_at_its_bound_is_said(pinnquad):
@@ -163,7 +165,7 @@ def test_a_bias_at_its_bound_is_said(pinnquad):
              "--duration=15", "--conditions=payload")
     said = pinnquad("loop --model", MODEL, "--out=heavy", *words).out
     row = json.loads(Path("heavy/loop.json").read_text())["rows"][0]
-    assert row["bias_at_bound_share"] > 0.1, row
+    assert row["bias_at_bound_share"] > 0.01, row
     assert "warning: adaptive, payload: its bias stood at its bound" in said, said
     said = pinnquad("loop --model", MODEL, "--out=usual", *words[1:]).out
     assert "warning" not in said, said

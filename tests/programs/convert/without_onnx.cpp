@@ -24,7 +24,7 @@ bool refused(const Call& call) {
 }  // namespace
 
 int main() {
-  const bool reads = refused([] { programs::read_onnx("", "net.onnx"); });
+  const bool reads = refused([] { programs::read_onnx("", "net.onnx", {}); });
   const bool writes = refused([] { programs::onnx_bytes({}, "net.onnx"); });
   return reads && writes ? 0 : 1;
 }
