@@ -31,7 +31,8 @@ Imported imported(const OwnFlight& plan) {
   Imported result;
   try {
     const auto dataset = pinnquad::logs::read_dataset({log}, settings);
-    result.flights = dataset.flights.flights();
+    const auto& flights = dataset.flights.flights();
+    result.flights.assign(flights.begin(), flights.end());
     if (!dataset.contradictions.empty()) result.refused = dataset.contradictions.front();
   } catch (const std::exception& error) {
     result.refused = error.what();
