@@ -176,7 +176,8 @@ TEST_CASE("a tick says what the feed-forward came to, and keeps the feedback wha
   const TrajectoryPoint<double> still = test::Hover<double>{Vector3<double>(0, 0, -20), 0.0}.sample(0);
   for (int i = 0; i < status_count; ++i) {
     const auto chosen = static_cast<Status>(i);
-    TrackingController<double, ChosenStatus> controller(quadrotor.airframe(), FlightController<double>{}, {trim(), chosen});
+    TrackingController<double, ChosenStatus> controller(quadrotor.airframe(), FlightController<double>{},
+                                                        {trim(), chosen});
     Commands<double> commands{};
     CAPTURE(to_string(chosen));
     CHECK(controller(off, still, 0, commands) == (has_output(chosen) ? chosen : Status::fell_back));
@@ -196,7 +197,8 @@ TEST_CASE("a sum that leaves the commands' range is said to be limited, and does
   const TrajectoryPoint<double> still = test::Hover<double>{}.sample(0);
   Commands<double> commands{};
   for (const Status chosen : {Status::ok, Status::limited, Status::fell_back}) {
-    TrackingController<double, ChosenStatus> controller(quadrotor.airframe(), FlightController<double>{}, {much, chosen});
+    TrackingController<double, ChosenStatus> controller(quadrotor.airframe(), FlightController<double>{},
+                                                        {much, chosen});
     CHECK(controller(off, still, 0, commands) == (chosen == Status::ok ? Status::limited : chosen));
     CHECK(saturated(commands));
   }
