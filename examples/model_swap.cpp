@@ -97,7 +97,7 @@ int main() {
   const auto slots = std::make_unique<Slots>(TrainingGuard{});
   if (replace(*slots, block_a) != Status::ok) return 1;
 
-  // broken ones: a flipped bit, a cut, and a weight that is wrong under a checksum that is right
+  // broken ones: a flipped bit, a cut, and a weight that was edited under a checksum made again
   std::vector<unsigned char> flipped = block_a, wrong = block_b;
   flipped[flipped.size() / 2] ^= 0x10;
   const std::vector<unsigned char> cut(block_a.begin(), block_a.end() - 100);
@@ -113,7 +113,7 @@ int main() {
     if (replace(*slots, good) != Status::ok) ++faults;
     const bool all_refused = replace(*slots, flipped) == Status::block_corrupt &&
                              replace(*slots, cut) == Status::block_truncated &&
-                             replace(*slots, wrong) == Status::self_test_failed;
+                             replace(*slots, wrong) == Status::block_corrupt;
     all_refused ? refused += 3 : ++faults;
   }
   counts.over = true;

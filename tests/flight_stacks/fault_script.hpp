@@ -22,7 +22,7 @@ enum class FaultKind {
   commands_lost,     ///< the motors keep what they were told last
   model_swapped,     ///< for another sound one
   model_corrupt,     ///< offered, with a flipped bit
-  model_wrong,       ///< offered, with a weight that is wrong under a right checksum
+  model_wrong,       ///< offered, with a weight that is wrong under a right hash and checksum
   model_too_narrow,  ///< a sound one whose envelope holds hardly any motion: all is the analytic inverse's
   model_low,         ///< a sound one whose commands are all too low
   payload,           ///< the vehicle weighs `value` times what it did

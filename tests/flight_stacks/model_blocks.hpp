@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pinnquad/deploy/weight_file.hpp"
+#include "support/block_bytes.hpp"
 
 namespace pinnquad::autopilot::test {
 
@@ -93,14 +94,14 @@ Block corrupt_block() {
   return block;
 }
 
-/// With a checksum that is right.
-inline Block sealed(Block block) {
-  const std::uint32_t sum = pinnquad::crc32(block.data(), block.size() - 4);
-  for (std::size_t byte = 0; byte < 4; ++byte) block[block.size() - 4 + byte] = (sum >> (8 * byte)) & 0xffu;
-  return block;
+/// With a contents hash and a checksum that are right.
+inline Block sealed(const Block& block) {
+  pinnquad::test::BlockBytes bytes(block);
+  bytes.seal();
+  return {bytes.data(), bytes.data() + bytes.size()};
 }
 
-/// A weight that is wrong under a checksum that is right.
+/// A weight that is wrong under a hash and a checksum that are right.
 template <class Model>
 Block wrong_block() {
   Block block = sound_block<Model>();
