@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pinnquad/deploy/weight_file.hpp"
-#include "support/block_bytes.hpp"
+#include "../support/block_bytes.hpp"
 
 namespace pinnquad::autopilot::test {
 

@@ -10,7 +10,7 @@ using namespace pinnquad;
 
 TEST_CASE_TEMPLATE("ELU: what is above 0 to the bit, exp(v) - 1 below, and its slope", Scalar, float, double) {
   using Layer = Elu::Bind<Scalar, 1>;
-  constexpr double epsilon = std::numeric_limits<Scalar>::epsilon();
+  constexpr auto epsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
   // v, exp(v) - 1, exp(v): of 40 digits (Python's decimal)
   const double rows[][3] = {{-12, -0.99999385578764666, 6.1442123533282098e-6},
                             {-5, -0.99326205300091453, 6.7379469990854671e-3},
