@@ -157,7 +157,7 @@ def test_a_lag_that_no_quadrotor_has(pinnquad, flown, slowed):
     """A vehicle of four times the time constants: nothing is written, and the range is said."""
     slowed(flown("d1 --airframe crazyflie_2_1 --max-speed 2 --interval 10 --samples 6000"), "slow.csv")
     said = pinnquad.refused("identify --flight slow.csv --airframe crazyflie_2_1 --out vehicle.toml", at="slow.csv",
-                            keyword="rotor lag is 0.24", code=1)
+                            keyword="rotor lag is 0.23", code=1)
     assert "quadrotors have 0 to 0.2 s" in said.lines[0] and not Path("vehicle.toml").exists()
 
 
