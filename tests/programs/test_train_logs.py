@@ -251,13 +251,13 @@ def test_what_identify_refuses_no_header_holds(pinnquad, dataset, flown, slowed)
     names = [f"slow{seed}" for seed in (1, 2, 3)]
     dataset("slow", {name: slowed(flown(f"d1 --airframe crazyflie_2_1 --max-speed 2 --interval 10 --seed {name[-1]} "
                                         "--samples 6000"), f"{name}.csv") for name in names})
-    refused = pinnquad.refused("identify --dataset slow --airframe crazyflie_2_1", keyword="rotor lag is 0.24", code=1)
+    refused = pinnquad.refused("identify --dataset slow --airframe crazyflie_2_1", keyword="rotor lag is 0.2", code=1)
     why = refused.lines[0].split("columns u1 to u4: ")[1].split(":")[0]
     done = pinnquad("train --dataset slow --hold-out slow2 --models constant,ridge --seeds 1 --out own")
     vehicle = report_of("own")["vehicle"]
     assert vehicle["airframe"] == "assumed" and why.split(",")[1] in vehicle["not_identified_because"], vehicle
     assert {"roll effectiveness", "pitch effectiveness", "rotor lag"} <= set(vehicle["unknown"])
-    told = "^train: warning: .*do not identify .*rotor lag is 0.24.*--airframe FILE.toml"
+    told = "^train: warning: .*do not identify .*rotor lag is 0.2.*--airframe FILE.toml"
     assert re.search(told, done.err, re.M), done
     lag = re.search(r"rotor_time_constant_s = Scalar\(([^)]*)\)", Path("own/model.hpp").read_text())
     assert float(lag.group(1)) < 0.1

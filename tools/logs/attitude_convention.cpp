@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
-#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 
 namespace pinnquad::logs {
@@ -62,16 +60,14 @@ std::optional<std::string> check_attitude(double period_s, const AttitudeConvent
                                           const std::array<const std::vector<double>*, 3>& body_rates_rad_s,
                                           const std::array<const std::vector<double>*, 3>& specific_force_m_s2) {
   constexpr double step_s = 0.2, misses = 0.5, better = 1.0 / 3, smallest_rates = 1e-3;
-  struct Block {
-    std::array<double, attitude_conventions> left{};
-    std::array<Vector3<double>, attitude_conventions> force;
-    double rates = 0, steps = 0;
-    Block() { force.fill(Vector3<double>::Zero()); }
-  };
-  const Vector3<double> up(0, 0, -standard_gravity_m_s2<double>);
+  constexpr std::size_t fewest_steps = 20;
   const auto step = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(step_s / period_s)));
   const std::size_t rows = q[0]->size();
-  std::vector<Block> blocks(detail::block_count(static_cast<double>(rows) * period_s));
+  std::array<double, attitude_conventions> left{};
+  std::array<Vector3<double>, attitude_conventions> force;
+  force.fill(Vector3<double>::Zero());
+  double rates = 0;
+  std::size_t steps = 0;
   for (std::size_t first = 0; first + step < rows; first += step) {
     Vector3<double> rate = Vector3<double>::Zero(), held = rate;
     bool whole = true;
@@ -92,10 +88,9 @@ std::optional<std::string> check_attitude(double period_s, const AttitudeConvent
     }
     whole = whole && rate.allFinite() && held.allFinite();
     if (!whole) continue;
-    Block& block = blocks[first * blocks.size() / rows];
-    block.steps += 1;
-    block.rates += rate.squaredNorm();
-    for (std::size_t c = 0; c < attitude_conventions; ++c) {
+    steps += 1;
+    rates += rate.squaredNorm();
+    for (std::size_t c = 0; c < left.size(); ++c) {
       const AttitudeConvention as = attitude_convention(c);
       const Quaternion<double> a = read_attitude(at[0], as), b = read_attitude(at[2], as);
       const Quaternion<double> turn = conjugate(a) * b;
@@ -103,53 +98,36 @@ std::optional<std::string> check_attitude(double period_s, const AttitudeConvent
       const double sine = v.norm();
       const double angle = 2 * std::atan2(sine, std::abs(turn.w));
       const double to_rate = sine > 1e-12 ? angle / (sine * static_cast<double>(step) * period_s) : 0;
-      block.left[c] += (rate - v * to_rate).squaredNorm();
-      block.force[c] += body_to_world(normalized(read_attitude(at[1], as)), held);
+      left[c] += (rate - v * to_rate).squaredNorm();
+      force[c] += body_to_world(normalized(read_attitude(at[1], as)), held);
     }
   }
-  std::vector<double> energies;
-  for (const Block& block : blocks) energies.push_back(block.rates);
-  const std::vector<double> weights = detail::block_weights(energies);
-  Block all;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    all.steps += blocks[i].steps;
-    all.rates += weights[i] * blocks[i].rates;
-    for (std::size_t c = 0; c < attitude_conventions; ++c) {
-      all.left[c] += weights[i] * blocks[i].left[c];
-      all.force[c] += blocks[i].force[c];
-    }
-  }
-  if (!(all.steps > 0)) return std::nullopt;
-  const bool turns = all.rates > smallest_rates * all.steps;
+  if (steps < fewest_steps) return std::nullopt;
+  const auto count = static_cast<double>(steps);
   std::array<double, attitude_conventions> miss{};
   for (std::size_t c = 0; c < miss.size(); ++c) {
-    miss[c] = (turns ? std::min(1.0, all.left[c] / all.rates) : 0) +
-              std::min(1.0, (all.force[c] / all.steps - up).norm() / standard_gravity_m_s2<double>);
+    const Vector3<double> up(0, 0, -standard_gravity_m_s2<double>);
+    const double turning = rates > smallest_rates * count ? std::min(1.0, left[c] / rates) : 0;
+    miss[c] = turning + std::min(1.0, (force[c] / count - up).norm() / standard_gravity_m_s2<double>);
   }
   const auto best = static_cast<std::size_t>(std::min_element(miss.begin(), miss.end()) - miss.begin());
   const double missed = miss[index_of(read)];
   if (!(missed >= misses) || !(miss[best] < better * missed)) return std::nullopt;
-  std::vector<double> gains;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const auto missed_by = [&](std::size_t c) {
-      return (turns ? weights[i] * blocks[i].left[c] / all.rates : 0) +
-             (blocks[i].force[c] - blocks[i].steps * up).norm() / (all.steps * standard_gravity_m_s2<double>);
-    };
-    gains.push_back(missed_by(index_of(read)) - missed_by(best));
-  }
-  if (!detail::is_plain(gains)) return std::nullopt;
   return difference_sentence(attitude_convention(best), read) +
          ", by how it turns with the body rates and where it points the specific force";
 }
 
 std::optional<std::string> check_thrust_direction(const std::vector<double>& specific_force_z_m_s2) {
   constexpr double clearly = 0.3;
-  std::vector<double> finite;
+  double sum = 0;
+  std::size_t count = 0;
   for (const double z : specific_force_z_m_s2) {
-    if (std::isfinite(z)) finite.push_back(z);
+    if (!std::isfinite(z)) continue;
+    sum += z;
+    ++count;
   }
-  if (finite.empty() || detail::median_of(std::move(finite)) < clearly * standard_gravity_m_s2<double>)
-    return std::nullopt;
+  const double mean = count > 0 ? sum / (static_cast<double>(count) * standard_gravity_m_s2<double>) : 0;
+  if (mean < clearly) return std::nullopt;
   return "the specific force points along +z of the body, which is down: the log's body is x forward, y left, z up "
          "(FLU), or its accelerometer has the other sign";
 }

@@ -29,15 +29,15 @@ std::array<double, 4> written_attitude(Quaternion<double> q, const AttitudeConve
 /// Series on one uniform clock, rows with a NaN left out; `q`: w, x, y, z of the attitudes as they were read. In each
 /// convention: the share of the body rates' squares that the turning of the attitude over 0.2 s leaves, and the
 /// distance of the mean specific force in the world to -g, in g (at most 1 each). A finding where the convention of
-/// `read` misses by 0.5 or more in sum, and another by less than a third of that, plainly (data/motion_pair.hpp).
-/// number: the sum. Limits: a vehicle that neither turns nor tilts says only which way is up; heading is not judged (no
-/// magnetic field is known); rates and force must be in FRD.
+/// `read` misses by 0.5 or more in sum, and another by less than a third of that. number: the sum. Limits: a vehicle
+/// that neither turns nor tilts says only which way is up; heading is not judged (no magnetic field is known); rates
+/// and force must be in FRD.
 std::optional<std::string> check_attitude(double period_s, const AttitudeConvention& read,
                                           const std::array<const std::vector<double>*, 4>& q,
                                           const std::array<const std::vector<double>*, 3>& body_rates_rad_s,
                                           const std::array<const std::vector<double>*, 3>& specific_force_m_s2);
 
-/// Rotors push along -z of FRD: a specific force mostly along +z is that of another body frame. number: the median, g.
+/// Rotors push along -z of FRD: a mean specific force along +z is that of another body frame. number: the mean in g.
 std::optional<std::string> check_thrust_direction(const std::vector<double>& specific_force_z_m_s2);
 
 }  // namespace pinnquad::logs
