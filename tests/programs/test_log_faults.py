@@ -420,7 +420,7 @@ def test_a_tumble_at_the_end(pinnquad, recorded, name):
 
 @pytest.mark.parametrize("pattern, new, words, code", [
     ('order = "px4"', 'order = "betaflight"', ("u1 to u4", "% of roll"), 0),
-    ('order = "wxyz"', 'order = "xyzw"', ("w_x", "order w, x, y, z"), 2),
+    ('order = "wxyz"', 'order = "xyzw"', ("the attitude is in the order w, x, y, z",), 0),  # it hardly turns
     ('direction = "body_to_world"', 'direction = "world_to_body"', ("w_x", "turns the body into the world"), 2),
     ('^body = "frd"', 'body = "flu"', ("vdot_bz", "(FLU)", "-4.17"), 0),
     ('(topic = "vehicle_angular_velocity")', r'\1\nunit = "deg/s"', ("w_x", "57", "agreement"), 2),
@@ -428,3 +428,9 @@ def test_a_tumble_at_the_end(pinnquad, recorded, name):
 def test_a_mapping_that_errs(pinnquad, sih, pattern, new, words, code):
     replaced(SOURCE / "examples/mappings/px4.toml", "wrong.toml", (pattern, new))
     finds(pinnquad("import --mapping wrong.toml --out wrong", sih / "payload.ulg", code=code), words)
+
+
+def test_an_order_of_quaternions_that_errs_in_a_flight_that_turns(pinnquad, recorded):
+    replaced(SOURCE / "examples/mappings/px4.toml", "wrong.toml", ('order = "wxyz"', 'order = "xyzw"'))
+    finds(pinnquad("import --mapping wrong.toml --out wrong", recorded("sih/test_circle.ulg"), code=2),
+          ("w_x", "order w, x, y, z"))
