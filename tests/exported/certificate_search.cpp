@@ -18,6 +18,7 @@
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/outputs/rigid_body_base.hpp"
+#include "support/block_bytes.hpp"
 #include "support/random_states.hpp"
 
 using namespace pinnquad;
@@ -173,12 +174,11 @@ class Maker {
             : (axis_commands_ ? take_outputs<AxisCommandOutputs>() : take_outputs<CommandOutputs>());
     model_.golden_features.push_back(model_.input_mean);
     model_.golden_commands.push_back({});
-    const auto first = detail::block_of(model_);
-    std::vector<std::uint64_t> aligned((first.size() + 7) / 8);
-    std::memcpy(aligned.data(), first.data(), first.size());
+    test::BlockBytes first(detail::block_of(model_));
+    first.seal();
     const auto read = std::make_unique<RunTimeModel<Scalar>>();
     BlockFault fault;
-    const Status status = RunTimeModel<Scalar>::open(aligned.data(), first.size(), *read, fault);
+    const Status status = RunTimeModel<Scalar>::open(first.data(), first.size(), *read, fault);
     INFO("expected " << (fault.expected == nullptr ? "" : fault.expected));
     INFO(model_.answer);
     REQUIRE(status == Status::ok);

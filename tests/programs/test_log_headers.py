@@ -9,7 +9,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, edited
+from conftest import SOURCE, Program, edited
 
 FLIGHT_FLAGS = ["-fno-exceptions", "-fno-rtti", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wshadow",
                 "-Werror"]
@@ -56,7 +56,7 @@ def fly_cores(compiler, pinnquad):
     def fly():
         compiler("", "-O1", *FLIGHT_FLAGS, *INCLUDES, "-Ione", CORES, "-o", "cores")
         Path("logged").mkdir()
-        said = type(compiler)(Path("cores").resolve())("one/model.block other/model.block logged").out
+        said = Program(Path("cores").resolve())("one/model.block other/model.block logged").out
         for stack in "px4_module", "crazyflie_app":
             assert f"{stack} other block: ok" in said, said
             done = pinnquad(f"replay logged/{stack}_pinnquad_record_0.csv --model one/model.block --model other/model.block")

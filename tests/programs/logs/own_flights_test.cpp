@@ -74,7 +74,7 @@ TEST_CASE("every fault is found in a lively flight") {
   REQUIRE(read.refused == "");
   REQUIRE(read.flights.size() == 1);
   for (const PlantedFault& fault : planted_faults()) {
-    CAPTURE(fault.name);
+    CAPTURE(std::string(fault.name));
     CHECK(pinnquad::find_implausible(with_fault(read.flights[0], fault)).has_value());
   }
 }
