@@ -75,8 +75,8 @@ TEST_CASE("faults are found in a lively flight, but for two") {
   REQUIRE(read.flights.size() == 1);
   for (const PlantedFault& fault : planted_faults()) {
     const std::string name = fault.name;
-    // two that the rows alone do not tell here: this flight turns little about z; where the attitude points the specific
-    // force, import finds the other (test_log_faults.py)
+    // two that the rows alone do not tell here: this flight turns little about z; import finds the other by where the
+    // attitude points the specific force (test_log_faults.py)
     if (name == "yaw negated" || name == "a conjugated attitude") continue;
     CAPTURE(name);
     CHECK(pinnquad::find_implausible(with_fault(read.flights[0], fault)).has_value());
