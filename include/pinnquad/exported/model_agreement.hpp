@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
 
@@ -15,7 +16,9 @@ namespace pinnquad {
 /// Times that an exported model can state of its clock: a sample period, a lag that was removed. False for NaN.
 inline constexpr double longest_clock_s = 4.0;
 /// 0 to longest_clock_s.
-constexpr bool is_clock_time(double seconds) noexcept { return seconds >= 0.0 && seconds <= longest_clock_s; }
+PINNQUAD_ALWAYS_INLINE constexpr bool is_clock_time(double seconds) noexcept {
+  return seconds >= 0.0 && seconds <= longest_clock_s;
+}
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
@@ -79,8 +82,9 @@ constexpr bool same_bound(Scalar stated, Scalar standardised, Scalar deviation) 
   const double bound = static_cast<double>(standardised) * static_cast<double>(deviation);
   const double difference = static_cast<double>(stated) - bound;
   constexpr double share = 8 * static_cast<double>(Limits::epsilon()) + 128 * std::numeric_limits<double>::epsilon();
+  constexpr double least = 2 * static_cast<double>(Limits::denorm_min());
   const double rounding = share * (bound < 0 ? -bound : bound);
-  return (difference < 0 ? -difference : difference) <= rounding + 2 * static_cast<double>(Limits::denorm_min());
+  return (difference < 0 ? -difference : difference) <= rounding + least;
 }
 
 /// A stated range of a residual against `bounds` among the parameters, as StatedStructure; read where there is a
