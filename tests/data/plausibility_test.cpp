@@ -219,7 +219,7 @@ TEST_CASE("the motion is looked at over a fifth of a second: a sway that comes b
   double time_s = 0;
   for (Sample& s : flight) {
     s.time_s = time_s;
-    const double phase = per_s * std::min(time_s, 130 * step_s);  // whole periods: no step of a part of one
+    const double phase = per_s * std::min(time_s, 390 * step_s);  // whole periods: no step of a part of one
     s.roll_rad = degrees * 0.01 * std::cos(phase);
     s.pitch_rad = s.yaw_rad = 0;
     s.body_rates_rad_s = Vector3<double>(-0.01 * per_s * std::sin(phase), 0, 0);
