@@ -5,7 +5,12 @@
 cmake_minimum_required(VERSION 3.22)
 
 # <file>:<line>:<column>:<function> TAB <bytes> TAB <static | dynamic | dynamic,bounded>
-file(STRINGS "${STACK_USAGE}" lines)
+# A name may hold what parts or joins the elements of a list: g++ cuts that of a lambda behind a bracket.
+file(READ "${STACK_USAGE}" lines)
+string(REGEX REPLACE "[][]" "" lines "${lines}")
+string(REPLACE ";" "," lines "${lines}")
+string(REGEX REPLACE "\n$" "" lines "${lines}")
+string(REPLACE "\n" ";" lines "${lines}")
 set(rejected 0)
 set(entries 0)
 foreach(line IN LISTS lines)
