@@ -236,8 +236,8 @@ class Graph {
     return found ? found->i() : otherwise;
   }
 
-  /// Of a tensor of the file, by name. Throws for a type that is none of a network's numbers, dims that do not fit its
-  /// data, and NaN.
+  /// The numbers of a tensor of the file, by name. Throws for a type that is none of a network's numbers, dims that do
+  /// not fit its data, and NaN.
   Constant constant(const std::string& name) {
     const auto made = made_.find(name);
     if (made != made_.end()) return made->second;

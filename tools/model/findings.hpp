@@ -29,7 +29,7 @@ struct Findings {
   std::vector<AskedMore> ways;     ///< of the search
   std::vector<std::string> names;  ///< of the features
   bool past_or_future = false;     ///< other taps of a window show an angular acceleration too
-  /// Of an affine base and what is added to it: features that show an angular acceleration beside the threes that it
+  /// Features of an affine base, and of its residual, that show an angular acceleration beside the threes that it
   /// counts, and features of which nobody knows. With one nothing is proven of the structure.
   std::vector<std::string> uncounted;
 

@@ -167,7 +167,7 @@ inline std::string unfit_to_fly(const nlohmann::json& flown) {
   return text;
 }
 
-/// Of a model that is not fit to fly, and is exported: why, by how much, and what to do. Empty of one that is.
+/// The sentence of an exported model that is not fit to fly: why, by how much, what to do. Empty for one that is fit.
 inline std::string do_not_fly(const std::string& title, const nlohmann::json& flown) {
   const std::string unfit = unfit_to_fly(flown);
   if (unfit.empty()) return "";

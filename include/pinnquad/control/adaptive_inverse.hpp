@@ -171,7 +171,7 @@ class HandsOver {
   const First& first() const noexcept { return first_; }
   const Second& second() const noexcept { return second_; }
   bool handed_over() const noexcept { return handed_over_; }
-  /// Of the one that answers.
+  /// True where the inverse that answers is at its bound.
   bool at_bound() const noexcept { return handed_over_ ? second_.at_bound() : first_.at_bound(); }
 
   /// `fell_back` where the second answers.

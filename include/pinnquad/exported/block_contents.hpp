@@ -139,7 +139,7 @@ class BlockContents {
     const std::uint64_t second = all + format(2);
     return silent && (hash == second + output_unit() || hash == second + output_units());
   }
-  /// Of a header of today's format: for who writes a block.
+  /// The hash of a header of today's format, for a writer of blocks.
   std::uint64_t of_today() const noexcept {
     constexpr std::uint64_t seed = seed_of("format_version");
     RunTimeHash version{seed};

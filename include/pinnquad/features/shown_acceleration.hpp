@@ -54,7 +54,7 @@ constexpr ShownAcceleration shown_acceleration(std::string_view name, std::strin
   }
   return ShownAcceleration::unknown;
 }
-/// Of entry `feature` of X.
+/// The angular acceleration that entry `feature` of X shows.
 template <class Features>
 constexpr ShownAcceleration shown_acceleration_of(int feature) noexcept {
   const auto at = static_cast<std::size_t>(feature);
