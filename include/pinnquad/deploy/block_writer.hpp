@@ -83,7 +83,7 @@ std::vector<std::uint64_t> unrounded_numbers(const WrittenRecords& records) {
   const double period = records.sample_period_s, lag = records.lag_removed_s;
   bool same = exact(lower, static_cast<double>(static_cast<Scalar>(lower))) &&
               exact(upper, static_cast<double>(static_cast<Scalar>(upper))) &&
-              exact(period, nanoseconds(period) / 1e9) && exact(lag, nanoseconds(lag) / 1e9);
+              exact(period, seconds_of(nanoseconds(period))) && exact(lag, seconds_of(nanoseconds(lag)));
   if (sizeof(Scalar) < sizeof(double)) {
     const AllocationMatrix<double> own = allocation(records.airframe);
     for (std::size_t i = 0; i < own.size(); ++i) {

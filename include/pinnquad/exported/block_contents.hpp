@@ -260,8 +260,8 @@ class BlockContents {
     std::uint64_t sum = records + meanings[static_cast<unsigned>(said_.command_meaning)];
     sum += number(lower, stated ? unrounded(0) : static_cast<double>(said_.command_lower));
     sum += number(upper, stated ? unrounded(1) : static_cast<double>(said_.command_upper));
-    sum += number(period, stated ? unrounded(2) : said_.sample_period_ns / 1e9);
-    sum += number(lag, stated ? unrounded(3) : said_.lag_removed_ns / 1e9);
+    sum += number(period, stated ? unrounded(2) : seconds_of(said_.sample_period_ns));
+    sum += number(lag, stated ? unrounded(3) : seconds_of(said_.lag_removed_ns));
     RunTimeHash one{answer};
     one.add_text(said_.answer);
     sum += one.hash;

@@ -115,7 +115,7 @@ struct BlockRecords : ModelRecords<Scalar> {
       case BlockRecord::clock: {
         this->sample_period_ns = read_u32(bytes);
         this->lag_removed_ns = read_u32(bytes + 4);
-        const double period_s = this->sample_period_ns / 1e9, lag_s = this->lag_removed_ns / 1e9;
+        const double period_s = seconds_of(this->sample_period_ns), lag_s = seconds_of(this->lag_removed_ns);
         if (!in_range<StatedNumber::sample_period_s>(period_s)) return refuse(StatedNumber::sample_period_s, period_s);
         if (!in_range<StatedNumber::lag_removed_s>(lag_s)) return refuse(StatedNumber::lag_removed_s, lag_s);
         break;

@@ -209,7 +209,7 @@ class RunTimeModel {
       return corrupt("a description of its inputs, outputs and parameters", "one of others");
     }
     const RunTimeWindow window(static_cast<int>(records_.window_taps < 65 ? records_.window_taps : 65),
-                               records_.causal != 0, records_.sample_period_ns / 1e9);
+                               records_.causal != 0, detail::seconds_of(records_.sample_period_ns));
     if (window.taps > 1 && !window.causal && window.taps % 2 == 0)
       return corrupt("an odd centred window", "an even one");
     if (!features_.read(records_.features, int(inputs), window)) {
