@@ -20,8 +20,6 @@ using pinnquad::autopilot::NeuralController;
 using pinnquad::autopilot::Reaction;
 using pinnquad::autopilot::StepReport;
 
-constexpr double thrust_of_weak_motor = 0.85;
-
 /// Draws of one demand and motion. `far`: numbers up to the greatest that a core accepts.
 class Draws {
  public:
@@ -95,17 +93,10 @@ struct Jumps {
   FlightFigures figures;
 };
 
-/// A figure-eight at 8 m/s with a weak motor; every 1.4 s the set points jump for 0.7 s, or fall silent for 0.4 s.
-/// Jerk is sent, too.
+/// A figure-eight at 8 m/s, jerk sent too.
 template <class Stack>
 Jumps flown(bool by_analytic, double jump_m, bool silent) {
-  std::vector<Fault> faults = {{4, 100, FaultKind::bent_rotor, thrust_of_weak_motor, "a weak motor", Reaction::flies}};
-  if (by_analytic) faults.push_back({0.5, 100, FaultKind::model_too_narrow, 0, "no network", Reaction::flies});
-  for (int i = 0; i < 8; ++i) {
-    const double at_s = 5 + 1.4 * i;
-    if (jump_m > 0) faults.push_back({at_s, 0.7, FaultKind::set_point_jumps, jump_m, "a jump", Reaction::flies});
-    if (silent) faults.push_back({at_s, 0.4, FaultKind::set_point_stops, 0, "silence", Reaction::flies});
-  }
+  const std::vector<Fault> faults = jumps_with_a_weak_motor(by_analytic, jump_m, silent);
   FaultyFlight<Stack> flight;
   REQUIRE(flight.boot());
   Jumps result;

@@ -2,6 +2,7 @@
 // Flies a core through the fault script in the simulator and writes what it received and answered, with the models that
 // flew, for `pinnquad replay`.
 //   flight_stacks_record px4|crazyflie|structured|payload hover|eight|random_places FOLDER
+//   flight_stacks_record jumps eight FOLDER  a weak motor, jumping and silent set points at 8 m/s
 // `structured`: PX4's core with a structured model, other effects in the analytic inverse and limits of trust, in a
 // flight with a payload. `payload`: a model that needs much of its bias without one, without limits of trust.
 #include <cstdio>
@@ -80,6 +81,9 @@ int main(int count, char** arguments) {
   }
   if (std::strcmp(arguments[1], "payload") == 0) {
     return record<Px4Stack>(arguments[2], arguments[3], 4, 9, 1.5, {payload.begin(), payload.end()});
+  }
+  if (std::strcmp(arguments[1], "jumps") == 0) {
+    return record<Px4Stack>(arguments[3], FastEight{}, jumps_with_a_weak_motor(true, 2, true));
   }
   return std::strcmp(arguments[1], "px4") == 0
              ? record<Px4Stack>(arguments[2], arguments[3], 4, 9, 1.5)

@@ -293,6 +293,16 @@ def test_payload(core, same, differs):
     differs(r"first at .*analytic_bias_sums\[2\]", part, *low)
 
 
+def test_jumps(core, same):
+    """Set points that jump and fall silent at 8 m/s, a weak motor, the analytic inverse alone: no tick without an
+    answer, and replay repeats them to the bit."""
+    folder = core("jumps", "eight")
+    same(folder, *models(folder), "--tolerance", "0")
+    ticks = table(folder / RECORD)
+    assert len(ticks) > 10000
+    assert not [tick for tick in ticks if float(tick["reaction"]) > REACTIONS.index("holds position")]
+
+
 def test_earlier_core(pinnquad, eight):
     """Ticks of a core whose bias was an acceleration."""
     head(eight / RECORD, "short.csv", 101)
