@@ -6,6 +6,7 @@
 #include "logs/command_lag.hpp"
 #include "logs/log_checks.hpp"
 #include "logs/motor_order.hpp"
+#include "pinnquad/data/motion_pair.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad::logs {
@@ -29,9 +30,33 @@ struct OrderMoments {
   }
 };
 
-OrderMoments order_moments(const std::vector<LagSeries>& segments) {
+/// Moments of a flight. A crash or a catch by hand weighs no more than the liveliest of the other blocks of time.
+LagMoments weighted_moments(const std::vector<LagSeries>& segments, double period_s) {
   std::size_t rows = 0;
-  LagMoments moments = lag_moments(segments, 0, 0, 0, 1, rows);
+  for (const LagSeries& segment : segments) rows += segment.size();
+  const std::size_t length = std::max<std::size_t>(1, rows / detail::block_count(static_cast<double>(rows) * period_s));
+  std::vector<LagMoments> blocks;
+  std::vector<double> energies;
+  for (const LagSeries& segment : segments) {
+    const std::vector<LagSeries> one = {segment};
+    const std::size_t parts = std::max<std::size_t>(1, segment.size() / length);
+    for (std::size_t part = 0; part < parts; ++part) {
+      const std::size_t first = part * segment.size() / parts, last = (part + 1) * segment.size() / parts;
+      blocks.push_back(lag_moments(one, first, segment.size() - last, 0, 1, rows));
+      energies.push_back((blocks.back()[8][8] + blocks.back()[9][9]) / static_cast<double>(rows));
+    }
+  }
+  const std::vector<double> weights = detail::block_weights(energies);
+  LagMoments sum{};
+  for (std::size_t block = 0; block < blocks.size(); ++block) {
+    for (std::size_t i = 0; i < lag_columns; ++i) {
+      for (std::size_t j = 0; j < lag_columns; ++j) sum[i][j] += weights[block] * blocks[block][i][j];
+    }
+  }
+  return sum;
+}
+
+OrderMoments order_moments(LagMoments moments) {
   const LagMoments whole = moments;
   for (const unsigned k : {0u, 5u, 6u, 7u}) take_out(moments, k, 1e-12 * whole[k][k]);
   OrderMoments result;
@@ -58,40 +83,40 @@ MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const 
   };
   MotorOrderCheck check;
   Order best = identity;
-  OrderMoments moments;
-  double most = -2, second = -2;
-  const auto try_all = [&](const std::vector<LagSeries>& series) {
-    const OrderMoments of_band = order_moments(series);
-    const auto tilting = [&](const Order& order) {
-      return (of_band.explained(0, weights(0, order)) + of_band.explained(1, weights(1, order))) / 2;
-    };
+  double most = -2, second = -2, yaw = 0;
+  const auto tilting = [&](const OrderMoments& moments, const Order& order) {
+    return (moments.explained(0, weights(0, order)) + moments.explained(1, weights(1, order))) / 2;
+  };
+  check.ambiguous = true;
+  const auto timed =
+      std::find_if(lag_aligned.begin(), lag_aligned.end(), [](const Flight& segment) { return segment.size() > 1; });
+  if (timed == lag_aligned.end()) return check;
+  const double period_s = (*timed)[1].time_s - (*timed)[0].time_s;
+  const std::vector<LagSeries> series = lag_series(lag_aligned);
+  for (const auto& band : {series, low_passed(series, period_s, corner_Hz)}) {
+    const OrderMoments moments = order_moments(weighted_moments(band, period_s));
     Order order = identity, first = identity;
     double highest = -2, next = -2;
     do {
-      const double explained = tilting(order);
+      const double explained = tilting(moments, order);
       next = std::max(next, std::min(explained, highest));
       if (!(explained > highest)) continue;
       highest = explained;
       first = order;
     } while (std::next_permutation(order.begin(), order.end()));
-    if (!(highest > most)) return;
+    if (!(highest > most)) continue;
     most = highest;
     second = next;
     best = first;
-    moments = of_band;
-    check.explained = tilting(identity);
-  };
-  const std::vector<LagSeries> series = lag_series(lag_aligned);
-  try_all(series);
-  for (const Flight& segment : lag_aligned) {
-    if (segment.size() < 2) continue;
-    try_all(low_passed(series, segment[1].time_s - segment[0].time_s, corner_Hz));
-    break;
+    check.explained = tilting(moments, identity);
+    yaw = moments.explained(2, weights(2, best));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      check.turns_against[axis] = moments.explained(axis, weights(axis, identity)) < 0;
   }
   check.explained_permuted = most;
   check.ambiguous = !(most >= least_explained) || second > alike * most;
   const bool as_it_stands = best == identity;
-  if (!check.ambiguous) check.yaw_reversed = moments.explained(2, weights(2, best)) < -yaw_explained;
+  if (!check.ambiguous) check.yaw_reversed = yaw < -yaw_explained;
   if (check.ambiguous || (as_it_stands && !check.yaw_reversed)) return check;
   if (as_it_stands) {
     check.finding =

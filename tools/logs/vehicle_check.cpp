@@ -70,10 +70,11 @@ constexpr std::array<SharedNumber, 4> shared_numbers = {{
 
 struct Judged {
   std::string name;
-  std::vector<Flight> aligned;  ///< by its own lag; empty where it has none
+  std::vector<Flight> aligned;  ///< by its own lag, where it has one
   Identification found;
   double lag_s = 0;  ///< from the commands as they were logged
-  bool lag_found = false;
+  bool has_lag = false;
+  bool lag_found = false;  ///< with confidence
 };
 
 /// Within what motors and links make, unless commands that are off by much more explain roll and pitch far better.
@@ -108,7 +109,7 @@ Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_
   judged.lag_found = lag.found && lag.confidence >= least_confidence;
   judged.lag_s = lag.lag_s + lag_removed_s;
   for (Flight& segment : judged.aligned) segment = remove_lag(std::move(segment), period_s, lag.found ? lag.lag_s : 0);
-  if (!lag.found) judged.aligned.clear();
+  judged.has_lag = lag.found;
   return judged;
 }
 
@@ -156,23 +157,20 @@ class VehicleCheck {
   bool check_signs(std::size_t i) {
     const Judged& flight = flights_[i];
     const std::string columns = "columns u1 to u4: ";
-    if (!flight.aligned.empty()) {
-      const MotorOrderCheck order = check_motor_order(flight.aligned, airframe_);
-      if (order.finding) {
-        const Estimate& yaw = flight.found.effectiveness_rad_s2[2];
-        const bool measured = order.yaw_reversed && yaw.high() < 0;
-        say(i,
-            columns + *order.finding +
-                (measured ? "; yaw effectiveness " + told(yaw, "rad/s^2") + " in column w_z" : ""),
-            true);
-        wrong_.push_back(i);
-        return true;
-      }
+    const MotorOrderCheck order = check_motor_order(flight.aligned, airframe_);
+    if (order.finding && flight.has_lag) {
+      const Estimate& yaw = flight.found.effectiveness_rad_s2[2];
+      const bool measured = order.yaw_reversed && yaw.high() < 0;
+      say(i,
+          columns + *order.finding + (measured ? "; yaw effectiveness " + told(yaw, "rad/s^2") + " in column w_z" : ""),
+          true);
+      wrong_.push_back(i);
+      return true;
     }
     constexpr std::array<const char*, 3> turns = {"roll", "pitch", "yaw"};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Estimate& estimate = flight.found.effectiveness_rad_s2[axis];
-      if (!(estimate.high() < 0)) continue;
+      if (!(estimate.high() < 0) || !order.turns_against[axis]) continue;
       say(i,
           columns + turns[axis] + " turns against the commands, " + told(estimate, "rad/s^2") + " in column w_" +
               "xyz"[axis] +
