@@ -25,17 +25,20 @@ verdict() {
   judge_forward "$image" "$image.txt" "$work/host_forward.txt"
 }
 
-# expect <offence in planted.cpp> <what the gate calls it>
+# expect <offences in planted.cpp, with | between> <what the gate calls each>...
 expect() {
-  local object=$work/planted/$1.o said
-  compile "$target" -O2 "$here/planted.cpp" "$object" "${model_flags[@]}" "-DPLANTED=$1"
-  said=$(verdict "$1" "$object" 2>&1) || { echo "$1: $said"; failed=yes; return; }
-  if grep -qE "^rejected: $2" <<<"$said"; then
-    echo "$1: $(grep -E "^rejected: $2" <<<"$said" | head -1)"
-  else
-    echo "FAILED: $1 is planted, and the gate says: ${said:-nothing}"
-    failed=yes
-  fi
+  local object=$work/planted/${1//|/_}.o said called offences=$1
+  shift
+  compile "$target" -O2 "$here/planted.cpp" "$object" "${model_flags[@]}" "-DPLANTED=$offences"
+  said=$(verdict "${offences//|/_}" "$object" 2>&1) || { echo "$offences: $said"; failed=yes; return; }
+  for called in "$@"; do
+    if grep -qE "^rejected: $called" <<<"$said"; then
+      echo "$offences: $(grep -E "^rejected: $called" <<<"$said" | head -1)"
+    else
+      echo "FAILED: $offences is planted, the gate says nothing of '$called': ${said:-nothing}"
+      failed=yes
+    fi
+  done
 }
 
 compile "$target" -O2 "$here/under_test.cpp" "$work/planted/honest.o" "${model_flags[@]}"
@@ -44,15 +47,11 @@ if [ -n "$honest" ]; then
   echo "FAILED: nothing is planted, and the gate says: $honest"
   failed=yes
 fi
-expect HEAP "symbol: _?(malloc|free)"
-expect DOUBLE_PRECISION "symbol: __aeabi_(dmul|f2d|d2f)"
-expect OPERATOR_NEW "symbol: _Zn[wa]"
-expect RUN_TIME_INITIALISED "initialised at run time"
-expect STATIC_BUFFER "static RAM: 16"
-expect WEIGHTS_IN_RAM "static RAM: 25516"
-expect DEEP_STACK "stack: [0-9]+"
+expect 'HEAP|DOUBLE_PRECISION|OPERATOR_NEW|RUN_TIME_INITIALISED' "symbol: _?(malloc|free)" \
+  "symbol: __aeabi_(dmul|f2d|d2f)" "symbol: _Zn[wa]" "initialised at run time"
+expect 'STATIC_BUFFER|DEEP_STACK' "static RAM: 16" "stack: [0-9]+"
+expect 'WEIGHTS_IN_RAM|CODE_TWICE' "static RAM: 25516" "code: [0-9]+"
 expect DATA_DEPENDENT "instructions depend on the data: [0-9]+ to [0-9]+"
 expect OTHER_ORDER "bits: "
 expect PLAIN_LOOPS "instructions: [0-9]+"
-expect CODE_TWICE "code: [0-9]+"
 [ "$failed" = no ]
