@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Forward passes that break rules: gate_rejects.sh must see the gate refuse each, by name. PLANTED says which: their sum.
+// Forward passes that break rules: gate_rejects.sh must see the gate refuse each, by name. PLANTED says which: several
+// are joined by |.
 #include <cstdlib>
 
 #include "under_test.hpp"

@@ -7,7 +7,8 @@
 #          AVX; the gate goes before it in the same work folder
 #   choose one program of three objects that offer the same model: takes the one that the processor runs
 #   leaks  the two above reject leaks.cpp: they can fail
-#   names  two sets of flags that let the compiler emit different instructions have two names
+#   names  two sets of flags that let the compiler emit different instructions have two names; the gate goes before it
+#          in the same work folder
 #   neon   the prediction for aarch64, cross-compiled, under emulation: right numbers, no timing
 # Returns 77 where a tool or a compiler flag is missing.
 set -u
@@ -88,14 +89,13 @@ case $what in
       [ "$single" != "$double" ] || fail "one name for Cortex-M4 and Cortex-M7: $single"
     fi
     # objects of two kinds of AVX-512 have nothing that the linker could take from the other
-    compile prediction.cpp first.o -DPREDICT=predict_first -mavx512f -mfma "$@"
-    compile prediction.cpp second.o -DPREDICT=predict_second -march=skylake-avx512 "$@"
-    for kind in first second; do
-      nm -C --defined-only $kind.o | grep -E '^[0-9a-f]+ W .*pinnquad::' | cut -d' ' -f3- | sort -u > $kind.weak
-      [ -s $kind.weak ] || fail "no weak function of pinnquad in $kind.o: nothing was compared"
+    compile prediction.cpp prediction.plain_avx512.o -DPREDICT=predict_plain_avx512 -mavx512f -mfma "$@"
+    for kind in plain_avx512 avx512; do
+      nm -C --defined-only prediction.$kind.o | grep -E '^[0-9a-f]+ W .*pinnquad::' | cut -d' ' -f3- | sort -u > $kind.weak
+      [ -s $kind.weak ] || fail "no weak function of pinnquad in prediction.$kind.o: nothing was compared"
     done
-    shared=$(comm -12 first.weak second.weak)
-    [ -z "$shared" ] || fail "the same functions of -mavx512f -mfma and skylake-avx512: $shared"
+    shared=$(comm -12 plain_avx512.weak avx512.weak)
+    [ -z "$shared" ] || fail "the same functions of -mavx512f -mfma and ${machine[avx512]}: $shared"
     ;;
   gate)
     rm -f prediction.*.o
