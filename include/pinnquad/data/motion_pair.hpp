@@ -173,6 +173,7 @@ inline bool can_be_of_axis(const MotionSums& sums, Eigen::Index axis, Eigen::Ind
 /// The first that most blocks show. `follows`: least correlation with the other axis; `better`: by how much more than
 /// with its own.
 inline std::optional<AxisMistake> find_axis_mistake(const MotionBlocks& sums, double follows, double better) {
+  constexpr double alike = 0.1;  // an axis that its own column follows better moves another; nobody reads it twice
   constexpr double straight = 0.9, most_factor = 2;   // of a column that is its axis's but for a factor
   constexpr double related = 0.6, great_factor = 20;  // the same where noise is left, of a factor that no noise makes
   for (Eigen::Index column = 0; column < 3; ++column) {
@@ -185,8 +186,9 @@ inline std::optional<AxisMistake> find_axis_mistake(const MotionBlocks& sums, do
     const auto gain = [&](const MotionSums& block) {
       return sign * sums.correlation(best, column, block) - sums.correlation(column, column, block);
     };
-    if (std::abs(fits) > follows && std::abs(fits) > own + better && can_be_of_axis(sums, best, column, fits) &&
-        is_plain(sums.each(gain))) {
+    const bool is_free = best == column || sums.correlation(best, best) < std::abs(fits) + alike;
+    if (std::abs(fits) > follows && std::abs(fits) > own + better && is_free &&
+        can_be_of_axis(sums, best, column, fits) && is_plain(sums.each(gain))) {
       return AxisMistake{column, best, fits < 0, 1};
     }
     if (!(own > related)) continue;
