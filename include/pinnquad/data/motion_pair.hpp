@@ -173,7 +173,7 @@ inline bool can_be_of_axis(const MotionSums& sums, Eigen::Index axis, Eigen::Ind
 /// The first that most blocks show. `follows`: least correlation with the other axis; `better`: by how much more than
 /// with its own.
 inline std::optional<AxisMistake> find_axis_mistake(const MotionBlocks& sums, double follows, double better) {
-  constexpr double alike = 0.1;  // an axis that its own column follows better moves another; nobody reads it twice
+  constexpr double alike = 0.1;  // an axis that its own column follows better is not what another column holds
   constexpr double straight = 0.9, most_factor = 2;   // of a column that is its axis's but for a factor
   constexpr double related = 0.6, great_factor = 20;  // the same where noise is left, of a factor that no noise makes
   for (Eigen::Index column = 0; column < 3; ++column) {

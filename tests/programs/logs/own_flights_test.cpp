@@ -68,6 +68,9 @@ TEST_CASE("calm flights with a knock or a catch by hand keep their own derivativ
   }
 }
 
+/// It was refused: "the commands explain 0 % of roll and pitch acceleration in the order they have".
+TEST_CASE("a catch by hand does not decide the order of the motors") { CHECK(imported(own_flight(61)).refused == ""); }
+
 TEST_CASE("faults are found in a lively flight, but for two") {
   OwnFlight plan;
   plan.kind = FlightKind::lively;
