@@ -21,8 +21,8 @@ macro(pinnquad_require_package name)
   endif()
 endmacro()
 
-# pinnquad_find_onnx(<variable>): the target of ONNX's messages, or nothing, with a line that says why. From ONNX 1.17 on it
-# is ONNX::onnx_proto.
+# pinnquad_find_onnx(<variable>): what ONNX's messages need to be linked, or nothing, with a line that says why. From ONNX
+# 1.17 on the target is ONNX::onnx_proto; that of 1.20 is built on protobuf's light library and does not say so.
 macro(pinnquad_find_onnx variable)
   find_package(Protobuf QUIET MODULE)
   find_package(ONNX QUIET CONFIG)
@@ -31,6 +31,10 @@ macro(pinnquad_find_onnx variable)
     set(_onnx_lacks "no libonnx-dev, libprotobuf-dev")
   elseif(TARGET ONNX::onnx_proto)
     set(${variable} ONNX::onnx_proto)
+    get_target_property(_onnx_links ONNX::onnx_proto INTERFACE_LINK_LIBRARIES)
+    if(NOT _onnx_links)
+      list(APPEND ${variable} protobuf::libprotobuf-lite)
+    endif()
   elseif(TARGET onnx_proto)
     set(${variable} onnx_proto)
   else()
