@@ -228,12 +228,10 @@ def demo_cases():
     for option in "--seeds", "--epochs", "--seed":
         yield from (refused(f"demo --out run/o {option}", value) for value in WHOLE_NUMBERS)
     for words in ["--seeds 0", "--seeds 501", "--epochs 0", "--epochs 100001", "--seed", "--no-such-option", "x",
-                  "--log in/flight.csv", "--airframe paper_quadrotor", "--log absent --airframe paper_quadrotor",
-                  "--log in --airframe paper_quadrotor", "--out"]:
+                  "--log in/flight.csv", "--out"]:
         yield refused(f"demo {words}")
     for path in NO_FOLDER:
         yield left_alone("demo --out", path)
-        yield left_alone("demo --out run/o --airframe paper_quadrotor --log", f"{path}/")
 
 
 @pytest.mark.parametrize("cases", [fly_cases, train_cases, new_cases, demo_cases])
