@@ -19,8 +19,8 @@
 
 namespace programs {
 
-/// A level of x86-64 as -march names it, and the bits that say it is there (x86-64 psABI, table 3.1): of cpuid, and of the
-/// registers that the operating system keeps when it switches threads.
+/// A level of x86-64 as -march names it, and the bits that say it is there (x86-64 psABI, table 3.1): of cpuid, and of
+/// the registers that the operating system keeps when it switches threads.
 struct InstructionSetLevel {
   const char* name;
   unsigned leaf_1_ecx, leaf_7_ebx, leaf_80000001_ecx, saved;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The instruction set of this translation unit, decided here alone: the vector unit of kernels, whether a product and a
-// sum are rounded once, whether the compiler may assume that there is no NaN, and a name for all three. The name is that
-// of an inline namespace around what predicts. A program may link objects of other flags, such as a library built for any
-// machine: the linker then never takes their layout of weights, their rounding or their tests for NaN for ours.
+// sum are rounded once, whether the compiler may assume that there is no NaN, and a name for all three. The name is
+// that of an inline namespace around what predicts. A program may link objects of other flags, such as a library built
+// for any machine: the linker then never takes their layout of weights, rounding or tests for NaN for ours.
 //   namespace pinnquad { inline namespace PINNQUAD_INSTRUCTION_SET { ... } }
 // A new instruction set: a branch below, a value of VectorUnit, a pack (nn/kernel/pack_contract.hpp) and a line in
 // nn/kernel/pack.hpp, which asserts that the unit and the rounding are the pack's.
