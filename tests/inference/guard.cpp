@@ -133,7 +133,7 @@ TEST_CASE("without an envelope any finite motion is answered; without a check of
 }
 
 TEST_CASE_TEMPLATE("the NaN of a broken model reaches nothing, under any guard", Policies, TrainingGuard, Refusing,
-                   Clipping, RefusingAndClipping, Clamping) {
+                   Clipping, RefusingAndClipping) {
   RandomStates random(185);
   const auto inputs = inputs_of(random, 0.9);
   Commands<float> commands = marked();
