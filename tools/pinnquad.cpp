@@ -17,7 +17,6 @@
 #include "model/certify_command.hpp"
 #include "model/evaluate_command.hpp"
 #include "model/replay_command.hpp"
-#include "project/new_command.hpp"
 #include "training/train_command.hpp"
 
 namespace {
@@ -29,7 +28,7 @@ int run(int argument_count, char** arguments, std::string& name) {
       programs::fly_command(program),     programs::import_command(program),   programs::identify_command(program),
       programs::train_command(program),   programs::evaluate_command(program), programs::certify_command(program),
       programs::replay_command(program),  programs::loop_command(program),     programs::block_command(program),
-      programs::convert_command(program), programs::airframe_command(program), programs::new_command(program)};
+      programs::convert_command(program), programs::airframe_command(program)};
   program.footer(
       "Examples:\n"
       "  pinnquad fly d1 --seed 1 --out d1.csv                    a simulated flight\n"

@@ -45,7 +45,6 @@
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/batched_inverse.hpp"
 #include "pinnquad/inference/command_jacobian.hpp"
-#include "pinnquad/inference/compiled_prediction.hpp"
 #include "pinnquad/inference/guard.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/inference/monitored_inverse.hpp"

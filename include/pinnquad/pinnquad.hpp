@@ -28,7 +28,6 @@
 #include "pinnquad/evaluation/physical_consistency.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/exported/run_time_batch.hpp"
-#include "pinnquad/inference/choose_prediction.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/loss/physics_informed.hpp"

@@ -2,8 +2,6 @@
 // CASE NO_OUTPUT_CHECK: pinnquad: a Guard needs FiniteOutputs: without it the NaN of a broken weight would reach a motor
 // CASE NO_GUARD_AT_ALL: pinnquad: a Guard needs FiniteOutputs
 // CASE NO_INPUT_CHECK: pinnquad: a Guard without FiniteInputs needs TrainingEnvelope
-// CASE CLAMPS_UNCHECKED: pinnquad: ClampToEnvelope needs FiniteInputs
-// CASE REFUSES_AND_CLAMPS: pinnquad: a Guard either refuses what is outside the envelope or clamps it, not both
 // CASE TWICE: pinnquad: a policy of a Guard is named twice
 // CASE TWO_LIMITS: pinnquad: a policy of a Guard is named twice
 // CASE NOT_A_POLICY: pinnquad: this type is not a policy of a Guard
@@ -13,14 +11,7 @@
 // CASE REFUSES_INFINITY: pinnquad: a Guard's command limits must be numbers
 // CASE CLIPS_REVERSED: pinnquad: a Guard's lower command limit lies above the upper one
 // CASE CLIPS_BEYOND_FLOAT: pinnquad: a Guard's command limits must be numbers of the model's Scalar
-// CASE AGREES_WITH_NOTHING: pinnquad: Agreement needs an inverse to agree with
-// CASE REFERENCE_ALONE: pinnquad: Reference is what Agreement compares with in a Guard without Fallback
-// CASE REFERENCE_AND_FALLBACK: pinnquad: Reference is what Agreement compares with in a Guard without Fallback
-// CASE AGREES_TO_INFINITY: pinnquad: the largest difference of an Agreement must be a positive number
-// CASE AGREES_TO_NOTHING: pinnquad: the largest difference of an Agreement must be a positive number
-// CASE FEATURES_ALONE: pinnquad: Agreement compares with an inverse that needs the inputs
-// CASE BATCH_ALONE: pinnquad: Agreement compares with an inverse that needs the inputs
-// CASE FALLBACK_MAY_THROW: pinnquad: a fallback's or reference's call must be noexcept
+// CASE FALLBACK_MAY_THROW: pinnquad: a fallback's call must be noexcept
 // CASE DISTANCE_LIMIT_INFINITE: pinnquad: the distance limit of a JointDistance must be a positive number
 // CASE DISTRIBUTION_OF_FEWER: pinnquad: the distribution of a JointDistance has another size than the model's features
 // CASE TWO_DISTRIBUTIONS: pinnquad: a policy of a Guard is named twice
@@ -38,7 +29,6 @@
 #include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
-#include "pinnquad/inference/batched_inverse.hpp"
 
 namespace {
 
@@ -57,7 +47,7 @@ struct Limits {
            : of == 4 ? 1e300
                      : double(of);
   }
-  static constexpr double lower = value(Lower), upper = value(Upper), largest_difference = upper;
+  static constexpr double lower = value(Lower), upper = value(Upper);
 };
 
 /// Of so many features.
@@ -98,10 +88,6 @@ using Policies = Guard<FiniteInputs, TrainingEnvelope, ClipCommands<>>;
 using Policies = Guard<>;
 #elif defined(NO_INPUT_CHECK)
 using Policies = Guard<FiniteOutputs>;
-#elif defined(CLAMPS_UNCHECKED)
-using Policies = Guard<ClampToEnvelope, FiniteOutputs>;
-#elif defined(REFUSES_AND_CLAMPS)
-using Policies = Extend<TrainingGuard, ClampToEnvelope>;
 #elif defined(TWICE)
 using Policies = Extend<TrainingGuard, FiniteInputs>;
 #elif defined(TWO_LIMITS)
@@ -120,19 +106,6 @@ using Policies = Extend<TrainingGuard, RefuseCommands<Limits<0, 2>>>;
 using Policies = Extend<TrainingGuard, ClipCommands<Reversed>>;
 #elif defined(CLIPS_BEYOND_FLOAT)
 using Policies = Extend<TrainingGuard, ClipCommands<Limits<0, 4>>>;
-#elif defined(AGREES_WITH_NOTHING)
-using Policies = Extend<TrainingGuard, Agreement<>>;
-#elif defined(REFERENCE_ALONE)
-using Policies = Extend<TrainingGuard, Reference<AnalyticInverse<Quadrotor<float>>>>;
-#elif defined(REFERENCE_AND_FALLBACK)
-using Policies = Extend<TrainingGuard, Agreement<>, Reference<AnalyticInverse<Quadrotor<float>>>,
-                        Fallback<AnalyticInverse<Quadrotor<float>>>>;
-#elif defined(AGREES_TO_INFINITY)
-using Policies = Extend<TrainingGuard, Agreement<Limits<0, 2>>, Fallback<AnalyticInverse<Quadrotor<float>>>>;
-#elif defined(AGREES_TO_NOTHING)
-using Policies = Extend<TrainingGuard, Agreement<Limits<0, 0>>, Fallback<AnalyticInverse<Quadrotor<float>>>>;
-#elif defined(FEATURES_ALONE) || defined(BATCH_ALONE)
-using Policies = Extend<TrainingGuard, Agreement<>, Fallback<AnalyticInverse<Quadrotor<float>>>>;
 #elif defined(DISTANCE_LIMIT_INFINITE)
 using Policies = Extend<TrainingGuard, JointDistance<Distribution<16, 2>>>;
 #elif defined(DISTRIBUTION_OF_FEWER)
@@ -166,12 +139,11 @@ AnalyticInverse<Vehicle> by_formula() {
 int main() {
 #if defined(GROUND_WITHOUT_HEIGHT)
   const Policies guard(by_formula<NearGround>());
-#elif defined(FALLBACK_OF_OTHER_INPUTS) || defined(FALLBACK_NEEDS_TIME) || defined(NO_OUTPUT_CHECK) ||                 \
-    defined(NO_GUARD_AT_ALL) || defined(NO_INPUT_CHECK) || defined(CLAMPS_UNCHECKED) || defined(REFUSES_AND_CLAMPS) || \
-    defined(TWICE) || defined(TWO_LIMITS) || defined(NOT_A_POLICY) || defined(LIMITS_REVERSED) ||                      \
-    defined(NOT_A_GUARD) || defined(CLIPS_TO_INFINITY) || defined(CLIPS_TO_NAN) || defined(REFUSES_INFINITY) ||        \
-    defined(CLIPS_REVERSED) || defined(CLIPS_BEYOND_FLOAT) || defined(AGREES_WITH_NOTHING) ||                          \
-    defined(FALLBACK_MAY_THROW) || defined(DISTANCE_LIMIT_INFINITE) || defined(DISTRIBUTION_OF_FEWER) ||               \
+#elif defined(FALLBACK_OF_OTHER_INPUTS) || defined(FALLBACK_NEEDS_TIME) || defined(NO_OUTPUT_CHECK) ||              \
+    defined(NO_GUARD_AT_ALL) || defined(NO_INPUT_CHECK) || defined(TWICE) || defined(TWO_LIMITS) ||                 \
+    defined(NOT_A_POLICY) || defined(LIMITS_REVERSED) || defined(NOT_A_GUARD) || defined(CLIPS_TO_INFINITY) ||      \
+    defined(CLIPS_TO_NAN) || defined(REFUSES_INFINITY) || defined(CLIPS_REVERSED) || defined(CLIPS_BEYOND_FLOAT) || \
+    defined(FALLBACK_MAY_THROW) || defined(DISTANCE_LIMIT_INFINITE) || defined(DISTRIBUTION_OF_FEWER) ||            \
     defined(TWO_DISTRIBUTIONS) || defined(DISTRIBUTION_OF_OTHER_DATA)
   const Policies guard{};
 #else
@@ -186,11 +158,6 @@ int main() {
   Commands<float> commands{};
 #endif
   Status status = inverse.predict({}, commands);
-#if defined(FEATURES_ALONE)
-  status = inverse.predict_features(test::SmallModel::golden_features[0].data(), commands);
-#elif defined(BATCH_ALONE)
-  predict_batch(inverse, test::SmallModel::golden_features[0].data(), commands.data(), &status, 1);
-#endif
 #if defined(GUST_WITHOUT_TIME)
   status = by_formula<InGusts>()(MotionInputsWithAltitude<float>{}, commands);
 #else

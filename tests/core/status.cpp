@@ -17,14 +17,11 @@ TEST_CASE("ok is zero, so that a Status can be tested like a return code") {
 TEST_CASE("every Status has its own word and no other value has any") {
   std::set<std::string> words;
   const std::string unknown = "unknown status";
-  int count = 0;
-  while (pinnquad::to_string(static_cast<Status>(count)) != unknown) {
-    words.insert(pinnquad::to_string(static_cast<Status>(count)));
-    REQUIRE(++count < 256);
+  for (int i = 0; i < 256; ++i) {
+    const std::string word = pinnquad::to_string(static_cast<Status>(i));
+    CHECK((word == unknown) == (i == 15 || i >= pinnquad::status_count));
+    if (word != unknown) CHECK(words.insert(word).second);
   }
-  CHECK(static_cast<int>(words.size()) == count);
-  CHECK(count == pinnquad::status_count);
-  CHECK(pinnquad::to_string(static_cast<Status>(255)) == unknown);
 }
 
 #define PINNQUAD_NAMED(status) \
@@ -50,11 +47,10 @@ TEST_CASE("a Status prints as the word that documents and code use: its enumerat
                        PINNQUAD_NAMED(block_truncated),
                        PINNQUAD_NAMED(block_incompatible),
                        PINNQUAD_NAMED(block_corrupt),
-                       PINNQUAD_NAMED(disagreement),
                        PINNQUAD_NAMED(warming_up),
                        PINNQUAD_NAMED(outside_distribution),
                        PINNQUAD_NAMED(distrusted)};
-  CHECK(std::size(all) == static_cast<std::size_t>(pinnquad::status_count));
+  CHECK(std::size(all) == static_cast<std::size_t>(pinnquad::status_count) - 1);  // no Status is 15
   for (const Named& each : all) CHECK(std::string(pinnquad::to_string(each.status)) == each.name);
 }
 

@@ -190,7 +190,7 @@ struct Attack {
     const Status again = inverse.predict(inputs, place, reported, report);
     if (again != status || !same_bits(commands, reported)) ++broken.report_differs;
     const bool named = report.worst_feature >= 0;
-    if (named && !report.features_clamped && report.cause == Status::ok && Guard::refuses_outside_envelope) {
+    if (named && report.cause == Status::ok && Guard::refuses_outside_envelope) {
       ++worst_named_inside;
     }
     if (!has_output(status)) {
@@ -272,28 +272,23 @@ void attack_all() {
   using GustyFallback = Fallback<AnalyticInverse<Gusty<Scalar>>>;
   using Unchecked = Guard<TrainingEnvelope, FiniteOutputs>;
   using Anywhere = Guard<FiniteInputs, FiniteOutputs>;
-  using Clamping = Guard<FiniteInputs, ClampToEnvelope, FiniteOutputs>;
   using Refusing = Extend<TrainingGuard, RefuseCommands<>>;
   using Clipping = Extend<TrainingGuard, ClipCommands<>>;
   using FallingBack = Extend<TrainingGuard, CalmFallback>;
   using UncheckedFallingBack = Extend<Unchecked, CalmFallback>;
   using Everything = Extend<TrainingGuard, RefuseCommands<WideCommands>, ClipCommands<>, GustyFallback>;
-  using ClampingFallingBack = Extend<Clamping, RefuseCommands<>, GustyFallback>;
   const auto calm = by_formula<Calm<Scalar>, Scalar>();
   const auto gusty = by_formula<Gusty<Scalar>, Scalar>();
 
   attack("training guard", InverseDynamics<Model>{}, 1);
   attack("inputs unchecked", InverseDynamics<Model, Unchecked>{}, 2);
   attack("no envelope", InverseDynamics<Model, Anywhere>{}, 3);
-  attack("clamped to envelope", InverseDynamics<Model, Clamping>{}, 4);
   attack("commands refused", InverseDynamics<Model, Refusing>{}, 5);
   attack("commands clipped", InverseDynamics<Model, Clipping>{}, 6);
   attack("no envelope, clipped", InverseDynamics<Model, Extend<Anywhere, ClipCommands<>>>{}, 7);
   attack("fallback", InverseDynamics<Model, FallingBack>(FallingBack(calm)), 8);
   attack("inputs unchecked, fallback", InverseDynamics<Model, UncheckedFallingBack>(UncheckedFallingBack(calm)), 9);
   attack("everything, gusty fallback", InverseDynamics<Model, Everything>(Everything(gusty)), 10);
-  attack("clamped, refused, gusty fallback", InverseDynamics<Model, ClampingFallingBack>(ClampingFallingBack(gusty)),
-         11);
 }
 
 }  // namespace
@@ -311,7 +306,7 @@ TEST_CASE("hostile inputs, a million where optimised: no surprise") {
 
 TEST_CASE("hostile weights: whatever bits are in flash, no command is NaN or infinite") {
   Hostility<float> hostility(21);
-  using Clamping = Guard<FiniteInputs, ClampToEnvelope, FiniteOutputs, ClipCommands<>>;
+  using Clipping = Guard<FiniteInputs, FiniteOutputs, ClipCommands<>>;
   int answered = 0, not_finite = 0, written = 0, touched = 0;
   constexpr int models = 20000;
   for (int i = 0; i < models; ++i) {
@@ -336,7 +331,7 @@ TEST_CASE("hostile weights: whatever bits are in flash, no command is NaN or inf
       }
     };
     tried(InverseDynamics<SmallInstance>(model));
-    tried(InverseDynamics<SmallInstance, Clamping>(model));
+    tried(InverseDynamics<SmallInstance, Clipping>(model));
   }
   MESSAGE((2 * models), " predictions: answered ", answered, ", output not finite ", not_finite);
   CHECK(written == 0);

@@ -204,11 +204,6 @@ unsigned char pinnquad_flight_predict_monitored(const float* state, const float*
                                 : static_cast<unsigned char>(observed);
 }
 
-unsigned char pinnquad_flight_predict_clamped(const float* state, const float* wanted, float* u) {
-  using Clamping = pinnquad::Guard<pinnquad::FiniteInputs, pinnquad::ClampToEnvelope, pinnquad::FiniteOutputs>;
-  return predict_and_report(pinnquad::InverseDynamics<SmallModel, Clamping>{}, state, wanted, u);
-}
-
 unsigned char pinnquad_flight_history(const float* state, const float* wanted, double time_s, float voltage_V,
                                       float* x) {
   using Measured = pinnquad::WithColumns<pinnquad::PaperFeatures, pinnquad::BatteryVoltage>;

@@ -46,7 +46,6 @@ using Guarded = InverseDynamics<Model, Guard>;
 using Refusing = Extend<TrainingGuard, RefuseCommands<>>;
 using Clipping = Extend<TrainingGuard, ClipCommands<>>;
 using RefusingAndClipping = Extend<TrainingGuard, RefuseCommands<WideCommands>, ClipCommands<>>;
-using Clamping = Guard<FiniteInputs, ClampToEnvelope, FiniteOutputs>;
 using FallingBack = Extend<TrainingGuard, Fallback<FixedFallback>>;
 
 }  // namespace
@@ -95,40 +94,6 @@ TEST_CASE("limits of the commands: refused, clipped, or a little clipped and muc
   CHECK(much > 100);
 }
 
-TEST_CASE("clamped features: the network is asked at the border of the envelope, and the Status says so") {
-  RandomStates random(183);
-  const Guarded<Clamping> inverse;
-  int moved = 0;
-  for (int i = 0; i < 500; ++i) {
-    const auto inputs = inputs_of(random, 1.55);
-    const auto x = features(inputs);
-    auto nearest = x;
-    for (std::size_t k = 0; k < 16; ++k) {
-      nearest[k] = std::min(std::max(x[k], SmallModel::envelope_lower[k]), SmallModel::envelope_upper[k]);
-    }
-    Commands<float> commands = marked(), expected{};
-    REQUIRE(InverseDynamics<SmallModel>{}.predict_features(nearest.data(), expected) == Status::ok);
-    Guarded<Clamping>::Report report;
-    REQUIRE(inverse.predict(inputs, commands, report) == (x == nearest ? Status::ok : Status::limited));
-    CHECK(same_bits(commands, expected));
-    CHECK(report.features_clamped == (x != nearest));
-    CHECK_FALSE(report.commands_clipped);
-    CHECK((report.worst_feature >= 0) == (x != nearest));
-    if (x != nearest) ++moved;
-  }
-  CHECK(moved > 100);
-  CHECK(moved < 400);
-  for (const float bad : {not_a_number, infinity, -infinity}) {
-    for (std::size_t k = 0; k < 16; ++k) {
-      auto x = SmallModel::golden_features[0];
-      x[k] = bad;
-      Commands<float> commands = marked();
-      CHECK(inverse.predict_features(x.data(), commands) == Status::not_finite);
-      CHECK(same_bits(commands, marked()));
-    }
-  }
-}
-
 TEST_CASE("without an envelope any finite motion is answered; without a check of the inputs the envelope refuses NaN") {
   RandomStates random(184);
   const Guarded<Guard<FiniteInputs, FiniteOutputs>> anywhere;
@@ -144,6 +109,13 @@ TEST_CASE("without an envelope any finite motion is answered; without a check of
   CHECK(InverseDynamics<SmallModel>{}.predict(good, expected) == Status::ok);
   CHECK(same_bits(commands, expected));
   for (const float bad : {not_a_number, infinity, -infinity}) {
+    for (std::size_t k = 0; k < 16; ++k) {
+      auto x = SmallModel::golden_features[0];
+      x[k] = bad;
+      commands = marked();
+      CHECK(anywhere.predict_features(x.data(), commands) == Status::not_finite);
+      CHECK(same_bits(commands, marked()));
+    }
     for (const int field : {0, 1, 2}) {
       auto inputs = good;
       (field == 0 ? inputs.velocity_m_s[1] : field == 1 ? inputs.attitude.w : inputs.attitude.z) = bad;
@@ -161,7 +133,7 @@ TEST_CASE("without an envelope any finite motion is answered; without a check of
 }
 
 TEST_CASE_TEMPLATE("the NaN of a broken model reaches nothing, under any guard", Policies, TrainingGuard, Refusing,
-                   Clipping, RefusingAndClipping, Clamping) {
+                   Clipping, RefusingAndClipping) {
   RandomStates random(185);
   const auto inputs = inputs_of(random, 0.9);
   Commands<float> commands = marked();
@@ -309,88 +281,6 @@ TEST_CASE("a report that is used again says what the last answer came to alone, 
   REQUIRE(fixed.without_network(Status::distrusted, near, commands, used) == Status::fell_back);
   CHECK(used.worst_feature == -1);
   CHECK(used.excess == Report{}.excess);
-}
-
-namespace {
-
-struct Narrowly {
-  static constexpr double largest_difference = 0.125;
-};
-using Agreeing = Extend<TrainingGuard, Agreement<Narrowly>, Fallback<FixedFallback>>;
-using Comparing = Extend<TrainingGuard, Agreement<Narrowly>, Reference<FixedFallback>>;
-
-}  // namespace
-
-TEST_CASE("agreement: the network's commands where both inverses agree, else the fallback's, or a refusal") {
-  RandomStates random(189);
-  const FixedFallback half{0.5F, Status::ok};
-  const Guarded<Agreeing> falling{Agreeing(half)};
-  const Guarded<Comparing> refusing{Comparing(half)};
-  const Commands<float> replaced{0.5F, 0.5F, 0.5F, 0.5F};
-  int agreed = 0, disagreed = 0;
-  for (int i = 0; i < 500; ++i) {
-    const auto inputs = inputs_of(random, 1.0);
-    Commands<float> alone = marked(), commands = marked();
-    const Status network = InverseDynamics<SmallModel>{}.predict(inputs, alone);
-    float largest = 0;
-    for (const float u : alone) largest = std::max(largest, std::fabs(u - 0.5F));
-    const bool close = network == Status::ok && largest <= 0.125F;
-    const Status cause = network == Status::ok && !close ? Status::disagreement : network;
-    Guarded<Agreeing>::Report report;
-    CHECK(falling.predict(inputs, commands, report) == (close ? Status::ok : Status::fell_back));
-    CHECK(same_bits(commands, close ? alone : replaced));
-    CHECK(report.cause == cause);
-    CHECK(report.fallback_asked);
-    CHECK(report.fallback == Status::ok);
-    CHECK(report.disagreement == (network == Status::ok ? largest : 0.0F));
-    commands = marked();
-    CHECK(falling.predict(inputs, commands) == (close ? Status::ok : Status::fell_back));
-
-    commands = marked();
-    CHECK(refusing.predict(inputs, commands, report) == cause);
-    CHECK(same_bits(commands, close ? alone : marked()));
-    CHECK(report.cause == cause);
-    CHECK(report.disagreement == (network == Status::ok ? largest : 0.0F));
-    agreed += close;
-    disagreed += cause == Status::disagreement;
-  }
-  CHECK(agreed > 50);
-  CHECK(disagreed > 50);
-}
-
-TEST_CASE("agreement: where the other inverse declines or is not finite, nothing agrees and nothing is written") {
-  const MotionInputs<float> hover;
-  Commands<float> commands = marked();
-  REQUIRE(InverseDynamics<SmallModel>{}.predict(hover, commands) == Status::ok);
-  for (const FixedFallback& other : {FixedFallback{0.5F, Status::no_solution}, FixedFallback{not_a_number, Status::ok},
-                                     FixedFallback{infinity, Status::ok}}) {
-    Guarded<Agreeing>::Report report;
-    commands = marked();
-    CHECK(Guarded<Agreeing>(Agreeing(other)).predict(hover, commands, report) == Status::disagreement);
-    CHECK(same_bits(commands, marked()));
-    CHECK(report.fallback == (other.status == Status::ok ? Status::output_not_finite : other.status));
-    CHECK(Guarded<Comparing>(Comparing(other)).predict(hover, commands) == Status::disagreement);
-    CHECK(same_bits(commands, marked()));
-  }
-}
-
-TEST_CASE("agreement: what is compared is what would be written, clipped") {
-  using Clips = Extend<Agreeing, ClipCommands<>>;
-  RandomStates random(190);
-  const Guarded<Clips, EdgyModel> inverse{Clips(FixedFallback{3.0F, Status::ok})};
-  using Report = Guarded<Clips, EdgyModel>::Report;
-  bool clipped = false;
-  for (int i = 0; i < 100; ++i) {
-    Commands<float> commands = marked();
-    Report report;
-    CHECK(inverse.predict(inputs_of(random, 0.9), commands, report) == Status::fell_back);
-    CHECK(same_bits(commands, Commands<float>{1, 1, 1, 1}));
-    CHECK(report.fallback == Status::limited);
-    CHECK(report.commands_clipped);
-    CHECK(report.disagreement <= 1.0F);
-    clipped = clipped || report.disagreement == 1.0F;
-  }
-  CHECK(clipped);
 }
 
 TEST_CASE("the report says how far outside which feature lies, in half-widths") {

@@ -5,10 +5,8 @@
 #   gate   every weak symbol of an object names its instruction set
 #   mixed  one program of the gate's baseline, AVX2 and AVX-512 objects, in both link orders, run on a machine without
 #          AVX; the gate goes before it in the same work folder
-#   choose one program of three objects that offer the same model: takes the one that the processor runs
 #   leaks  the two above reject leaks.cpp: they can fail
-#   names  two sets of flags that let the compiler emit different instructions have two names; the gate goes before it
-#          in the same work folder
+#   names  flags of another vector unit, rounding or fast maths have another name
 #   neon   the prediction for aarch64, cross-compiled, under emulation: right numbers, no timing
 # Returns 77 where a tool or a compiler flag is missing.
 set -u
@@ -66,36 +64,16 @@ emulator=$(command -v qemu-x86_64 || command -v qemu-x86_64-static) || emulator=
 
 case $what in
   names)
-    # One name for two sets of flags is right where the compiler means the same by both (clang: AVX-512 brings FMA along).
     declare -A meaning=()
-    for flags in "" -msse3 -march=x86-64-v2 -mavx -mavx2 "-mavx2 -mfma" -march=x86-64-v3 "-march=x86-64-v3 -ffast-math" \
-      -mavx512f "-mavx512f -mfma" -march=skylake-avx512 -march=cannonlake -march=cascadelake -march=icelake-server -march=sapphirerapids; do
+    for flags in "" -mfma -march=x86-64-v3 -march=x86-64-v4 -ffast-math "-march=x86-64-v3 -ffast-math"; do
       # shellcheck disable=SC2086
       name=$(space_of $flags)
-      [ -n "$name" ] || skip "$compiler without $flags"
-      # shellcheck disable=SC2086
-      macros=$("$compiler" $flags -x c++ -dM -E /dev/null | sort)
-      [ "${meaning[$name]-$macros}" = "$macros" ] || fail "one name for several: $name, $flags and another before it"
-      meaning[$name]=$macros
+      [ -z "${meaning[$name]-}" ] || fail "one name for two: $name, '$flags' and '${meaning[$name]}'"
+      meaning[$name]="$flags "
     done
-    [ "${#meaning[@]}" -ge 12 ] || fail "only ${#meaning[@]} names: ${!meaning[*]}"
-    # with double in hardware and without: Cortex-M7 and Cortex-M4
-    if command -v arm-none-eabi-g++ > /dev/null; then
-      thumb="-mthumb -mfloat-abi=hard"
-      # shellcheck disable=SC2086
-      single=$(compiler=arm-none-eabi-g++ space_of $thumb -mcpu=cortex-m4 -mfpu=fpv4-sp-d16)
-      # shellcheck disable=SC2086
-      double=$(compiler=arm-none-eabi-g++ space_of $thumb -mcpu=cortex-m7 -mfpu=fpv5-d16)
-      [ "$single" != "$double" ] || fail "one name for Cortex-M4 and Cortex-M7: $single"
-    fi
-    # objects of two kinds of AVX-512 have nothing that the linker could take from the other
-    compile prediction.cpp prediction.plain_avx512.o -DPREDICT=predict_plain_avx512 -mavx512f -mfma "$@"
-    for kind in plain_avx512 avx512; do
-      nm -C --defined-only prediction.$kind.o | grep -E '^[0-9a-f]+ W .*pinnquad::' | cut -d' ' -f3- | sort -u > $kind.weak
-      [ -s $kind.weak ] || fail "no weak function of pinnquad in prediction.$kind.o: nothing was compared"
+    for flags in -mavx512f -march=icelake-server; do
+      [ "$(space_of $flags)" = "$(space_of -march=x86-64-v4)" ] || fail "two names for one layout and rounding: $flags"
     done
-    shared=$(comm -12 plain_avx512.weak avx512.weak)
-    [ -z "$shared" ] || fail "the same functions of -mavx512f -mfma and ${machine[avx512]}: $shared"
     ;;
   gate)
     rm -f prediction.*.o
@@ -116,27 +94,6 @@ case $what in
       # the wide calls, where this machine has them: as many numbers to get wrong
       if grep -q avx2 /proc/cpuinfo; then ./mixed avx2 || fail "avx2, order $order"; fi
       if grep -q avx512vl /proc/cpuinfo; then ./mixed avx512 || fail "avx512, order $order"; fi
-    done
-    ;;
-  choose)
-    for_each_set compiled.cpp "$@"
-    for set in baseline avx2 avx512; do
-      foreign=$(foreign_symbols "compiled.$set.o" "$(space_of "-march=${machine[$set]}")") && fail "weak symbols of $set: $foreign"
-    done
-    compile choose_main.cpp choose_main.o "-march=${machine[baseline]}" "$@"
-    for order in "baseline avx2 avx512" "avx512 avx2 baseline"; do
-      objects=""
-      for set in $order; do objects="$objects compiled.$set.o"; done
-      # shellcheck disable=SC2086
-      "$compiler" $objects choose_main.o -o choose || fail "link $order"
-      here_runs=sse2_
-      if grep -qw avx2 /proc/cpuinfo && grep -qw movbe /proc/cpuinfo; then here_runs=avx2_; fi
-      if [ $here_runs = avx2_ ] && grep -qw avx512vl /proc/cpuinfo; then here_runs=avx512_; fi
-      ./choose $here_runs || fail "on this machine, order $order"
-      [ -n "$emulator" ] || skip "no qemu-x86_64: chosen on this machine only"
-      "$emulator" -cpu Nehalem ./choose sse2_ || fail "without AVX, order $order"
-      if "$emulator" -cpu Haswell true 2>&1 | grep -q "support.*avx2"; then continue; fi  # an old emulator
-      "$emulator" -cpu Haswell ./choose avx2_ || fail "with AVX2, order $order"
     done
     ;;
   leaks)

@@ -47,7 +47,7 @@ def test_help_and_version(commands):
 
 
 @pytest.mark.parametrize("words, become", [
-    ("f", "fly"), ("n", "new"), ("new x --air", "--airframe"), ("fly d1 --sam", "--samples"), ("train --seeds 3 --conf", "--config"), ("fly d1 --out fi", "")])
+    ("f", "fly"), ("i", "import identify"), ("loop x --air", "--airframe"), ("fly d1 --sam", "--samples"), ("train --seeds 3 --conf", "--config"), ("fly d1 --out fi", "")])
 def test_completion(pinnquad, words, become):
     script = f"""source {SOURCE}/tools/command_line/completion.bash
         COMP_WORDS=({pinnquad} {words}) COMP_CWORD={len(words.split())} COMPREPLY=()

@@ -202,27 +202,6 @@ def study_cases():
     yield from (refused("study --help", around=around) for around in ("closed_stdout", "full_stdout"))
 
 
-def new_cases():
-    yield from (left_alone("new", path) for path in [*NO_FOLDER, ".", "in", "/dev/null/x"])
-    yield from (refused("new run/o --name", text) for text in [*NO_IDENTIFIER, '");int x("', "{{name}}"])
-    yield from (refused("new run/o --airframe", text) for text in ["", " ", "d1\n", "\udcff", "x.toml", "in/short.csv"])
-    yield from (left_alone("new run/o --model", path) for path in [*UNREADABLE, "in/sticks.csv"])
-    yield from (accepted("new", f"run/{name}") for name in NAMES)
-    yield refused("new run/o", before=lambda run: ((run / "o").mkdir(), os.mkfifo(run / "o/fifo")))
-
-    def nothing(run):
-        assert not os.listdir(run)
-
-    yield from (refused("new run/o/deep", around=disk, after=nothing) for disk in DISKS)
-
-    def written(run):
-        assert (run / "o/main.cpp").stat().st_size, "nothing was written"
-
-    yield from (Case("new run/o", around=around, leaves=True, after=written)
-                for around in ("closed_stdout", "full_stdout"))
-    yield refused("new run/o", around="few_files")
-
-
 def demo_cases():
     """Refused before anything is built."""
     for option in "--seeds", "--epochs", "--seed":
@@ -234,9 +213,9 @@ def demo_cases():
         yield left_alone("demo --out", path)
 
 
-@pytest.mark.parametrize("cases", [fly_cases, train_cases, new_cases, demo_cases])
+@pytest.mark.parametrize("cases", [fly_cases, train_cases, demo_cases])
 def test_hostile(cases, pinnquad, given, work):
-    programs = {name: Program(pinnquad, name) for name in ("fly", "train", "new")}
+    programs = {name: Program(pinnquad, name) for name in ("fly", "train")}
     programs.update(demo=Program(SOURCE / "scripts/demo"))
     assert try_all(cases(), programs, given, work) >= 60
 

@@ -9,7 +9,7 @@ import pytest
 from conftest import SOURCE, Program, replaced
 
 MODELS = SOURCE / "examples/models"
-OWN = "loop own.block --column battery_voltage=15.2"
+OWN = "loop model.block --column battery_voltage=15.2"
 
 
 def flown_by(pinnquad, words, code=0):
@@ -53,22 +53,21 @@ def test_as_compiled(pinnquad, fly_export, request, model):
 
 @pytest.fixture(scope="module")
 def own(pinnquad, compiler, flown, tmp_path_factory):
-    """A folder with a model of a user's own, as `new` begins it: its header, its block, and what flies the header."""
+    """A folder with a model of a user's own, by examples/own_training: its header, its block, and what flies the header."""
     folder = tmp_path_factory.mktemp("own")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         header, *rows = flown("--seed 3 --samples 3000").read_text().splitlines()
         volts = (f"{row},{14.5 + line % 100 / 50}" for line, row in enumerate(rows))
         Path("flight.csv").write_text("\n".join([f"{header},battery_voltage [V]", *volts, ""]))
-        pinnquad("new project --name Own")
         features = "Windowed<WithColumns<PaperFeatures, BatteryVoltage>, 2, PeriodMicroseconds<50000>>"
-        replaced("project/model.hpp", "project/model.hpp", ("^using MyFeatures = .*", f"using MyFeatures = {features};"),
+        replaced(SOURCE / "examples/own_training/main.cpp", "main.cpp", ('"MyModel"', '"Own"'),
+                 ("^using MyFeatures = .*", f"using MyFeatures = {features};"),
                  ("^using MyOutputs = .*", "using MyOutputs = WrenchOutputs;"),
                  ("^using MyNetwork = .*", "using MyNetwork = Mlp<float, InputSize<34>, Hidden<2, 16>, OutputSize<4>, "
-                  "Silu>;"), ("epochs = 300", "epochs = 60"), ("^using MyLoss = .*", "using MyLoss = Mse;"))
-        compiler("-O2 project/main.cpp -o train")
-        Program("./train")("flight.csv own.hpp")
-        Path("model.hpp").symlink_to("own.hpp")
+                  "Silu>;"), ("my_epochs = 300", "my_epochs = 60"), ("^using MyLoss = .*", "using MyLoss = Mse;"))
+        compiler("-O2 main.cpp -o train")
+        Program("./train")(". flight.csv")
         compiler("-O2 -ffp-contract=off -I.", SOURCE / "tests/programs/loop/compiled.cpp", "-o", "compiled")
     return folder
 
@@ -92,16 +91,16 @@ def test_model_of_a_users_own(pinnquad, own_here):
     said = pinnquad(OWN).out
     assert "battery_voltage 15.2 V" in said and re.search(r"stood in for the model: .*\b25 warming_up", said), said
     # what is held matters; of a voltage lower than any that was trained the lowest is taken
-    assert flown_by(pinnquad, "loop own.hpp --column battery_voltage=14.7")["model"]["rmse_m"] != model["rmse_m"]
-    low, lower = (flown_by(pinnquad, f"loop own.hpp --column battery_voltage={volts}")["model"] for volts in (9, 3))
+    assert flown_by(pinnquad, "loop model.hpp --column battery_voltage=14.7")["model"]["rmse_m"] != model["rmse_m"]
+    low, lower = (flown_by(pinnquad, f"loop model.hpp --column battery_voltage={volts}")["model"] for volts in (9, 3))
     assert low == lower and low["declined"] == model["declined"]
-    assert 14.5 < flown_by(pinnquad, "loop own.hpp")["columns"]["battery_voltage"] < 16.5
+    assert 14.5 < flown_by(pinnquad, "loop model.hpp")["columns"]["battery_voltage"] < 16.5
 
 
 @pytest.mark.parametrize("words, keyword", [
-    ("own.block --column battery_voltage", "=NUMBER in V"),
-    ("own.block --column battery_voltage=fast", "'battery_voltage=fast'"), ("own.block --column battery_voltage=nan", "=NUMBER"),
-    ("own.block --column battery_voltage=15 battery_voltage=16", "twice"), ("own.block --column pack=15", "'pack'"),
+    ("model.block --column battery_voltage", "=NUMBER in V"),
+    ("model.block --column battery_voltage=fast", "'battery_voltage=fast'"), ("model.block --column battery_voltage=nan", "=NUMBER"),
+    ("model.block --column battery_voltage=15 battery_voltage=16", "twice"), ("model.block --column pack=15", "'pack'"),
     (f"{MODELS}/demo_quadrotor.block --column pack=15", "none"), ("flight.csv", "block"), ("none.block", "none"),
     (f"{MODELS}/demo_quadrotor.hpp --airframe turned.toml", "stand or turn otherwise"),
     (f"{MODELS}/demo_quadrotor.hpp --airframe zeppelin", "'zeppelin'"),

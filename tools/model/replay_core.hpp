@@ -279,7 +279,6 @@ class CoreReplayOf : public CoreReplay {
   struct Excess {
     std::array<float, static_cast<std::size_t>(Features::size)> excess{};
     int worst_feature;
-    bool features_clamped = false;
     explicit Excess(const pinnquad::autopilot::StepReport& report) : worst_feature(report.worst_feature) {
       if (worst_feature >= 0) excess[static_cast<std::size_t>(worst_feature)] = report.worst_excess;
     }

@@ -33,8 +33,7 @@ class ReasonOf {
     using pinnquad::Status;
     switch (cause) {
       case Status::ok: return "";
-      case Status::limited:
-        return report.features_clamped ? "a feature was moved into the envelope" : "commands clipped";
+      case Status::limited: return "commands clipped";
       case Status::not_finite: return not_finite(x);
       case Status::not_unit_quaternion: return "the attitude is no unit quaternion";
       case Status::outside_envelope: return outside(report, x);

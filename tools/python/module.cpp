@@ -94,7 +94,8 @@ void bind_errors(py::module_& module) {
 void bind_status(py::module_& module) {
   py::list values;
   for (int i = 0; i < pinnquad::status_count; ++i) {
-    values.append(py::make_tuple(to_string(static_cast<pinnquad::Status>(i)), i));
+    const std::string word = to_string(static_cast<pinnquad::Status>(i));
+    if (word.find(' ') == std::string::npos) values.append(py::make_tuple(word, i));  // "unknown status": no enumerator
   }
   const py::object made = py::module_::import("enum").attr("IntEnum")("Status", values, py::arg("module") = "pinnquad");
   made.attr("__doc__") = "The outcome of a call of the library, vehicle by vehicle or row by row.";

@@ -21,18 +21,18 @@ enum class [[nodiscard]] Status : std::uint8_t{
     invalid_airframe,     ///< mass, inertia, rotors or allocation can't be those of a quadrotor that flies
     self_test_failed,     ///< a golden vector was not reproduced
     outside_limits,       ///< a command lies outside the output limits, and the guard refuses it
-    limited,              ///< features clamped to the envelope or commands clipped to limits; they are written
+    limited,              ///< commands clipped to limits; they are written
     fell_back,  ///< the network declined; the commands written are the fallback's, or its beyond the edge (Fallback)
     block_truncated,     ///< a model block is shorter than it says, or not aligned
     block_incompatible,  ///< a block of another format, network or feature set
     block_corrupt,       ///< a block whose checksum or contents are wrong
-    disagreement,        ///< the network's commands are further from another inverse's than the guard allows
-    warming_up,  ///< a model with a past has not seen enough of it yet, or lost it in a gap (features/windowed.hpp)
+    // no 15: recorded flights hold the numbers that follow
+    warming_up = 16,  ///< a model with a past has not seen enough of it, or lost it in a gap (features/windowed.hpp)
     outside_distribution,  ///< the features lie further from the training rows than the guard allows, taken together
     distrusted,            ///< the model has lately been wrong about what was flown (inference/monitored_inverse.hpp)
 };
 
-/// Number of Status values, for counters by Status.
+/// More than any Status, for counters by Status.
 inline constexpr int status_count = static_cast<int>(Status::distrusted) + 1;
 
 /// True where the output was written: `ok`, `limited`, `fell_back`.
@@ -58,7 +58,6 @@ constexpr const char* to_string(Status status) noexcept {
     case Status::block_truncated: return "block_truncated";
     case Status::block_incompatible: return "block_incompatible";
     case Status::block_corrupt: return "block_corrupt";
-    case Status::disagreement: return "disagreement";
     case Status::warming_up: return "warming_up";
     case Status::outside_distribution: return "outside_distribution";
     case Status::distrusted: return "distrusted";

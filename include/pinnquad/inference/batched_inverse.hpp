@@ -40,8 +40,6 @@ void predict_batch(const InverseDynamics<Model, GuardType>& inverse, const typen
                    typename Model::Scalar* commands, Status* statuses, int samples) noexcept {
   static_assert(GuardType::refuses_outside_envelope,
                 "pinnquad: a batch refuses what is outside the envelope; take a guard with TrainingEnvelope");
-  static_assert(!GuardType::compares,
-                "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
   using Scalar = typename Model::Scalar;
   using Batched = detail::BatchedAnswer<typename Model::Network>;
   using Pipeline = detail::Pipeline<typename Model::Features, typename Model::Outputs, typename Model::Vehicle>;

@@ -22,8 +22,6 @@ Status predict_with_jacobian(const InverseDynamics<Model, GuardType>& inverse, c
                              typename Model::Scalar* commands, typename Model::Scalar* jacobian) noexcept {
   static_assert(GuardType::refuses_outside_envelope,
                 "pinnquad: derivatives outside the envelope mean nothing; take a guard with TrainingEnvelope");
-  static_assert(!GuardType::compares,
-                "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
   using Scalar = typename Model::Scalar;
   using Network = typename Model::Network;
   using Pipeline = detail::Pipeline<typename Model::Features, typename Model::Outputs, typename Model::Vehicle>;

@@ -21,7 +21,7 @@ Status ask_fallback(const Fallback& fallback, const Inputs& inputs, Commands<Sca
                     ? std::is_nothrow_invocable_v<const Fallback&, const Inputs&, const Place&..., Commands<Scalar>&>
                     : std::is_nothrow_invocable_v<const Fallback&, const Inputs&, Commands<Scalar>&> ||
                           !std::is_invocable_v<const Fallback&, const Inputs&, Commands<Scalar>&>,
-                "pinnquad: a fallback's or reference's call must be noexcept (Fallback in inference/guard.hpp)");
+                "pinnquad: a fallback's call must be noexcept (Fallback in inference/guard.hpp)");
   if constexpr (with_place) {
     return fallback(inputs, place..., commands);
   } else {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The checks between a network and the motors, as a type: Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>. The
 // compiler checks that the policies go together; their order has no meaning. In flight the inputs are checked first,
-// then the envelope, the distance from the training rows, the commands' numbers and limits, and the agreement with
-// another inverse. Where one of them refuses, the fallback is asked.
+// then the envelope, the distance from the training rows, the commands' numbers and limits. Where one of them refuses,
+// the fallback is asked.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +24,9 @@ struct FiniteInputs {};
 
 /// Every feature lies in its range of the training rows, margin included: else `outside_envelope`. A column
 /// (features/extra_columns.hpp) outside its range is no refusal: the network is shown the range's edge.
-/// The envelope is a box, feature by feature. A motion within it may be far from every training row; JointDistance and
-/// Agreement find such motions.
+/// The envelope is a box, feature by feature. A motion within it may be far from every training row; JointDistance
+/// finds such motions.
 struct TrainingEnvelope {};
-
-/// Features outside the envelope are moved to its border: `limited`. The network answers another motion then; a
-/// feedback loop must make good the difference.
-struct ClampToEnvelope {};
 
 /// The commands are finite: else `output_not_finite`. Every guard has it.
 struct FiniteOutputs {};
@@ -73,24 +69,6 @@ template <class Inverse>
 struct Fallback {};
 
 namespace detail {
-/// The default limit of Agreement.
-struct AgreedCommands {
-  static constexpr double largest_difference = 0.07;
-};
-}  // namespace detail
-
-/// Each of the network's commands, clipped if the guard clips, differs from another inverse's by at most
-/// `Limit::largest_difference`: else `disagreement`. The other inverse is the Fallback, whose commands are then written
-/// (`fell_back`), or the Reference. It is asked each time; where it declines, the Status is `disagreement` too.
-/// Needs the inputs: predict(), not features alone.
-template <class Limit = detail::AgreedCommands>
-struct Agreement {};
-
-/// The inverse that Agreement compares with in a guard without Fallback: never flown. Contract: as a Fallback's.
-template <class Inverse>
-struct Reference {};
-
-namespace detail {
 
 /// Stands for a fallback where there is none.
 struct NoFallback {};
@@ -119,70 +97,49 @@ struct ArgumentOf<Template, Default, Template<Argument>, Rest...> {
   static constexpr int count = 1 + ArgumentOf<Template, Default, Rest...>::count;
 };
 
-/// The value that a guard holds: the fallback, else the reference.
-template <class... Policies>
-using OtherInverse =
-    typename ArgumentOf<Fallback, typename ArgumentOf<Reference, NoFallback, Policies...>::type, Policies...>::type;
 }  // namespace detail
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// A list of policies. A value: it holds the fallback, and is empty without one.
 template <class... Policies>
-class Guard : private detail::Held<detail::OtherInverse<Policies...>> {
+class Guard : private detail::Held<typename detail::ArgumentOf<Fallback, detail::NoFallback, Policies...>::type> {
   template <class Policy>
   static constexpr int count = (int(std::is_same_v<Policy, Policies>) + ... + 0);
   using Refused = detail::ArgumentOf<RefuseCommands, UnitCommands, Policies...>;
   using Clipped = detail::ArgumentOf<ClipCommands, UnitCommands, Policies...>;
   using FallenBack = detail::ArgumentOf<Fallback, detail::NoFallback, Policies...>;
-  using Referred = detail::ArgumentOf<Reference, detail::NoFallback, Policies...>;
-  using Agreed = detail::ArgumentOf<Agreement, detail::AgreedCommands, Policies...>;
   using Distributed = detail::ArgumentOf<JointDistance, detail::NoDistribution, Policies...>;
 
  public:
-  /// The fallback's type, or the reference's.
-  using FallbackInverse = detail::OtherInverse<Policies...>;
+  using FallbackInverse = typename FallenBack::type;
   /// JointDistance's, by the names of today.
   using Distribution = detail::DistanceTrust<typename Distributed::type>;
 
   static constexpr bool checks_inputs = count<FiniteInputs> > 0;
   static constexpr bool refuses_outside_envelope = count<TrainingEnvelope> > 0;
-  static constexpr bool clamps_to_envelope = count<ClampToEnvelope> > 0;
   static constexpr bool refuses_commands = Refused::count > 0;
   static constexpr bool clips_commands = Clipped::count > 0;
   static constexpr bool falls_back = FallenBack::count > 0;
-  static constexpr bool compares = Agreed::count > 0;
   static constexpr bool measures_distance = Distributed::count > 0;
 
-  static_assert(count<FiniteInputs> + count<TrainingEnvelope> + count<ClampToEnvelope> + count<FiniteOutputs> +
-                        Refused::count + Clipped::count + FallenBack::count + Referred::count + Agreed::count +
-                        Distributed::count ==
+  static_assert(count<FiniteInputs> + count<TrainingEnvelope> + count<FiniteOutputs> + Refused::count + Clipped::count +
+                        FallenBack::count + Distributed::count ==
                     int(sizeof...(Policies)),
                 "pinnquad: this type is not a policy of a Guard (inference/guard.hpp)");
   static_assert(count<FiniteOutputs> > 0,
                 "pinnquad: a Guard needs FiniteOutputs: without it the NaN of a broken weight would reach a motor");
   static_assert(
-      checks_inputs || refuses_outside_envelope || clamps_to_envelope,
+      checks_inputs || refuses_outside_envelope,
       "pinnquad: a Guard without FiniteInputs needs TrainingEnvelope, which refuses NaN and infinity too: a ReLU "
       "turns -infinity into 0, and the outputs would look sound");
-  static_assert(checks_inputs || !clamps_to_envelope,
-                "pinnquad: ClampToEnvelope needs FiniteInputs: it would turn infinity into a number");
-  static_assert(!(refuses_outside_envelope && clamps_to_envelope),
-                "pinnquad: a Guard either refuses what is outside the envelope or clamps it, not both");
   static_assert(((count<Policies> == 1) && ...) && Refused::count <= 1 && Clipped::count <= 1 &&
-                    FallenBack::count <= 1 && Referred::count <= 1 && Agreed::count <= 1 && Distributed::count <= 1,
+                    FallenBack::count <= 1 && Distributed::count <= 1,
                 "pinnquad: a policy of a Guard is named twice");
   static_assert(detail::finite_limits<typename Refused::type> && detail::finite_limits<typename Clipped::type>,
                 "pinnquad: a Guard's command limits must be numbers: NaN or infinity would let every command pass");
   static_assert(Refused::type::lower <= Refused::type::upper && Clipped::type::lower <= Clipped::type::upper,
                 "pinnquad: a Guard's lower command limit lies above the upper one");
-
-  static_assert(!compares || falls_back || Referred::count > 0,
-                "pinnquad: Agreement needs an inverse to agree with: Fallback<Inverse>, or Reference<Inverse>");
-  static_assert(Referred::count == 0 || (compares && !falls_back),
-                "pinnquad: Reference is what Agreement compares with in a Guard without Fallback");
-  static_assert(is_finite_constant(double(Agreed::type::largest_difference)) && Agreed::type::largest_difference > 0,
-                "pinnquad: the largest difference of an Agreement must be a positive number");
 
   static_assert(detail::sound_distance_limit<Distribution>(),
                 "pinnquad: the distance limit of a JointDistance must be a positive number");
@@ -192,18 +149,6 @@ class Guard : private detail::Held<detail::OtherInverse<Policies...>> {
   Guard(const FallbackInverse& fallback) noexcept : detail::Held<FallbackInverse>(fallback) {}  // NOLINT: implicit
 
   const FallbackInverse& fallback() const noexcept { return detail::Held<FallbackInverse>::held(); }
-
-  /// True if no command differs from the other inverse's by more than the Agreement's limit; leaves the largest
-  /// difference.
-  template <class Scalar>
-  static bool agree(const Scalar* commands, const Scalar* others, Scalar& largest) noexcept {
-    largest = Scalar(0);
-    for (int i = 0; i < rotor_count; ++i) {
-      const Scalar difference = commands[i] < others[i] ? others[i] - commands[i] : commands[i] - others[i];
-      if (difference > largest) largest = difference;
-    }
-    return is_finite(largest) && largest <= Scalar(Agreed::type::largest_difference);
-  }
 
   /// Checks of the commands, the network's or the fallback's: `ok`, `limited` (and the commands are clipped) or a
   /// refusal.

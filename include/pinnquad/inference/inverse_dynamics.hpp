@@ -42,12 +42,10 @@ PINNQUAD_ALWAYS_INLINE const PackedPredictor<typename Model::Network>* packed_we
 template <class Scalar, int Size>
 struct GuardReport {
   Status cause{Status::ok};     ///< the network's own: `ok`, `limited`, or why it declined
-  Status fallback{Status::ok};  ///< the fallback's or reference's, if it was asked
+  Status fallback{Status::ok};  ///< the fallback's, if it was asked
   bool fallback_asked{false};
-  bool features_clamped{false};
   bool commands_clipped{false};  ///< the network's or the fallback's
   Scalar squared_distance{0};    ///< that JointDistance measured; 0 if none was
-  Scalar disagreement{0};  ///< largest |network's - other's command| that Agreement found; 0 if nothing was compared
   /// How far each feature lies outside the envelope, in half-widths of it; 0 inside, not finite for a feature that
   /// isn't. All zero if the inputs were refused before there were features.
   std::array<Scalar, static_cast<std::size_t>(Size)> excess{};
@@ -105,7 +103,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   /// `ok`, `limited`: the network's. `fell_back`: the fallback's. `not_finite`, `not_unit_quaternion`: a bad input.
   /// `outside_envelope`: a feature beyond the training data. `outside_distribution`: all together too far from it
   /// (JointDistance). `outside_limits`: the guard refuses the commands. `output_not_finite`: the network's weights are
-  /// broken. `disagreement`: too far from another inverse's (Agreement).
+  /// broken.
   Status predict(const Inputs& inputs, Commands<Scalar>& commands) const noexcept {
     detail::NoReport none;
     return guarded(inputs, commands, none);
@@ -148,8 +146,6 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   }
   /// The same into four numbers.
   Status predict_features(const Scalar* x, Scalar* commands) const noexcept {
-    static_assert(!Guard::compares,
-                  "pinnquad: Agreement compares with an inverse that needs the inputs: call predict(inputs, commands)");
     detail::NoReport none;
     Scalar asked[rotor_count] = {};
     const Status status = ask_network(x, asked, none);
@@ -236,22 +232,18 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
                                         const Place&... place) const noexcept {
     Scalar asked[rotor_count] = {};
     const Status status = ask_network(inputs, asked, report);
-    if constexpr (Guard::compares) {
-      return compare(inputs, asked, status, commands, report, place...);
-    } else {
-      if constexpr (reports<ReportType>) report.cause = status;
-      if (has_output(status)) {
-        for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = asked[i];
-        return status;
-      }
-      if constexpr (detail::answers_beyond_envelope<InverseDynamics>) {
-        if (status == Status::outside_envelope &&
-            detail::answer_beyond_envelope(*this, inputs, commands, report, place...)) {
-          return Status::fell_back;
-        }
-      }
-      return declined(status, inputs, commands, report, place...);
+    if constexpr (reports<ReportType>) report.cause = status;
+    if (has_output(status)) {
+      for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = asked[i];
+      return status;
     }
+    if constexpr (detail::answers_beyond_envelope<InverseDynamics>) {
+      if (status == Status::outside_envelope &&
+          detail::answer_beyond_envelope(*this, inputs, commands, report, place...)) {
+        return Status::fell_back;
+      }
+    }
+    return declined(status, inputs, commands, report, place...);
   }
 
   template <class ReportType>
@@ -274,24 +266,15 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     } else {
       if (!all_finite(x, Features::size)) return Status::not_finite;
     }
-    bool moved = false;
-    if constexpr (Guard::clamps_to_envelope) {
-      Scalar nearest[Features::size];
-      moved = clamp(x, nearest);
-      if constexpr (reports<ReportType>) report.features_clamped = moved;
-      if (!near_enough(nearest, report)) return Status::outside_distribution;
-      evaluate_over(nearest, commands);
+    if (!near_enough(x, report)) return Status::outside_distribution;
+    if constexpr (std::is_const_v<Value>) {
+      evaluate(x, commands);
     } else {
-      if (!near_enough(x, report)) return Status::outside_distribution;
-      if constexpr (std::is_const_v<Value>) {
-        evaluate(x, commands);
-      } else {
-        evaluate_over(x, commands);
-      }
+      evaluate_over(x, commands);
     }
     const Status checked = Guard::check_commands(commands);
     if constexpr (reports<ReportType>) report.commands_clipped = checked == Status::limited;
-    return checked == Status::ok && moved ? Status::limited : checked;
+    return checked;
   }
 
   template <class ReportType>
@@ -313,65 +296,21 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     }
   }
 
-  /// x moved into the envelope; true if anything had to move. x is finite.
-  PINNQUAD_ALWAYS_INLINE bool clamp(const Scalar* x, Scalar* nearest) const noexcept {
-    const detail::Scales<Scalar> scales = detail::scales_of(model());
-    for (int i = 0; i < Features::size; ++i)
-      nearest[i] = x[i] < scales.lower[i] ? scales.lower[i] : (scales.upper[i] < x[i] ? scales.upper[i] : x[i]);
-    return !inside_envelope(x);
-  }
-
   /// Asks the fallback; true if its commands were written. Out of line: the network's way is the hot one.
   template <class ReportType, class... Place>
   PINNQUAD_NOINLINE bool fall_back(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
                                    const Place&... place) const noexcept {
     Commands<Scalar> replaced{};
-    const Status status = ask_and_check(inputs, replaced, report, place...);
-    if constexpr (reports<ReportType>) report.commands_clipped = status == Status::limited;
-    if (!has_output(status)) return false;
-    commands = replaced;
-    return true;
-  }
-
-  /// The network's commands where the other inverse agrees, else the fallback's or none. The other inverse is asked
-  /// whatever the network came to.
-  template <class ReportType, class... Place>
-  PINNQUAD_NOINLINE Status compare(const Inputs& inputs, const Scalar* asked, Status status, Commands<Scalar>& commands,
-                                   ReportType& report, const Place&... place) const noexcept {
-    Commands<Scalar> others{};
-    const Status answered = ask_and_check(inputs, others, report, place...);
-    if (has_output(status)) {
-      Scalar largest(0);
-      const bool agreed = has_output(answered) && Guard::agree(asked, others.data(), largest);
-      if constexpr (reports<ReportType>) report.disagreement = largest;
-      if (agreed) {
-        if constexpr (reports<ReportType>) report.cause = status;
-        for (std::size_t i = 0; i < rotor_count; ++i) commands[i] = asked[i];
-        return status;
-      }
-      status = Status::disagreement;
-    }
-    const bool replaces = Guard::falls_back && has_output(answered);
-    if constexpr (reports<ReportType>) {
-      report.cause = status;
-      report.commands_clipped = replaces && answered == Status::limited;
-    }
-    if (!replaces) return status;
-    commands = others;
-    return Status::fell_back;
-  }
-
-  /// The other inverse's commands under the guard's checks of commands.
-  template <class ReportType, class... Place>
-  Status ask_and_check(const Inputs& inputs, Commands<Scalar>& commands, ReportType& report,
-                       const Place&... place) const noexcept {
-    Status status = detail::ask_fallback(guard().fallback(), inputs, commands, place...);
-    if (has_output(status)) status = Guard::check_commands(commands.data());
+    Status status = detail::ask_fallback(guard().fallback(), inputs, replaced, place...);
+    if (has_output(status)) status = Guard::check_commands(replaced.data());
     if constexpr (reports<ReportType>) {
       report.fallback_asked = true;
       report.fallback = status;
+      report.commands_clipped = status == Status::limited;
     }
-    return status;
+    if (!has_output(status)) return false;
+    commands = replaced;
+    return true;
   }
 
   void measure(const Scalar* x, Report& report) const noexcept {

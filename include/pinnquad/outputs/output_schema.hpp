@@ -12,8 +12,8 @@
 //   takes_features                       optional, false: no function reads x, which may be null
 // Short form for one output per rotor and one unit: `names`, `unit`, from_command(u, airframe), command(y, airframe),
 // command_slope(y, airframe), or these three with the rotor's index as last argument, for rotors that differ.
-// commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where one program links objects of several instruction sets,
-// and plain arrays then, no Eigen (docs/train.md, Reproducibility).
+// commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where a program links objects of other flags, and plain arrays
+// then, no Eigen (docs/in_flight.md).
 #pragma once
 
 #include <array>

@@ -48,7 +48,6 @@ class Status(enum.IntEnum):
     block_truncated = 12
     block_incompatible = 13
     block_corrupt = 14
-    disagreement = 15
     warming_up = 16
     outside_distribution = 17
     distrusted = 18
