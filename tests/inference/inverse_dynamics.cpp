@@ -61,19 +61,22 @@ constexpr std::array<float, Size> with_nan(std::array<float, Size> parameters, s
   return parameters;
 }
 
-struct NanInFirstWeight : SmallModel {
+struct FirstWeight : SmallModel {
   static constexpr auto parameters = with_nan(SmallModel::parameters, 0);
 };
-struct NanInLastBias : SmallModel {
+struct LastBias : SmallModel {
   static constexpr auto parameters = with_nan(SmallModel::parameters, 171);
 };
-struct InfiniteSpread : SmallModel {
+struct InfiniteSpread : Unchecked<SmallModel> {
   static constexpr pinnquad::Scaler<float, 4> output{SmallModel::output.mean, {1.0F, infinity, 1.0F, 1.0F}};
 };
-struct SpeedModel : SmallModel {
+struct SpeedNumbers : SmallNumbers {
   using Outputs = RotorSpeedOutputs;
   static constexpr pinnquad::Scaler<float, 4> output{{100.0F, 100.0F, 100.0F, 0.0F}, {10.0F, 10.0F, 10.0F, 10.0F}};
 };
+using NanInFirstWeight = Unchecked<FirstWeight>;
+using NanInLastBias = Unchecked<LastBias>;
+using SpeedModel = AsHeader<SpeedNumbers>;
 
 }  // namespace
 

@@ -142,8 +142,8 @@ class Guard : private detail::Held<detail::OtherInverse<Policies...>> {
  public:
   /// The fallback's type, or the reference's.
   using FallbackInverse = detail::OtherInverse<Policies...>;
-  /// JointDistance's, by the names of today.
-  using Distribution = detail::DistanceTrust<typename Distributed::type>;
+  /// JointDistance's.
+  using Distribution = typename Distributed::type;
 
   static constexpr bool checks_inputs = count<FiniteInputs> > 0;
   static constexpr bool refuses_outside_envelope = count<TrainingEnvelope> > 0;
