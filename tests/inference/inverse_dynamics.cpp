@@ -20,6 +20,7 @@ using pinnquad::MotionInputs;
 using pinnquad::PaperFeatures;
 using pinnquad::RotorSpeedOutputs;
 using pinnquad::Status;
+using pinnquad::test::AsHeader;
 using pinnquad::test::infinity;
 using pinnquad::test::inputs_of;
 using pinnquad::test::marked;
@@ -27,6 +28,8 @@ using pinnquad::test::not_a_number;
 using pinnquad::test::RandomStates;
 using pinnquad::test::same_bits;
 using pinnquad::test::SmallModel;
+using pinnquad::test::SmallNumbers;
+using pinnquad::test::Unchecked;
 
 namespace {
 
