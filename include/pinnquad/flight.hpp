@@ -37,7 +37,6 @@
 #include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_view.hpp"
-#include "pinnquad/exported/renamed.hpp"
 #include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/features/input_history.hpp"
 #include "pinnquad/features/motion_parts.hpp"

@@ -58,9 +58,6 @@ struct Distribution {
   static constexpr double squared_distance_limit = Limits<0, Limit>::upper;
 };
 
-struct Described : test::SmallModel {
-  static constexpr std::uint64_t training_data_hash = 1;
-};
 struct OtherData : Distribution<16, 1> {
   static constexpr std::uint64_t training_data_hash = 2;
 };
@@ -149,7 +146,7 @@ int main() {
 #else
   const Policies guard(by_formula<Quadrotor<float>>());
 #endif
-  const InverseDynamics<Described, Policies> inverse(guard);
+  const InverseDynamics<test::SmallModel, Policies> inverse(guard);
 #if defined(COMMANDS_OF_THREE)
   std::array<float, 3> commands{};
 #elif defined(COMMANDS_IN_DOUBLE)

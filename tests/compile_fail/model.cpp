@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // CASE NOT_A_MODEL: pinnquad: this type is not an exported model
 // CASE MEMBER_MISSING: pinnquad: this type is not an exported model
-// CASE NEWER_FORMAT: pinnquad: the model was exported by a newer pinnquad than this one; update the library
-// CASE OLDER_FORMAT: pinnquad: the model's format is older than this library reads; export it again
+// CASE NEWER_FORMAT: pinnquad: the model's header has the format .found., .*: train and export again
+// CASE OLDER_FORMAT: pinnquad: the model's header has the format .found., .*: train and export again
 // CASE UNDESCRIBED: pinnquad: the model lacks what its format demands
+// CASE UNHASHED: pinnquad: the model lacks what its format demands
+// CASE EDITED: pinnquad: the header, or the airframe that it was trained for, was edited since it was exported
 // CASE OTHER_FRAME: pinnquad: the model was trained in other frames
 // CASE OTHER_FEATURE: pinnquad: the model was trained on other features than its feature set now has
 // CASE OTHER_FEATURE_UNIT: pinnquad: the model was trained in other units than its feature set now has
@@ -30,7 +32,6 @@
 // CASE FEATURES_MAY_THROW: pinnquad: a feature set's check.. and extract.. must be noexcept
 // CASE OUTPUTS_MAY_THROW: pinnquad: an output schema's functions must be noexcept
 // CASE SCALAR_DIFFERS: pinnquad: the model's Scalar is not that of its Network
-// CASE UNRECORDED: pinnquad: the model lacks what format 3 demands
 // CASE UNKNOWN_RECORD: pinnquad: the model has a record that must be understood and that this pinnquad does not know
 // CASE OTHER_ANSWER: pinnquad: the model's parameters are of another answer than its Network now is
 // CASE NO_COMMAND_RANGE: pinnquad: the range of the model's commands is none
@@ -58,8 +59,8 @@
 
 namespace {
 
-using pinnquad::test::DescribedModel;
-using pinnquad::test::RecordedModel;
+using pinnquad::test::Hashed;
+using pinnquad::test::RecordedNumbers;
 
 template <class Texts>
 constexpr Texts with_first(Texts texts, const char* first) {
@@ -106,23 +107,23 @@ struct ThrowingOutputs : pinnquad::CommandOutputs {
 };
 
 /// The small model with one member changed by the case.
-struct Changed : DescribedModel {
+struct Changed : RecordedNumbers {
 #if defined(NEWER_FORMAT)
   static constexpr int format_version = pinnquad::model_format_version + 1;
 #elif defined(OLDER_FORMAT)
-  static constexpr int format_version = pinnquad::oldest_model_format_version - 1;
+  static constexpr int format_version = pinnquad::model_format_version - 1;
 #elif defined(OTHER_FRAME)
   static constexpr const char* frame = "body FLU, world ENU";
 #elif defined(OTHER_FEATURE)
-  static constexpr auto feature_names = with_first(DescribedModel::feature_names, "vdot_wx");
+  static constexpr auto feature_names = with_first(RecordedNumbers::feature_names, "vdot_wx");
 #elif defined(OTHER_FEATURE_UNIT)
-  static constexpr auto feature_units = with_first(DescribedModel::feature_units, "g");
+  static constexpr auto feature_units = with_first(RecordedNumbers::feature_units, "g");
 #elif defined(FEATURE_NAME_MISSING)
   static constexpr std::array<const char*, 1> feature_names = {"vdot_bx"};
 #elif defined(OTHER_OUTPUT)
-  static constexpr auto output_names = with_first(DescribedModel::output_names, "n1");
+  static constexpr auto output_names = with_first(RecordedNumbers::output_names, "n1");
 #elif defined(OTHER_OUTPUT_UNIT)
-  static constexpr const char* output_unit = "rev/s";
+  static constexpr auto output_units = with_first(RecordedNumbers::output_units, "rev/s");
 #elif defined(OTHER_VEHICLE)
   using Vehicle = RenamedQuadrotor;
 #elif defined(ROTORS_SWAPPED)
@@ -142,15 +143,15 @@ struct Changed : DescribedModel {
           -1,
           1 } }};
 #elif defined(SPREAD_ZERO)
-  static constexpr auto input = with_spread(DescribedModel::input, 0.0F);
+  static constexpr auto input = with_spread(RecordedNumbers::input, 0.0F);
 #elif defined(WEIGHT_NOT_A_NUMBER)
-  static constexpr auto parameters = with_last(DescribedModel::parameters, not_a_number);
+  static constexpr auto parameters = with_last(RecordedNumbers::parameters, not_a_number);
 #elif defined(WEIGHT_INFINITE)
-  static constexpr auto parameters = with_last(DescribedModel::parameters, -infinity);
+  static constexpr auto parameters = with_last(RecordedNumbers::parameters, -infinity);
 #elif defined(SPREAD_INFINITE)
-  static constexpr auto input = with_spread(DescribedModel::input, infinity);
+  static constexpr auto input = with_spread(RecordedNumbers::input, infinity);
 #elif defined(ENVELOPE_NOT_A_NUMBER)
-  static constexpr auto envelope_lower = with_last(DescribedModel::envelope_lower, not_a_number);
+  static constexpr auto envelope_lower = with_last(RecordedNumbers::envelope_lower, not_a_number);
 #elif defined(GOLDEN_OUTSIDE)
   static constexpr std::array<float, 16> envelope_upper{};
 #elif defined(TOO_FEW_PARAMETERS)
@@ -179,8 +180,8 @@ struct Changed : DescribedModel {
 #endif
 };
 
-/// The small model of format 3 with one member changed by the case, and optional records that are sound.
-struct Recorded : RecordedModel {
+/// The small model with one record changed by the case, and optional records that are sound.
+struct Recorded : RecordedNumbers {
 #if defined(UNKNOWN_RECORD)
   static constexpr std::array<const char*, 2> records = {"answer", "phase_of_the_moon"};
 #elif defined(OTHER_ANSWER)
@@ -202,7 +203,7 @@ struct Recorded : RecordedModel {
   static constexpr std::array<const char*, 1> column_names = {"battery_voltage"};
 #elif defined(OTHER_ALLOCATION)
   static constexpr auto allocation = [] {
-    auto changed = RecordedModel::allocation;
+    auto changed = RecordedNumbers::allocation;
     changed[3][2] *= 1.001;
     return changed;
   }();
@@ -246,21 +247,19 @@ struct Recorded : RecordedModel {
 #endif
 };
 
-/// A header that claims format 3 and has the members of format 2.
-struct Unrecorded : DescribedModel {
-  static constexpr int format_version = 3;
+struct Undescribed : pinnquad::test::SmallNumbers {
+  static constexpr int format_version = pinnquad::model_format_version;
 };
 
-/// A header that claims format 2 and has the members of format 1.
-struct Undescribed : pinnquad::test::SmallModel {
-  static constexpr int format_version = 2;
+struct Edited : pinnquad::test::RecordedModel {
+  static constexpr int training_rows = 6001;
 };
 
 /// A header cut short.
 struct Truncated {
   using Scalar = float;
-  using Network = DescribedModel::Network;
-  using Features = DescribedModel::Features;
+  using Network = RecordedNumbers::Network;
+  using Features = RecordedNumbers::Features;
 };
 
 struct Nothing {};
@@ -271,17 +270,19 @@ using Model = Nothing;
 using Model = Truncated;
 #elif defined(UNDESCRIBED)
 using Model = Undescribed;
-#elif defined(UNRECORDED)
-using Model = Unrecorded;
+#elif defined(UNHASHED)
+using Model = RecordedNumbers;
+#elif defined(EDITED)
+using Model = Edited;
 #elif defined(UNKNOWN_RECORD) || defined(OTHER_ANSWER) || defined(NO_COMMAND_RANGE) || defined(PERIOD_NEGATIVE) || \
     defined(OTHER_WINDOW) || defined(NOT_CAUSAL) || defined(OTHER_COLUMNS) || defined(OTHER_ALLOCATION) ||         \
     defined(OTHER_BASE) || defined(SLOPE_SIGNS_MISSING) || defined(RESIDUAL_LENGTH) || defined(DISTANCE_LENGTH) || \
     defined(BIAS_LENGTH) || defined(BIAS_NEGATIVE) || defined(BIAS_TOO_FAST) || defined(LAG_OF_NO_ROTOR) ||        \
     defined(COMMANDS_TO_FIVE) || defined(R_SQUARED_NEGATIVE) || defined(R_SQUARED_ABOVE_1)
-using Model = Recorded;
+using Model = Hashed<Recorded>;
 #else
-using Model = Changed;
-static_assert(pinnquad::require_model<Recorded>());
+using Model = Hashed<Changed>;
+static_assert(pinnquad::require_model<Hashed<Recorded>>());
 #endif
 
 }  // namespace

@@ -13,12 +13,10 @@
 #include <vector>
 
 #include "../examples/models/demo_quadrotor.hpp"
-#include "models/v2/crazyflie_tanh.hpp"
-#include "models/v3/own_racer.hpp"
-#include "models/v4/own_racer.hpp"
+#include "models/own_racer.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
-#include "pinnquad/deploy/block_model.hpp"
 #include "support/block_bytes.hpp"
 
 namespace {
@@ -69,13 +67,11 @@ Provenance provenance() {
                   Header::epochs,
                   Header::loss,
                   verdict};
-  if constexpr (Header::format_version >= 3) {
-    from.command_meaning = Header::command_meaning;
-    from.command_lower = Header::command_lower;
-    from.command_upper = Header::command_upper;
-    from.sample_period_s = Header::sample_period_s;
-    from.lag_removed_s = Header::lag_removed_s;
-  }
+  from.command_meaning = Header::command_meaning;
+  from.command_lower = Header::command_lower;
+  from.command_upper = Header::command_upper;
+  from.sample_period_s = Header::sample_period_s;
+  from.lag_removed_s = Header::lag_removed_s;
   if constexpr (is_detected<detail::DistanceStatisticsOf, Header>) {
     const auto numbers = [](const auto& values) { return std::vector<double>(values.begin(), values.end()); };
     from.slope_signs = Header::slope_signs;
@@ -104,9 +100,6 @@ std::string comparable(std::string text) {
   const std::size_t begin = text.find("#pragma once");
   REQUIRE(begin != std::string::npos);
   text.erase(0, begin);
-  for (const std::string line : {"#ifndef PINNQUAD_ONE_FILE\n", "#endif\n"}) {  // headers of before have none
-    if (const std::size_t at = text.find(line); at != std::string::npos) text.erase(at, line.size());
-  }
   const std::size_t commands = text.find(" golden_commands = {");
   REQUIRE(commands != std::string::npos);
   text.erase(commands, text.find(';', commands) - commands);
@@ -148,32 +141,26 @@ TEST_CASE("the demonstration's header is what the writer writes") {
 }
 
 TEST_CASE("so is one in double, with a window, optional records and an airframe that its trainer was given") {
-  using Given = WithGivenAirframe<OwnRacerV4>;
-  const GivenAirframe airframe(OwnRacerV4::vehicle_name, OwnRacerV4Airframe::value<double>());
-  CHECK(comparable(written<Given>(trained<Given>({airframe}))) == comparable(text_of("models/v4/own_racer.hpp")));
-  CHECK(largest_golden_difference<OwnRacerV4>() <= 1e-12);
+  using Given = WithGivenAirframe<OwnRacer>;
+  const GivenAirframe airframe(OwnRacer::vehicle_name, OwnRacerAirframe::value<double>());
+  CHECK(comparable(written<Given>(trained<Given>({airframe}))) == comparable(text_of("models/own_racer.hpp")));
+  CHECK(largest_golden_difference<OwnRacer>() <= 1e-12);
 }
 
 TEST_CASE("the hash that is written is the one that the compiler works out") {
   CHECK(says_its_hash<DemoQuadModel>(trained<DemoQuadModel>()));
-  using Given = WithGivenAirframe<OwnRacerV4>;
-  const GivenAirframe airframe(OwnRacerV4::vehicle_name, OwnRacerV4Airframe::value<double>());
-  CHECK(says_its_hash<OwnRacerV4, Given>(trained<Given>({airframe})));
-  auto other = OwnRacerV4Airframe::value<double>();
+  using Given = WithGivenAirframe<OwnRacer>;
+  const GivenAirframe airframe(OwnRacer::vehicle_name, OwnRacerAirframe::value<double>());
+  CHECK(says_its_hash<OwnRacer, Given>(trained<Given>({airframe})));
+  auto other = OwnRacerAirframe::value<double>();
   other.mass_kg += 1e-15;
-  const GivenAirframe heavier(OwnRacerV4::vehicle_name, other);
-  CHECK_FALSE(says_its_hash<OwnRacerV4, Given>(trained<Given>({heavier})));
-}
-
-TEST_CASE("a header of an earlier format, written again, flies as it did") {
-  CHECK(largest_golden_difference<CrazyflieTanhV2>() <= 1e-12);
-  const std::string header = written<CrazyflieTanhV2>(trained<CrazyflieTanhV2>());
-  CHECK(header.find("int format_version = 4;") != std::string::npos);
+  const GivenAirframe heavier(OwnRacer::vehicle_name, other);
+  CHECK_FALSE(says_its_hash<OwnRacer, Given>(trained<Given>({heavier})));
 }
 
 namespace {
 
-/// The block with hash 0 over the header: golden commands are computed anew, and an earlier format has another hash.
+/// The block with hash 0 over the header: golden commands are computed anew.
 std::vector<unsigned char> without_hash(std::vector<unsigned char> block) {
   std::size_t at = ModelBlockHeader::size + ModelBlockHeader::record_counts;
   const auto type = [&] { return static_cast<BlockRecord>(detail::read_u32(&block[at]) & 0x7fffu); };
@@ -186,8 +173,7 @@ std::vector<unsigned char> without_hash(std::vector<unsigned char> block) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a header's block is the block of its training", Header, CrazyflieTanhV2, DemoQuadModel,
-                   OwnRacerV4) {
+TEST_CASE_TEMPLATE("a header's block is the block of its training", Header, DemoQuadModel, OwnRacer) {
   const auto from_header = without_hash(model_block<Header>());
   const auto from_training =
       without_hash(model_block(trained<Header>(), golden<Header>(), provenance<Header>(), Header::name));
@@ -200,8 +186,7 @@ TEST_CASE_TEMPLATE("a header's block is the block of its training", Header, Craz
       std::equal(from_header.begin(), from_header.begin() + static_cast<std::ptrdiff_t>(same), from_training.begin()));
 }
 
-TEST_CASE_TEMPLATE("header and block say one hash, of whatever format the header is", Header, CrazyflieTanhV2,
-                   OwnRacerV3, OwnRacerV4) {
+TEST_CASE_TEMPLATE("header and block say one hash", Header, DemoQuadModel, OwnRacer) {
   const BlockModel block("model.block", model_block<Header>());
   CHECK(block.contents_hash() == detail::contents_hash_of<Header>());
   CHECK(block.name() == Header::name);
@@ -209,7 +194,7 @@ TEST_CASE_TEMPLATE("header and block say one hash, of whatever format the header
 }
 
 TEST_CASE_TEMPLATE("the block of a training says the hash of the header that is written beside it", Header,
-                   DemoQuadModel, OwnRacerV4) {
+                   DemoQuadModel, OwnRacer) {
   const auto model = trained<Header>();
   const BlockModel block("model.block", model_block(model, golden<Header>(), provenance<Header>(), Header::name));
   const std::string said = "contents_hash = " + hexadecimal(block.contents_hash()) + ";";

@@ -14,14 +14,14 @@
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "support/block_bytes.hpp"
-#include "support/described_model.hpp"
+#include "support/small_model_variants.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace {
 
 using namespace pinnquad;
 using pinnquad::test::BlockBytes;
-using pinnquad::test::DescribedModel;
+using pinnquad::test::SmallModel;
 
 template <class Scalar, class Outputs>
 using ModelOf = TrainedModel<Network<Scalar, InputSize<17>, Dense<7>, Relu, Dense<4>>,
@@ -108,7 +108,7 @@ TEST_CASE_TEMPLATE("what a training writes is what a view reads, bit for bit", M
 
 /// The expected values are those of a script with its own CRC-32 and FNV-1a.
 TEST_CASE("the bytes of a block are fixed") {
-  const std::vector<unsigned char> block = model_block<DescribedModel>();
+  const std::vector<unsigned char> block = model_block<SmallModel>();
   const std::vector<unsigned char> begin(block.begin(), block.begin() + 112);
   const std::vector<unsigned char> expected = {
       'P',  'I',  'N',  'N',  'Q',  'U',  'A',  'D',               // magic
@@ -124,7 +124,7 @@ TEST_CASE("the bytes of a block are fixed") {
       0,    0,    0,    0,    0,    0,    0,    0,                 // thrust
       0,    0,    0,    0,    0,    0,    0x80, 0x3f,              // 0 to 1
       2,    0x80, 0,    0,    8,    0,    0,    0,                 // clock
-      0,    0,    0,    0,    0,    0,    0,    0,                 // a header of format 2 does not say
+      0,    0,    0,    0,    0,    0,    0,    0,                 // not said
       3,    0x80, 0,    0,    8,    0,    0,    0};                // window
   CHECK(block.size() == 3020);
   CHECK(begin == expected);
@@ -137,7 +137,7 @@ TEST_CASE("the bytes of a block are fixed") {
 
 TEST_CASE("a file holds the block, whole or not at all, and reads back") {
   const pinnquad_test::TemporaryFolder folder;
-  const std::vector<unsigned char> block = model_block<DescribedModel>();
+  const std::vector<unsigned char> block = model_block<SmallModel>();
   write_weight_file(folder.path("model.block"), block);
   CHECK(folder.listing().size() == 1);
   CHECK(read_bytes(folder.path("model.block")) == block);

@@ -24,40 +24,16 @@
 
 using namespace pinnquad;
 using pinnquad::test::BlockBytes;
-using pinnquad::test::DescribedModel;
 using pinnquad::test::find;
 using pinnquad::test::Record;
 using pinnquad::test::RecordedModel;
 using pinnquad::test::records_of;
+using pinnquad::test::SmallModel;
 using pinnquad::test::with_records;
 
 namespace {
 
 using Bytes = std::vector<unsigned char>;
-
-/// As the first version had it: without records.
-BlockBytes first_version(const Bytes& block) {
-  Bytes result(block.begin(), block.begin() + ModelBlockHeader::size);
-  result.insert(result.end(), block.begin() + static_cast<std::ptrdiff_t>(BlockBytes(block).scalars()), block.end());
-  BlockBytes made(result);
-  made.set_u32(ModelBlockHeader::version, 1);
-  made.set_u32(ModelBlockHeader::length, static_cast<std::uint32_t>(result.size()));
-  made.seal();
-  return made;
-}
-
-/// As the second version had it: with the records that the shape does not say.
-BlockBytes second_version(const Bytes& block) {
-  std::vector<Record> records = records_of(block);
-  const auto is_later = [](const Record& record) {
-    return (record.type & 0x7fffu) >= static_cast<unsigned>(BlockRecord::answer);
-  };
-  records.erase(std::remove_if(records.begin(), records.end(), is_later), records.end());
-  BlockBytes made = with_records(block, records);
-  made.set_u32(ModelBlockHeader::version, 2);
-  made.seal();
-  return made;
-}
 
 template <class Shape>
 Status opened(const BlockBytes& block, ModelView<Shape>& view) {
@@ -65,7 +41,7 @@ Status opened(const BlockBytes& block, ModelView<Shape>& view) {
   const Status status = ModelView<Shape>::open(block.data(), block.size(), view);
   if (status != Status::ok) {
     CHECK(view.parameters() == before.parameters());
-    CHECK(view.records.stated == before.records.stated);
+    CHECK(view.records.command_upper == before.records.command_upper);
     CHECK(view.records.sample_period_ns == before.records.sample_period_ns);
     CHECK(view.records.has_verdict == before.records.has_verdict);
     CHECK(view.records.distance == before.records.distance);
@@ -82,7 +58,7 @@ Status opened(const BlockBytes& block) {
 /// A shape without weights.
 struct BareShape {
   using Scalar = float;
-  using Network = DescribedModel::Network;
+  using Network = SmallModel::Network;
   using Features = PaperFeatures;
   using Outputs = CommandOutputs;
   using Vehicle = PaperQuadrotor;
@@ -96,7 +72,6 @@ TEST_CASE("terms are read back from a block") {
   REQUIRE(opened(block, view) == Status::ok);
   {
     const auto& records = view.records;
-    CHECK(records.stated);
     CHECK(records.command_meaning == CommandMeaning::thrust);
     CHECK(records.command_lower == 0.0f);
     CHECK(records.command_upper == 1.0f);
@@ -109,27 +84,10 @@ TEST_CASE("terms are read back from a block") {
   }
 }
 
-TEST_CASE("a block of version 1 opens, and states no records") {
-  const BlockBytes block = first_version(model_block<RecordedModel>());
-  CHECK(block.size() == ModelBlockLayout<RecordedModel>::length(6));
-  ModelView<RecordedModel> view;
-  REQUIRE(opened(block, view) == Status::ok);
-  CHECK_FALSE(view.records.stated);
-  CHECK(self_test(InverseDynamics<ModelView<RecordedModel>>(view)) == Status::ok);
-  CHECK(opened<BareShape>(block) == Status::ok);
-}
-
-TEST_CASE("a block of version 2 opens, and states its records; version 3 was of headers, 5 is not there yet") {
-  BlockBytes block = second_version(model_block<RecordedModel>());
-  CHECK(block.scalars() == ModelBlockHeader::size + 8 + 24 + 16 + 16 + 72);
-  ModelView<RecordedModel> view;
-  REQUIRE(opened(block, view) == Status::ok);
-  CHECK(view.records.stated);
-  CHECK(view.records.sample_period_ns == 4000000u);
-  CHECK(view.records.lag_removed_ns == 12500000u);
-  CHECK(self_test(InverseDynamics<ModelView<RecordedModel>>(view)) == Status::ok);
-  for (const std::uint32_t version : {0u, 3u, 5u, 0x104u, 0xffffffffu}) {
-    block.set_u32(ModelBlockHeader::version, version);
+TEST_CASE("a block of another format does not open") {
+  BlockBytes block(model_block<RecordedModel>());
+  for (const std::uint32_t format : {0u, 1u, 2u, 3u, std::uint32_t{model_format_version} + 1, 0x104u, 0xffffffffu}) {
+    block.set_u32(ModelBlockHeader::version, format);
     block.seal();
     CHECK(opened<RecordedModel>(block) == Status::block_incompatible);
   }
@@ -138,10 +96,10 @@ TEST_CASE("a block of version 2 opens, and states its records; version 3 was of 
 TEST_CASE("a block of other terms than its header's does not open; a shape without weights takes any") {
   const Bytes bytes = model_block<RecordedModel>();
   const BlockBytes recorded(bytes);
-  const BlockBytes described(model_block<DescribedModel>());
+  const BlockBytes described(model_block<SmallModel>());
   CHECK(opened<BareShape>(recorded) == Status::ok);
   CHECK(opened<BareShape>(described) == Status::ok);
-  // a header of format 2 says no period: a block of it has none for a header that does
+  // its period is not said
   CHECK(opened<RecordedModel>(described) == Status::block_incompatible);
   const auto with_commands = [&](CommandMeaning meaning, std::uint32_t period_ns) {
     auto records = records_of(bytes);
@@ -410,7 +368,7 @@ TEST_CASE(
   const auto settings = bias_settings<double>(view.records);
   CHECK(settings.time_constants_s == SignedSums<double>{0.25, 0.5, std::numeric_limits<double>::infinity(), 1});
   CHECK(bias_settings<float>(view.records).time_constants_s[1] == 0.5f);
-  // a reader of before skips the record; without it the block is the same but for the record
+  // without it the block is the same but for the record
   auto without = records_of(block);
   without.erase(without.begin() + (&find(without, BlockRecord::bias) - without.data()));
   Provenance silent = from;

@@ -23,9 +23,9 @@
 #include "support/small_model_variants.hpp"
 
 using namespace pinnquad;
+using pinnquad::test::DoubleModel;
 using pinnquad::test::marked;
 using pinnquad::test::same_bits;
-using pinnquad::test::SmallDoubleModel;
 using pinnquad::test::SmallInstance;
 using pinnquad::test::SmallModel;
 
@@ -297,7 +297,7 @@ TEST_CASE("hostile inputs, a million where optimised: no surprise") {
   attacked = 0;
   const auto start = std::chrono::steady_clock::now();
   attack_all<SmallModel>();
-  attack_all<SmallDoubleModel>();
+  attack_all<DoubleModel>();
   attack("an instance", InverseDynamics<SmallInstance>(SmallInstance{}), 12);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   MESSAGE(attacked, " inputs in ", seconds, " s");

@@ -12,19 +12,19 @@
 #include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "support/block_bytes.hpp"
-#include "support/described_model.hpp"
+#include "support/small_model_variants.hpp"
 
 using namespace pinnquad;
 using pinnquad::test::BlockBytes;
-using pinnquad::test::DescribedModel;
 using pinnquad::test::DoubleModel;
+using pinnquad::test::SmallModel;
 
 namespace {
 
 /// A shape without any weights: types are enough to read a block.
 struct ShapeAlone {
   using Scalar = float;
-  using Network = DescribedModel::Network;
+  using Network = SmallModel::Network;
   using Features = PaperFeatures;
   using Outputs = CommandOutputs;
   using Vehicle = PaperQuadrotor;
@@ -56,11 +56,11 @@ bool holds(const View& view) {
 /// The status, after a look at whether a refused block left the view as it was.
 template <class Shape>
 Status opened(const void* block, std::size_t length) {
-  static const BlockBytes sound(model_block<DescribedModel>());
+  static const BlockBytes sound(model_block<SmallModel>());
   ModelView<Shape> view;
   if constexpr (std::is_same_v<typename Shape::Scalar, float> && Shape::Network::parameter_count == 172) {
     const Status before = ModelView<Shape>::open(sound.data(), sound.size(), view);
-    REQUIRE((before == Status::ok || !std::is_same_v<Shape, DescribedModel>));
+    REQUIRE((before == Status::ok || !std::is_same_v<Shape, SmallModel>));
   }
   const ModelView<Shape> copy = view;
   const Status status = ModelView<Shape>::open(block, length, view);
@@ -75,12 +75,12 @@ Status opened(const void* block, std::size_t length) {
   return status;
 }
 
-Status opened(const BlockBytes& block) { return opened<DescribedModel>(block.data(), block.size()); }
+Status opened(const BlockBytes& block) { return opened<SmallModel>(block.data(), block.size()); }
 
 /// The sound block after a change, its checksum right again.
 template <class Change>
 Status changed(const Change& change) {
-  BlockBytes block(model_block<DescribedModel>());
+  BlockBytes block(model_block<SmallModel>());
   change(block);
   block.seal();
   return opened(block);
@@ -127,7 +127,7 @@ struct OtherShape : ShapeAlone {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a block gives back every number of the model, bit for bit", Model, DescribedModel, DoubleModel) {
+TEST_CASE_TEMPLATE("a block gives back every number of the model, bit for bit", Model, SmallModel, DoubleModel) {
   const BlockBytes block(model_block<Model>());
   ModelView<Model> view;
   REQUIRE(ModelView<Model>::open(block.data(), block.size(), view) == Status::ok);
@@ -138,8 +138,8 @@ TEST_CASE_TEMPLATE("a block gives back every number of the model, bit for bit", 
   CHECK(begin + sizeof Model::parameters + 4 == block.data() + block.size());
 }
 
-TEST_CASE_TEMPLATE("forward() of a view is the portable kernel's, of a packed one the vector unit's", Model,
-                   DescribedModel, DoubleModel) {
+TEST_CASE_TEMPLATE("forward() of a view is the portable kernel's, of a packed one the vector unit's", Model, SmallModel,
+                   DoubleModel) {
   using Scalar = typename Model::Scalar;
   using View = ModelView<Model>;
   BlockBytes block(model_block<Model>());
@@ -174,24 +174,24 @@ TEST_CASE_TEMPLATE("forward() of a view is the portable kernel's, of a packed on
 }
 
 TEST_CASE("types are enough to read a block, and trailing bytes are no concern of it") {
-  std::vector<unsigned char> bytes = model_block<DescribedModel>();
+  std::vector<unsigned char> bytes = model_block<SmallModel>();
   bytes.resize(bytes.size() + 100, 0xff);  // the rest of a flash partition
   const BlockBytes block(bytes);
   ModelView<ShapeAlone> view;
   REQUIRE(ModelView<ShapeAlone>::open(block.data(), block.size(), view) == Status::ok);
-  CHECK(holds<DescribedModel>(view));
+  CHECK(holds<SmallModel>(view));
 }
 
 TEST_CASE("each flipped bit of each byte is found") {
-  const std::vector<unsigned char> bytes = model_block<DescribedModel>();
+  const std::vector<unsigned char> bytes = model_block<SmallModel>();
   BlockBytes block(bytes);
   int refused = 0;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     for (int bit = 0; bit < 8; ++bit) {
       const auto mask = static_cast<unsigned char>(1 << bit);
       block[i] ^= mask;
-      ModelView<DescribedModel> view;
-      refused += ModelView<DescribedModel>::open(block.data(), block.size(), view) != Status::ok;
+      ModelView<SmallModel> view;
+      refused += ModelView<SmallModel>::open(block.data(), block.size(), view) != Status::ok;
       block[i] ^= mask;
     }
   }
@@ -200,24 +200,24 @@ TEST_CASE("each flipped bit of each byte is found") {
 }
 
 TEST_CASE("a block cut at any length is truncated") {
-  const std::vector<unsigned char> bytes = model_block<DescribedModel>();
+  const std::vector<unsigned char> bytes = model_block<SmallModel>();
   for (std::size_t length = 0; length < bytes.size(); ++length) {
     const BlockBytes block(bytes, length);
-    ModelView<DescribedModel> view;
-    CHECK(ModelView<DescribedModel>::open(block.data(), length, view) == Status::block_truncated);
+    ModelView<SmallModel> view;
+    CHECK(ModelView<SmallModel>::open(block.data(), length, view) == Status::block_truncated);
   }
-  CHECK(opened<DescribedModel>(nullptr, 0) == Status::block_truncated);
-  CHECK(opened<DescribedModel>(nullptr, 10000) == Status::block_truncated);
+  CHECK(opened<SmallModel>(nullptr, 0) == Status::block_truncated);
+  CHECK(opened<SmallModel>(nullptr, 10000) == Status::block_truncated);
 }
 
 TEST_CASE("a block that is not aligned is refused, not read") {
-  const std::vector<unsigned char> bytes = model_block<DescribedModel>();
+  const std::vector<unsigned char> bytes = model_block<SmallModel>();
   for (std::size_t offset = 0; offset <= model_block_alignment; ++offset) {
     std::vector<unsigned char> shifted(offset, 0);
     shifted.insert(shifted.end(), bytes.begin(), bytes.end());
     const BlockBytes memory(shifted);
     const Status expected = offset % model_block_alignment == 0 ? Status::ok : Status::block_truncated;
-    CHECK(opened<DescribedModel>(memory.data() + offset, bytes.size()) == expected);
+    CHECK(opened<SmallModel>(memory.data() + offset, bytes.size()) == expected);
   }
 }
 
@@ -227,7 +227,7 @@ TEST_CASE("another magic, version or shape is incompatible, whatever the checksu
     CHECK(changed([&](BlockBytes& block) { block[i] ^= 0x20; }) == Status::block_incompatible);
   }
   CHECK(changed([](BlockBytes& block) { block.set_u32(Header::version, 0); }) == Status::block_incompatible);
-  CHECK(changed([](BlockBytes& block) { block.set_u32(Header::version, model_block_version + 1); }) ==
+  CHECK(changed([](BlockBytes& block) { block.set_u32(Header::version, model_format_version + 1); }) ==
         Status::block_incompatible);
   CHECK(changed([](BlockBytes& block) { block.set_u32(Header::scalar_bytes, 8); }) == Status::block_incompatible);
   CHECK(changed([](BlockBytes& block) { block.set_u32(Header::inputs, 15); }) == Status::block_incompatible);
@@ -235,7 +235,7 @@ TEST_CASE("another magic, version or shape is incompatible, whatever the checksu
   CHECK(changed([](BlockBytes& block) { block.set_u32(Header::parameters, 171); }) == Status::block_incompatible);
   CHECK(changed([](BlockBytes& block) { block[Header::shape_hash + 7] ^= 1; }) == Status::block_incompatible);
 
-  const BlockBytes block(model_block<DescribedModel>());
+  const BlockBytes block(model_block<SmallModel>());
   const auto incompatible = [&](auto shape) {
     return opened<decltype(shape)>(block.data(), block.size()) == Status::block_incompatible;
   };
@@ -254,7 +254,7 @@ TEST_CASE("lengths and counts that do not agree are corrupt, however large") {
   for (const std::uint32_t golden : {0u, 5u, 7u, 0x7fffffffu, 0x80000000u, 0xffffffffu}) {
     CHECK(changed([&](BlockBytes& block) { block.set_u32(Header::golden_vectors, golden); }) == Status::block_corrupt);
   }
-  BlockBytes block(model_block<DescribedModel>());
+  BlockBytes block(model_block<SmallModel>());
   for (const std::uint32_t length : {0u, 4u, 59u}) {
     block.set_u32(Header::length, length);
     block.seal();
@@ -264,8 +264,8 @@ TEST_CASE("lengths and counts that do not agree are corrupt, however large") {
   block.seal();
   CHECK(opened(block) == Status::block_truncated);
   // no golden vector, and a count of them whose length is 0 modulo 2^32
-  const std::size_t records = BlockBytes(model_block<DescribedModel>()).scalars() - Header::size;
-  BlockBytes wrapped(model_block<DescribedModel>(), ModelBlockLayout<DescribedModel>::length(0) + records);
+  const std::size_t records = BlockBytes(model_block<SmallModel>()).scalars() - Header::size;
+  BlockBytes wrapped(model_block<SmallModel>(), ModelBlockLayout<SmallModel>::length(0) + records);
   wrapped.set_u32(Header::length, static_cast<std::uint32_t>(wrapped.size()));
   for (const std::uint32_t golden : {0u, 0x80000000u}) {
     wrapped.set_u32(Header::golden_vectors, golden);
@@ -279,7 +279,7 @@ TEST_CASE("lengths and counts that do not agree are corrupt, however large") {
 
 TEST_CASE("a value that is not finite is corrupt, wherever it stands") {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
-  const BlockBytes sound(model_block<DescribedModel>());
+  const BlockBytes sound(model_block<SmallModel>());
   const std::size_t scalars = (sound.size() - sound.scalars() - 4) / 4;
   for (std::size_t i = 0; i < scalars; ++i) {
     const float value = i % 3 == 0 ? nan : (i % 3 == 1 ? infinity : -infinity);
@@ -288,7 +288,7 @@ TEST_CASE("a value that is not finite is corrupt, wherever it stands") {
 }
 
 TEST_CASE("a spread that is not positive and an envelope upside down are corrupt") {
-  using Layout = ModelBlockLayout<DescribedModel>;
+  using Layout = ModelBlockLayout<SmallModel>;
   for (const float spread : {0.0f, -0.0f, -1.0f}) {
     for (const std::size_t i : {Layout::input_deviation, Layout::input_deviation + 15, Layout::output_deviation + 3}) {
       CHECK(changed([&](BlockBytes& block) { block.set_scalar(i, spread); }) == Status::block_corrupt);
@@ -306,7 +306,7 @@ TEST_CASE("a spread that is not positive and an envelope upside down are corrupt
     CHECK(changed([&](BlockBytes& block) {
             const auto upper = block.scalar<float>(Layout::envelope_upper + i);
             block.set_scalar(Layout::envelope_lower + i, upper);  // a feature that never moved
-            for (std::size_t row = 0; row < DescribedModel::golden_features.size(); ++row) {
+            for (std::size_t row = 0; row < SmallModel::golden_features.size(); ++row) {
               block.set_scalar(Layout::golden_features + row * Layout::inputs + i, upper);
             }
           }) == Status::ok);
@@ -314,24 +314,24 @@ TEST_CASE("a spread that is not positive and an envelope upside down are corrupt
 }
 
 TEST_CASE("a view of no block declines") {
-  const ModelView<DescribedModel> view;
+  const ModelView<SmallModel> view;
   CHECK(view.parameters() == nullptr);
   CHECK(view.envelope_lower[0] > view.envelope_upper[0]);
   CHECK(view.golden_features.size() == 1);  // so that a self test has something to fail by
   CHECK(view.golden_features[0][0] == 0.0f);
   float y[4] = {};
-  view.forward(DescribedModel::golden_features[0].data(), y);
+  view.forward(SmallModel::golden_features[0].data(), y);
   for (const float v : y) CHECK(std::isnan(v));
 
-  ModelView<DescribedModel> packed_view;
-  ModelView<DescribedModel>::Packed packed;
-  CHECK(ModelView<DescribedModel>::open(nullptr, 0, packed_view, packed) == Status::block_truncated);
+  ModelView<SmallModel> packed_view;
+  ModelView<SmallModel>::Packed packed;
+  CHECK(ModelView<SmallModel>::open(nullptr, 0, packed_view, packed) == Status::block_truncated);
   CHECK(packed_view.parameters() == nullptr);
   CHECK(packed_view.packed() == nullptr);
 }
 
 TEST_CASE("the shape's hash is the same from every compiler") {
-  CHECK(shape_hash<DescribedModel> == 0xf6f9b018045b3c87u);
-  CHECK(shape_hash<ShapeAlone> == shape_hash<DescribedModel>);
-  static_assert(shape_hash<DoubleModel> != shape_hash<DescribedModel>);
+  CHECK(shape_hash<SmallModel> == 0xf6f9b018045b3c87u);
+  CHECK(shape_hash<ShapeAlone> == shape_hash<SmallModel>);
+  static_assert(shape_hash<DoubleModel> != shape_hash<SmallModel>);
 }

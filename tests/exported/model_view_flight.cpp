@@ -10,12 +10,12 @@
 #include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "support/block_bytes.hpp"
-#include "support/described_model.hpp"
+#include "support/small_model_variants.hpp"
 
 using namespace pinnquad;
 using pinnquad::test::BlockBytes;
-using pinnquad::test::DescribedModel;
 using pinnquad::test::DoubleModel;
+using pinnquad::test::SmallModel;
 
 namespace {
 
@@ -36,7 +36,7 @@ ModelView<Shape> packed_view_of(const BlockBytes& block, typename ModelView<Shap
 /// The commands of a model for features between the golden ones, or nothing.
 template <class Inverse>
 std::size_t agreeing(const Inverse& inverse, double tolerance) {
-  using Model = DescribedModel;
+  using Model = SmallModel;
   using Scalar = typename Inverse::Scalar;
   const auto flash = [] {
     if constexpr (std::is_same_v<Scalar, double>) {
@@ -65,8 +65,8 @@ std::size_t agreeing(const Inverse& inverse, double tolerance) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a view answers as the header does, to its bits where the weights were packed", Model,
-                   DescribedModel, DoubleModel) {
+TEST_CASE_TEMPLATE("a view answers as the header does, to its bits where the weights were packed", Model, SmallModel,
+                   DoubleModel) {
   const BlockBytes block(model_block<Model>());
   const InverseDynamics<ModelView<Model>> viewed(view_of<Model>(block));
   typename ModelView<Model>::Packed packed;
@@ -78,16 +78,16 @@ TEST_CASE_TEMPLATE("a view answers as the header does, to its bits where the wei
 }
 
 TEST_CASE("bad inputs are refused by the block's envelope, commands untouched") {
-  BlockBytes block(model_block<DescribedModel>());
-  using Layout = ModelBlockLayout<DescribedModel>;
+  BlockBytes block(model_block<SmallModel>());
+  using Layout = ModelBlockLayout<SmallModel>;
   block.set_scalar(Layout::envelope_upper, 0.5f);  // narrower than the header's
-  for (std::size_t row = 0; row < DescribedModel::golden_features.size(); ++row) {
+  for (std::size_t row = 0; row < SmallModel::golden_features.size(); ++row) {
     block.set_scalar(Layout::golden_features + row * Layout::inputs, 0.25f);  // inside it
   }
   block.seal();
-  const InverseDynamics<ModelView<DescribedModel>> viewed(view_of<DescribedModel>(block));
-  ModelView<DescribedModel>::Packed packed;
-  const InverseDynamics<ModelView<DescribedModel>> fast(packed_view_of<DescribedModel>(block, packed));
+  const InverseDynamics<ModelView<SmallModel>> viewed(view_of<SmallModel>(block));
+  ModelView<SmallModel>::Packed packed;
+  const InverseDynamics<ModelView<SmallModel>> fast(packed_view_of<SmallModel>(block, packed));
   const auto refused = [](const auto& inverse, float v_dot, Status expected) {
     MotionInputs<float> inputs;
     inputs.linear_acceleration_m_s2[0] = v_dot;
@@ -95,7 +95,7 @@ TEST_CASE("bad inputs are refused by the block's envelope, commands untouched") 
     const Status status = inverse.predict(inputs, commands);
     return status == expected && (status == Status::ok) == (commands[0] != 9.0f);
   };
-  CHECK(refused(InverseDynamics<DescribedModel>{}, 1.0f, Status::ok));
+  CHECK(refused(InverseDynamics<SmallModel>{}, 1.0f, Status::ok));
   for (const auto& [v_dot, expected] : {std::pair{0.4f, Status::ok}, std::pair{1.0f, Status::outside_envelope},
                                         std::pair{std::numeric_limits<float>::quiet_NaN(), Status::not_finite}}) {
     CHECK(refused(viewed, v_dot, expected));
@@ -104,26 +104,25 @@ TEST_CASE("bad inputs are refused by the block's envelope, commands untouched") 
 }
 
 TEST_CASE("a wrong weight under a right checksum fails the self test") {
-  using Layout = ModelBlockLayout<DescribedModel>;
+  using Layout = ModelBlockLayout<SmallModel>;
   for (const std::size_t weight : {0u, 77u, 131u, 150u, 171u}) {
-    BlockBytes block(model_block<DescribedModel>());
+    BlockBytes block(model_block<SmallModel>());
     const std::size_t at = Layout::parameters(6) + weight;
     block.set_scalar(at, block.scalar<float>(at) + 0.05f);
     block.seal();
-    CHECK(self_test(InverseDynamics<ModelView<DescribedModel>>(view_of<DescribedModel>(block))) ==
-          Status::self_test_failed);
-    ModelView<DescribedModel>::Packed packed;
-    CHECK(self_test(InverseDynamics<ModelView<DescribedModel>>(packed_view_of<DescribedModel>(block, packed))) ==
+    CHECK(self_test(InverseDynamics<ModelView<SmallModel>>(view_of<SmallModel>(block))) == Status::self_test_failed);
+    ModelView<SmallModel>::Packed packed;
+    CHECK(self_test(InverseDynamics<ModelView<SmallModel>>(packed_view_of<SmallModel>(block, packed))) ==
           Status::self_test_failed);
   }
 }
 
 TEST_CASE("finite weights that overflow are told from sound ones") {
-  using Layout = ModelBlockLayout<DescribedModel>;
-  BlockBytes block(model_block<DescribedModel>());
+  using Layout = ModelBlockLayout<SmallModel>;
+  BlockBytes block(model_block<SmallModel>());
   for (std::size_t i = 0; i < Layout::parameter_count; ++i) block.set_scalar(Layout::parameters(6) + i, 3e38f);
   block.seal();
-  const InverseDynamics<ModelView<DescribedModel>> viewed(view_of<DescribedModel>(block));
+  const InverseDynamics<ModelView<SmallModel>> viewed(view_of<SmallModel>(block));
   Commands<float> commands{9, 9, 9, 9};
   CHECK(viewed.predict({}, commands) == Status::output_not_finite);
   CHECK(commands[0] == 9.0f);
@@ -131,21 +130,21 @@ TEST_CASE("finite weights that overflow are told from sound ones") {
 }
 
 TEST_CASE("a view of no block refuses to fly") {
-  const InverseDynamics<ModelView<DescribedModel>> viewed{ModelView<DescribedModel>{}};
+  const InverseDynamics<ModelView<SmallModel>> viewed{ModelView<SmallModel>{}};
   Commands<float> commands{};
   CHECK(viewed.predict({}, commands) == Status::outside_envelope);
   CHECK(self_test(viewed) == Status::self_test_failed);
 }
 
 TEST_CASE("a view is opened anew while it is a copy that flies") {
-  const BlockBytes first(model_block<DescribedModel>());
-  BlockBytes second(model_block<DescribedModel>());
-  const std::size_t last_bias = ModelBlockLayout<DescribedModel>::parameters(6) + 171;
+  const BlockBytes first(model_block<SmallModel>());
+  BlockBytes second(model_block<SmallModel>());
+  const std::size_t last_bias = ModelBlockLayout<SmallModel>::parameters(6) + 171;
   second.set_scalar(last_bias, second.scalar<float>(last_bias) + 1.0f);
   second.seal();
-  ModelView<DescribedModel> view = view_of<DescribedModel>(first);
-  const InverseDynamics<ModelView<DescribedModel>> flying(view);
-  REQUIRE(ModelView<DescribedModel>::open(second.data(), second.size(), view) == Status::ok);
+  ModelView<SmallModel> view = view_of<SmallModel>(first);
+  const InverseDynamics<ModelView<SmallModel>> flying(view);
+  REQUIRE(ModelView<SmallModel>::open(second.data(), second.size(), view) == Status::ok);
   CHECK(self_test(flying) == Status::ok);
-  CHECK(self_test(InverseDynamics<ModelView<DescribedModel>>(view)) == Status::self_test_failed);
+  CHECK(self_test(InverseDynamics<ModelView<SmallModel>>(view)) == Status::self_test_failed);
 }

@@ -11,7 +11,7 @@
 #include <memory>
 #include <optional>
 
-#include "models/v4/own_racer.hpp"
+#include "models/own_racer.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/exported/run_time_batch.hpp"
@@ -38,7 +38,7 @@ constexpr int inputs_per_kind = 100, motions_per_set = 50;
 #endif
 
 /// Tilted rotors with curves, known to the compiler.
-using Racer = OwnRacerV4Airframe;
+using Racer = OwnRacerAirframe;
 
 /// Products of inertia, and no two rotors alike: known at run time alone.
 GivenAirframe uneven() { return {"uneven", test::uneven_airframe<double>()}; }

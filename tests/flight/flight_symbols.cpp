@@ -4,9 +4,9 @@
 // Data comes in and goes out through plain arrays, so that nothing can be computed by the compiler instead.
 #include <pinnquad/flight.hpp>
 
-#include "../support/described_model.hpp"
 #include "../support/hover.hpp"
 #include "../support/small_model.hpp"
+#include "../support/small_model_variants.hpp"
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/exported/run_time_certificate.hpp"
 #include "pinnquad/inference/self_test.hpp"
@@ -246,7 +246,7 @@ unsigned char pinnquad_flight_self_test() {
 }
 
 unsigned char pinnquad_flight_view_predict(const void* block, unsigned long length, const float* x, float* u) {
-  using View = pinnquad::ModelView<pinnquad::test::DescribedModel>;
+  using View = pinnquad::ModelView<pinnquad::test::SmallModel>;
   View view;
   const Status status = View::open(block, length, view);
   if (status != Status::ok) return static_cast<unsigned char>(status);

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <vector>
 
-#include "pinnquad/deploy/weight_file.hpp"
 #include "../support/block_bytes.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
 
 namespace pinnquad::autopilot::test {
 
@@ -36,15 +36,10 @@ struct TrustOf {
   using type = void;
 };
 
-/// The exported model. A header of the first format can't say all that a block does: its block is as of a training.
+/// The exported model.
 template <class Model>
 Block sound_block() {
-  if constexpr (Model::format_version < 2) {
-    return pinnquad::model_block(trained_model<Model>(), {Model::golden_features.begin(), Model::golden_features.end()},
-                                 {});
-  } else {
-    return pinnquad::model_block<Model, typename TrustOf<Model>::type>();
-  }
+  return pinnquad::model_block<Model, typename TrustOf<Model>::type>();
 }
 
 /// The model after a training that went on: its weights moved by a thousandth each.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 
+#include "../support/as_header.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/features/motion_parts.hpp"
@@ -21,7 +22,7 @@ constexpr std::array<float, Size> of_all(float value) noexcept {
 }
 
 template <int Taps>
-struct PastModelOf {
+struct PastNumbersOf {
   using Scalar = float;
   using Features = PartlyWindowed<WithColumns<AccelerationFeatures, BatteryVoltage>, AccelerationFeatures, Taps,
                                   PeriodMicroseconds<20000>>;
@@ -29,10 +30,8 @@ struct PastModelOf {
   using Outputs = CommandOutputs;
   using Vehicle = PaperQuadrotor;
 
-  static constexpr int format_version = 1;
   static constexpr const char* name = "past_model";
   static constexpr const char* provenance = "tests/flight_stacks/past_model.hpp";
-  static constexpr auto feature_names = Features::names;
 
   /// Of an instant, the present one first: they add up to 1, and the further back, the less it counts.
   static constexpr double tap_weight(int tap) noexcept { return 2.0 * (Taps - tap) / (Taps * (Taps + 1)); }
@@ -87,6 +86,8 @@ struct PastModelOf {
   }();
 };
 
+template <int Taps>
+using PastModelOf = pinnquad::test::AsHeader<PastNumbersOf<Taps>>;
 using PastModel = PastModelOf<3>;
 
 }  // namespace pinnquad::autopilot::test

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // When models/structured_quadrotor.hpp is not to be trusted, as pinnquad train writes it beside a model: distribution of the flight
 // d1 of seed 1 (9,000 rows), limits by those of seeds 101 to 103 (15,000 rows each), fit_trust() and write_trust().
-// Archived with its earlier names: it must fly and be read as it is.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
-// When the model is not to be trusted: JointDistance<StructuredQuadModelTrust> for its Guard, InnovationMonitor<StructuredQuadModelTrust>.
+// Limits of trust in the model: JointDistance<StructuredQuadModelTrust> for its Guard, CommandResidualMonitor<StructuredQuadModelTrust>.
 struct StructuredQuadModelTrust {
   static constexpr std::uint64_t training_data_hash = 0xffc75d13f065d38b;
   static constexpr std::array<float, 19> distribution_mean = {{
@@ -40,10 +39,10 @@ struct StructuredQuadModelTrust {
       0.524839f, 0.4084236f, -0.019279333f, 0.00061176455f, -1.035736f, -0.016350806f, -0.033379685f, 0.40283248f,
       0.03313366f, 0.0047346037f, -1.022779f, -0.0869626f, 0.29548976f, -0.00930023f, 0.0015846811f, -0.93567336f,
       0.23398794f, 0.0069630938f, 0.0060245665f, 0.22102648f, 0.007679907f, 0.18998691f}};
-  static constexpr double distance_limit = 235.0369714781573;
-  // of the mean absolute error of the commands, updated every update_period_s
-  static constexpr double innovation_factor = 0.2;
-  static constexpr double innovation_limit = 0.018008411857358332;
-  static constexpr double innovation_cleared = 0.012618313244701664;
+  static constexpr double squared_distance_limit = 235.0369714781573;
+  // mean absolute error of the commands, updated every update_period_s
+  static constexpr double command_residual_factor = 0.2;
+  static constexpr double command_residual_limit = 0.018008411857358332;
+  static constexpr double command_residual_cleared = 0.012618313244701664;
   static constexpr double update_period_s = 0.05;
 };

@@ -50,8 +50,8 @@ template <class Stack>
 void no_alarm(const char* path, const Trusted& flight) {
   INFO(Stack::name, ", ", path);
   std::printf("%s %s: command residual up to %.4f, limit %.4f; %ld of %ld answers outside the distribution\n",
-              Stack::name, path, static_cast<double>(flight.most_residual), StructuredQuadModelTrust::innovation_limit,
-              flight.far, flight.ticks);
+              Stack::name, path, static_cast<double>(flight.most_residual),
+              StructuredQuadModelTrust::command_residual_limit, flight.far, flight.ticks);
   CHECK_FALSE(flight.figures.crashed);
   CHECK(flight.most_residual > 1e-4f);  // it was measured
   CHECK(flight.distrusted == 0);
@@ -106,7 +106,7 @@ void judge_stack() {
 
 /// Every motion is too far.
 struct NarrowTrust : StructuredQuadModelTrust {
-  static constexpr double distance_limit = 1e-3;
+  static constexpr double squared_distance_limit = 1e-3;
 };
 using NarrowStack =
     Px4StackOf<StructuredQuadModel,
@@ -143,7 +143,7 @@ TEST_CASE("limits of trust: a model of other training data than theirs is refuse
   CHECK(stack.offer(other.data(), other.size()) == Status::block_incompatible);
   CHECK_FALSE(stack.ready());
   CHECK(stack.offer(sound.data(), sound.size()) == Status::ok);
-  CHECK(stack.settings().distance_limit == static_cast<float>(StructuredQuadModelTrust::distance_limit));
+  CHECK(stack.settings().distance_limit == static_cast<float>(StructuredQuadModelTrust::squared_distance_limit));
 }
 
 TEST_CASE("limits of trust: another model begins without the command residual of the one before") {

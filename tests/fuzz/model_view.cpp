@@ -14,13 +14,13 @@
 #include "fuzz/fuzzing.hpp"
 #include "pinnquad/exported/model_view.hpp"
 #include "pinnquad/inference/self_test.hpp"
-#include "support/described_model.hpp"
+#include "support/small_model_variants.hpp"
 
 namespace {
 
 using namespace pinnquad;
-using pinnquad::test::DescribedModel;
 using pinnquad::test::DoubleModel;
+using pinnquad::test::SmallModel;
 using Header = ModelBlockHeader;
 
 using pinnquad_test::expect;
@@ -68,7 +68,7 @@ std::uint32_t plain_crc32(const unsigned char* bytes, std::size_t length) {
 
 /// Bytes between header and scalars, by the counts that the block states.
 std::size_t record_bytes(const unsigned char* block) {
-  return block[Header::version] < 2 ? 0 : ModelBlockHeader::record_counts + detail::read_u32(block + Header::size + 4);
+  return ModelBlockHeader::record_counts + detail::read_u32(block + Header::size + 4);
 }
 
 /// An accepted block, looked at again and flown.
@@ -129,9 +129,9 @@ void load(const std::uint8_t* data, std::size_t size) {
          "the length is right");
   expect(plain_crc32(memory.block(), length - 4) == detail::read_u32(memory.block() + length - 4),
          "the checksum is right");
-  const std::uint32_t version = detail::read_u32(memory.block() + Header::version);
-  expect(std::memcmp(memory.block(), "PINNQUAD", 8) == 0 && (version == 1 || version == 2 || version == 4),
-         "it is a block of version 1, 2 or 4");
+  expect(std::memcmp(memory.block(), "PINNQUAD", 8) == 0 &&
+             detail::read_u32(memory.block() + Header::version) == std::uint32_t{model_format_version},
+         "it is a block of this format");
   const auto* begin = reinterpret_cast<const unsigned char*>(view.parameters());
   expect(begin >= memory.block() &&
              begin + sizeof(Scalar) * Shape::Network::parameter_count + Header::checksum_size <= memory.block() + size,
@@ -170,8 +170,7 @@ template <class Shape>
 void repair_header(std::uint8_t* data, std::size_t size) {
   using Layout = ModelBlockLayout<Shape>;
   std::copy(model_block_magic.begin(), model_block_magic.end(), data);
-  const bool first_version = data[Header::version] == oldest_model_block_version;
-  write_u32(data + Header::version, first_version ? oldest_model_block_version : model_block_version);
+  write_u32(data + Header::version, model_format_version);
   write_u32(data + Header::scalar_bytes, sizeof(typename Shape::Scalar));
   write_u32(data + Header::inputs, Layout::inputs);
   write_u32(data + Header::outputs, Layout::outputs);
@@ -202,14 +201,13 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   std::minstd_rand engine(seed);
   size = LLVMFuzzerMutate(data, size, most);
   const bool is_double = size > 20 && data[Header::scalar_bytes] == sizeof(double);
-  if (engine() % 4 != 0)
-    size = is_double ? whole_rows<DoubleModel>(data, size) : whole_rows<DescribedModel>(data, size);
+  if (engine() % 4 != 0) size = is_double ? whole_rows<DoubleModel>(data, size) : whole_rows<SmallModel>(data, size);
   if (size < Header::size + Header::checksum_size) return size;
   if (engine() % 4 != 0) {
     if (is_double) {
       repair_header<DoubleModel>(data, size);
     } else {
-      repair_header<DescribedModel>(data, size);
+      repair_header<SmallModel>(data, size);
     }
   }
   if (engine() % 8 != 0) write_u32(data + Header::length, size);
@@ -218,7 +216,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  load<DescribedModel>(data, size);
+  load<SmallModel>(data, size);
   load<DoubleModel>(data, size);
   return 0;
 }

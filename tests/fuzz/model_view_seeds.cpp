@@ -4,7 +4,7 @@
 #include <string>
 
 #include "pinnquad/deploy/weight_file.hpp"
-#include "support/described_model.hpp"
+#include "support/small_model_variants.hpp"
 
 int main(int argument_count, char** arguments) {
   if (argument_count != 2) {
@@ -13,7 +13,7 @@ int main(int argument_count, char** arguments) {
   }
   const std::string folder = arguments[1];
   try {
-    pinnquad::write_weight_file(folder + "/float", pinnquad::model_block<pinnquad::test::DescribedModel>());
+    pinnquad::write_weight_file(folder + "/float", pinnquad::model_block<pinnquad::test::SmallModel>());
     pinnquad::write_weight_file(folder + "/double", pinnquad::model_block<pinnquad::test::DoubleModel>());
   } catch (const pinnquad::OutputError& error) {
     std::fprintf(stderr, "model_view_seeds: %s\n", error.what());

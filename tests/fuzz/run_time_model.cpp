@@ -212,7 +212,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   }
   if (block.size() >= Header::size + Header::record_counts + Header::checksum_size) {
     if (engine() % 8 != 0) std::copy(model_block_magic.begin(), model_block_magic.end(), block.begin());
-    if (engine() % 8 != 0) write_u32(&block[Header::version], model_block_version);
+    if (engine() % 8 != 0) write_u32(&block[Header::version], model_format_version);
     records = records_in(block);
     try {
       if (!records.empty() && engine() % 2 == 0) fit_scalars(block, records, most);

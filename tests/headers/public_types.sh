@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 #
 # Public types of the library, and whether anything but a test needs each: another header, a program, an example, a bench,
-# a page that shows it, or another line of its own header; old names (renamed.hpp) are for headers of users. Exit code 1 with file:line: message for each that nothing needs.
+# a page that shows it, or another line of its own header. Exit code 1 with file:line: message for each that nothing needs.
 #   public_types.sh ROOT [--count]     --count: types by room, and all
 set -euo pipefail
 cd -- "$1"
@@ -18,7 +18,7 @@ types() {
       name = $0
       sub(/^(enum class|struct|class|using) /, "", name)
       sub(/[^A-Za-z0-9_].*/, "", name)
-      if (!(name in seen) && FILENAME !~ /renamed/) print FILENAME ":" FNR "\t" name
+      if (!(name in seen)) print FILENAME ":" FNR "\t" name
       seen[name] = 1
     }' "${headers[@]}"
 }
@@ -33,7 +33,6 @@ for folder in tools examples bench docs README.md; do [ ! -e "$folder" ] || fold
 mapfile -t readers < <(find "${folders[@]}" -type f \( -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.c' -o -name '*.in' \
   -o -name '*.md' \) | LC_ALL=C sort)
 unused=$(types | awk -F'\t' 'FNR == NR { place[$2] = $1; next }
-  FILENAME == "include/pinnquad/exported/renamed.hpp" { next }
   FNR == 1 { fence = 0 }
   {
     line = $0

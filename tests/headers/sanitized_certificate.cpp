@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Certificates that the compiler works out, with -fsanitize=undefined: g++ then takes a pointer into an array that is
 // compared with null for no constant. A header with a residual, and a network that is shown the angular acceleration.
-#include "models/v3/near_ground_quadrotor.hpp"
+#include "models/near_ground_quadrotor.hpp"
 
 namespace {
 

@@ -18,11 +18,12 @@ using namespace pinnquad::test;
 namespace {
 
 /// The small model with commands around 1 and 0: many lie outside 0..1, some far.
-struct EdgyModel : SmallModel {
+struct EdgyNumbers : SmallNumbers {
   static constexpr Scaler<float, 4> output{{0.97F, 0.03F, 0.5F, 0.5F}, {0.1F, 0.1F, 0.05F, 0.05F}};
 };
+using EdgyModel = AsHeader<EdgyNumbers>;
 
-struct BrokenModel : SmallModel {
+struct BrokenModel : Unchecked<SmallModel> {
   static constexpr Scaler<float, 4> output{{0.5F, not_a_number, 0.5F, 0.5F}, SmallModel::output.standard_deviation};
 };
 

@@ -20,6 +20,7 @@ using pinnquad::MotionInputs;
 using pinnquad::PaperFeatures;
 using pinnquad::RotorSpeedOutputs;
 using pinnquad::Status;
+using pinnquad::test::AsHeader;
 using pinnquad::test::infinity;
 using pinnquad::test::inputs_of;
 using pinnquad::test::marked;
@@ -27,6 +28,8 @@ using pinnquad::test::not_a_number;
 using pinnquad::test::RandomStates;
 using pinnquad::test::same_bits;
 using pinnquad::test::SmallModel;
+using pinnquad::test::SmallNumbers;
+using pinnquad::test::Unchecked;
 
 namespace {
 
@@ -61,19 +64,22 @@ constexpr std::array<float, Size> with_nan(std::array<float, Size> parameters, s
   return parameters;
 }
 
-struct NanInFirstWeight : SmallModel {
+struct FirstWeight : SmallModel {
   static constexpr auto parameters = with_nan(SmallModel::parameters, 0);
 };
-struct NanInLastBias : SmallModel {
+struct LastBias : SmallModel {
   static constexpr auto parameters = with_nan(SmallModel::parameters, 171);
 };
-struct InfiniteSpread : SmallModel {
+struct InfiniteSpread : Unchecked<SmallModel> {
   static constexpr pinnquad::Scaler<float, 4> output{SmallModel::output.mean, {1.0F, infinity, 1.0F, 1.0F}};
 };
-struct SpeedModel : SmallModel {
+struct SpeedNumbers : SmallNumbers {
   using Outputs = RotorSpeedOutputs;
   static constexpr pinnquad::Scaler<float, 4> output{{100.0F, 100.0F, 100.0F, 0.0F}, {10.0F, 10.0F, 10.0F, 10.0F}};
 };
+using NanInFirstWeight = Unchecked<FirstWeight>;
+using NanInLastBias = Unchecked<LastBias>;
+using SpeedModel = AsHeader<SpeedNumbers>;
 
 }  // namespace
 

@@ -136,32 +136,6 @@ TEST_CASE("fallback, batch and Jacobian know the distance") {
   for (std::size_t s = 0; s < samples; ++s) CHECK(statuses[s] == expected[s]);
 }
 
-/// Names of a trust.hpp of earlier releases.
-struct EarlierTrust {
-  static constexpr auto distribution_mean = Trust::distribution_mean;
-  static constexpr auto whitening = Trust::whitening;
-  static constexpr double distance_limit = 30;
-  static constexpr double innovation_factor = 0.2, innovation_limit = 0.05, innovation_cleared = 0.02;
-};
-
-TEST_CASE("a trust.hpp of earlier releases says the same limits") {
-  using Distribution = Extend<TrainingGuard, JointDistance<EarlierTrust>>::Distribution;
-  using Limits = CommandResidualMonitor<EarlierTrust>::Limits;
-  CHECK(Distribution::squared_distance_limit == Trust::squared_distance_limit);
-  CHECK(Limits::command_residual_factor == Trust::command_residual_factor);
-  CHECK(Limits::command_residual_limit == Trust::command_residual_limit);
-  CHECK(Limits::command_residual_cleared == Trust::command_residual_cleared);
-  const Guarded<Extend<TrainingGuard, JointDistance<EarlierTrust>>> earlier;
-  const Guarded<Measuring> today;
-  RandomStates random(407);
-  for (int i = 0; i < 200; ++i) {
-    const auto inputs = inputs_of(random, 0.99);
-    Commands<float> a = marked(), b = marked();
-    CHECK(earlier.predict(inputs, a) == today.predict(inputs, b));
-    CHECK(same_bits(a, b));
-  }
-}
-
 TEST_CASE("the command residual is the recursion by hand, alarms above its limit and clears below the other") {
   CommandResidualMonitor<Trust> monitor;
   CHECK(monitor.trusted());

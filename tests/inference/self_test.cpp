@@ -16,9 +16,11 @@
 using pinnquad::InverseDynamics;
 using pinnquad::SelfTestReport;
 using pinnquad::Status;
-using pinnquad::test::SmallDoubleModel;
+using pinnquad::test::DoubleModel;
+using pinnquad::test::Hashed;
 using pinnquad::test::SmallInstance;
 using pinnquad::test::SmallModel;
+using pinnquad::test::Unchecked;
 
 namespace {
 
@@ -141,18 +143,18 @@ Status tested() {
 TEST_CASE("a sound model passes") { CHECK(tested<SmallModel>() == Status::ok); }
 
 TEST_CASE("one wrong weight, anywhere, fails") {
-  CHECK(tested<Moved<0>>() == Status::self_test_failed);    // first weight
-  CHECK(tested<Moved<77>>() == Status::self_test_failed);   // somewhere in the first layer
-  CHECK(tested<Moved<131>>() == Status::self_test_failed);  // a bias of it
-  CHECK(tested<Moved<150>>() == Status::self_test_failed);  // a weight of the last layer
-  CHECK(tested<Moved<171>>() == Status::self_test_failed);  // the last bias
+  CHECK(tested<Hashed<Moved<0>>>() == Status::self_test_failed);    // first weight
+  CHECK(tested<Hashed<Moved<77>>>() == Status::self_test_failed);   // somewhere in the first layer
+  CHECK(tested<Hashed<Moved<131>>>() == Status::self_test_failed);  // a bias of it
+  CHECK(tested<Hashed<Moved<150>>>() == Status::self_test_failed);  // a weight of the last layer
+  CHECK(tested<Hashed<Moved<171>>>() == Status::self_test_failed);  // the last bias
 }
 
 TEST_CASE("a wrong layout, a NaN, a wrong or impossible golden vector fail") {
-  CHECK(tested<Transposed>() == Status::self_test_failed);
-  CHECK(tested<NotANumber>() == Status::self_test_failed);
-  CHECK(tested<WrongGoldenCommand>() == Status::self_test_failed);
-  CHECK(tested<GoldenOutsideEnvelope>() == Status::self_test_failed);
+  CHECK(tested<Hashed<Transposed>>() == Status::self_test_failed);
+  CHECK(tested<Unchecked<NotANumber>>() == Status::self_test_failed);
+  CHECK(tested<Hashed<WrongGoldenCommand>>() == Status::self_test_failed);
+  CHECK(tested<Unchecked<GoldenOutsideEnvelope>>() == Status::self_test_failed);
 }
 
 TEST_CASE("whatever the guard: golden commands out of its limits, or a fallback, change nothing") {
@@ -192,7 +194,7 @@ TEST_CASE("the report: how close a sound model comes, and which vector a broken 
   REQUIRE(reported(model, report) == Status::self_test_failed);
   CHECK(report.cause == Status::outside_envelope);
   CHECK(report.vector == 0);
-  CHECK(pinnquad::self_test(InverseDynamics<SmallDoubleModel>{}) == Status::ok);
+  CHECK(pinnquad::self_test(InverseDynamics<DoubleModel>{}) == Status::ok);
 }
 
 TEST_CASE("the report: a number that no golden vector brings to light is named") {

@@ -43,7 +43,7 @@ for_each_set() {
 # same numbers in every object. Including Eigen/Core unoptimised brings constructors of its empty placeholders (all, last) along.
 foreign_symbols() {
   nm -C --defined-only "$1" | grep -E '^[0-9a-f]+ [WwVvu] ' | grep -v "::$2::" |
-    grep -vE ' [Vu] .*(::SmallModel::[a-z_]+|::model_block_magic|::crc32_half_bytes|::ones<float, [0-9]+>|::extra_column_(names|units)<.*>)$| Eigen::(internal::(all_t|FixedInt<1>)|symbolic::)'
+    grep -vE ' [Vu] .*(::SmallNumbers>*::[a-z_]+|::model_block_magic|::crc32_half_bytes|::ones<float, [0-9]+>|::extra_column_(names|units)<.*>)$| Eigen::(internal::(all_t|FixedInt<1>)|symbolic::)'
 }
 
 if [ "$what" = neon ]; then

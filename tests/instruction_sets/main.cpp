@@ -165,7 +165,7 @@ std::size_t block_bytes = 0;
 
 namespace {
 
-/// A block of version 1, which has no records, written without the rooms that do not fly.
+/// A block of the records that a block must have, written without the rooms that do not fly.
 void write_block() {
   using namespace pinnquad;
   using instruction_sets::block;
@@ -173,22 +173,73 @@ void write_block() {
   using Header = ModelBlockHeader;
   using Layout = ModelBlockLayout<Model>;
   constexpr std::size_t golden = Model::golden_features.size();
-  const std::size_t length = static_cast<std::size_t>(Layout::length(golden));
   const auto number = [](std::size_t at, std::uint64_t value, std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; ++i) block[at + i] = static_cast<unsigned char>(value >> (8 * i));
   };
-  const auto scalars = [](std::size_t at, const auto& values) {
-    std::memcpy(block + Header::size + at * sizeof(float), &values, sizeof values);
+  std::size_t end = Header::size + Header::record_counts;
+  std::uint32_t count = 0;
+  const auto record = [&](BlockRecord type, const std::vector<unsigned char>& bytes) {
+    number(end, static_cast<unsigned>(type) | mandatory_record, 4);
+    number(end + 4, bytes.size(), 4);
+    std::memcpy(block + end + Header::record_head, bytes.data(), bytes.size());
+    end += Header::record_head + Header::padded(bytes.size());
+    ++count;
+  };
+  const auto bytes_of = [](const auto&... values) {
+    std::vector<unsigned char> bytes;
+    const auto add = [&bytes](const auto& value) {
+      const std::size_t at = bytes.size();
+      bytes.resize(at + sizeof value);
+      std::memcpy(bytes.data() + at, &value, sizeof value);
+    };
+    (add(values), ...);
+    return bytes;
+  };
+  const auto append = [](std::vector<unsigned char>& bytes, const std::vector<unsigned char>& more) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  };
+  const auto texts = [](std::vector<unsigned char> bytes, const auto& names, const auto& units) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      for (const char* text : {names[i], units[i]}) bytes.insert(bytes.end(), text, text + std::strlen(text) + 1);
+    }
+    return bytes;
+  };
+  const auto letters = [](const auto& text) { return std::vector<unsigned char>(text.text, text.text + text.count); };
+  using Vehicle = Model::Vehicle;
+  record(BlockRecord::commands, bytes_of(std::uint32_t{0}, std::uint32_t{0}, 0.0f, 1.0f));
+  record(BlockRecord::clock, bytes_of(std::uint32_t{0}, std::uint32_t{0}));
+  record(BlockRecord::window, bytes_of(std::uint32_t{1}, std::uint32_t{1}));
+  record(BlockRecord::allocation, bytes_of(allocation(airframe_value<Vehicle, float>())));
+  record(BlockRecord::answer, letters(Model::answer_letters));
+  record(BlockRecord::features, texts({}, Model::feature_names, Model::feature_units));
+  auto schema = letters(pinnquad::detail::description_letters<Model::Outputs>());
+  schema.push_back(0);
+  record(BlockRecord::outputs, texts(schema, Model::output_names, Model::output_units));
+  std::vector<unsigned char> vehicle;
+  const auto exact = airframe_value<Vehicle, double>();
+  const auto flown = airframe_value<Vehicle, float>();
+  each_number(exact, [&](auto number) { append(vehicle, bytes_of(static_cast<double>(number))); });
+  each_number(flown, [&](auto number) { append(vehicle, bytes_of(static_cast<float>(number))); });
+  vehicle.insert(vehicle.end(), Vehicle::name, Vehicle::name + std::strlen(Vehicle::name));
+  record(BlockRecord::vehicle, vehicle);
+  record(BlockRecord::contents, bytes_of(Model::contents_hash));
+  number(Header::size, count, 4);
+  number(Header::size + 4, end - Header::size - Header::record_counts, 4);
+  const std::size_t length = static_cast<std::size_t>(Layout::length(golden)) + end - Header::size;
+  const auto scalars = [end](std::size_t at, const auto& values) {
+    std::memcpy(block + end + at * sizeof(float), &values, sizeof values);
   };
   std::memcpy(block, &model_block_magic, sizeof model_block_magic);
-  number(Header::version, oldest_model_block_version, 4);
+  number(Header::version, model_format_version, 4);
   number(Header::length, length, 4);
   number(Header::scalar_bytes, sizeof(float), 4);
   number(Header::inputs, Layout::inputs, 4);
   number(Header::outputs, Layout::outputs, 4);
   number(Header::parameters, Layout::parameter_count, 4);
   number(Header::golden_vectors, golden, 4);
+  number(Header::training_rows, Model::training_rows, 4);
   number(Header::shape_hash, shape_hash<Model>, 8);
+  number(Header::training_data_hash, Model::training_data_hash, 8);
   scalars(Layout::input_mean, Model::input.mean);
   scalars(Layout::input_deviation, Model::input.standard_deviation);
   scalars(Layout::output_mean, Model::output.mean);

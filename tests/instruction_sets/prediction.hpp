@@ -30,10 +30,10 @@ using WideNet =
     pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<70>, pinnquad::Tanh, pinnquad::Dense<4>>;
 
 /// Every smooth activation that calls the C library, leaky ReLU, and derivatives asked with inputs.
-using SmoothNet = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<9>, pinnquad::Gelu,
-                                    pinnquad::Dense<9>, pinnquad::Silu, pinnquad::Dense<9>, pinnquad::Softplus,
-                                    pinnquad::Dense<9>, pinnquad::Sine, pinnquad::Dense<9>, pinnquad::Elu,
-                                    pinnquad::Dense<9>, pinnquad::LeakyRelu, pinnquad::Dense<4>>;
+using SmoothNet =
+    pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<9>, pinnquad::Gelu, pinnquad::Dense<9>,
+                      pinnquad::Silu, pinnquad::Dense<9>, pinnquad::Softplus, pinnquad::Dense<9>, pinnquad::Sine,
+                      pinnquad::Dense<9>, pinnquad::Elu, pinnquad::Dense<9>, pinnquad::LeakyRelu, pinnquad::Dense<4>>;
 
 /// Numbers in +-0.5 without a pattern that a sum would cancel: a linear congruence.
 template <class Network>
@@ -63,17 +63,20 @@ constexpr typename Network::Parameters some_variances() noexcept {
 using Model = pinnquad::test::SmallModel;
 
 /// Its outputs taken for rotor speeds, rev/s.
-struct SpeedModel : Model {
+struct SpeedNumbers : Model {
   using Outputs = pinnquad::RotorSpeedOutputs;
 };
+using SpeedModel = pinnquad::test::AsHeader<SpeedNumbers>;
 
 /// Its outputs taken for a wrench, and for what is added to another inverse.
-struct WrenchModel : Model {
+struct WrenchNumbers : Model {
   using Outputs = pinnquad::WrenchOutputs;
 };
-struct ResidualModel : Model {
+struct ResidualNumbers : Model {
   using Outputs = pinnquad::ResidualOutputs<pinnquad::LinearizedBase>;
 };
+using WrenchModel = pinnquad::test::AsHeader<WrenchNumbers>;
+using ResidualModel = pinnquad::test::AsHeader<ResidualNumbers>;
 
 /// A block of it, which main.cpp writes before any call.
 extern unsigned char block[];

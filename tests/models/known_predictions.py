@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes known_predictions.hpp: what each archived header of tests/models/v*/ must answer.
+"""Writes known_predictions.hpp: what each header of tests/models/ that is one network must answer.
 
     python3 tests/models/known_predictions.py > tests/models/known_predictions.hpp
 
@@ -13,8 +13,6 @@ import re
 
 FOLDER = pathlib.Path(__file__).parent
 COUNT = 6
-# dynamics/airframes/crazyflie.hpp
-MAX_ROTOR_SPEED_REV_S = {"crazyflie_2_1": 21709.0 / 60.0}
 
 
 def numbers(text, name):
@@ -26,7 +24,7 @@ def layers(text):
     """[(outputs, activation)] and the number of inputs."""
     network = re.search(r"using Network = pinnquad::Network<(.*)>;", text).group(1)
     parts = [part.strip().replace("pinnquad::", "") for part in network.split(",")][1:]
-    inputs = int(re.match(r"Input(?:s|Size)<(\d+)>", parts[0]).group(1))
+    inputs = int(re.match(r"InputSize<(\d+)>", parts[0]).group(1))
     result = []
     for part in parts[1:]:
         dense = re.match(r"Dense<(\d+)>", part)
@@ -40,8 +38,6 @@ def layers(text):
 def predictor(text):
     inputs, shape = layers(text)
     scale_in, scale_out, weights = numbers(text, "input"), numbers(text, "output"), numbers(text, "parameters")
-    speed = "RotorSpeedOutputs" in text
-    vehicle = re.search(r'vehicle_name = "(.*)"', text)
 
     def predict(x):
         v = [(x[i] - scale_in[i]) / scale_in[inputs + i] for i in range(inputs)]
@@ -55,11 +51,7 @@ def predictor(text):
                 v = [activation(a) for a in v]
             at += outputs * (width + 1)
         assert at == len(weights)
-        v = [v[i] * scale_out[4 + i] + scale_out[i] for i in range(4)]
-        if speed:
-            most = MAX_ROTOR_SPEED_REV_S[vehicle.group(1)]
-            v = [math.copysign((n / most) ** 2, n) for n in v]
-        return v
+        return [v[i] * scale_out[4 + i] + scale_out[i] for i in range(4)]
 
     return predict
 
@@ -71,10 +63,10 @@ def array(vectors, size):
 
 def main():
     print("// SPDX-License-Identifier: MIT")
-    print("// What the archived headers must answer. Written by known_predictions.py, which computes it without the library.")
+    print("// What the headers beside it must answer. Written by known_predictions.py, which computes it without the library.")
     print("#pragma once\n\n#include <array>\n\nnamespace pinnquad::test {\n")
     draw = random.Random(42)
-    for path in sorted(FOLDER.glob("v*/*.hpp")):
+    for path in sorted(FOLDER.glob("*.hpp")):
         text = path.read_text()
         if "using Network = pinnquad::Network<" not in text:
             continue  # a sum of predictors: its own golden vectors are enough

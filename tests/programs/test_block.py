@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """block says what a model block holds; what is none, or contradicts itself, is refused."""
 import json
+import re
 import shutil
 import zlib
 from pathlib import Path
@@ -9,7 +10,7 @@ import pytest
 from conftest import SOURCE
 
 SHIPPED = SOURCE / "examples/models/structured_quadrotor.block"
-RACER = SOURCE / "tests/models/v4/own_racer.block"
+RACER = SOURCE / "tests/models/own_racer.block"
 
 
 def described(pinnquad, block):
@@ -37,12 +38,18 @@ def test_window_and_column(pinnquad):
     assert any(feature["name"].endswith("[-1]") for feature in said["features"])
 
 
+def test_header_of_another_format(pinnquad):
+    text = SHIPPED.with_suffix(".hpp").read_text()
+    Path("old.hpp").write_text(re.sub(r"( format_version = )\d+;", r"\g<1>3;", text))
+    pinnquad.refused("block old.hpp", at="old.hpp", keyword="train and export again), found format 3")
+
+
 def sealed(block):
     return bytes(block[:-4]) + zlib.crc32(bytes(block[:-4])).to_bytes(4, "little")
 
 
 @pytest.mark.parametrize("offset, value, keyword", [
-    (0, b"X", "version"), (8, b"\x05", "version"), (8, b"\x02", "describes itself"), (12, b"\xff", "cut short"),
+    (0, b"X", "another file"), (8, b"\x05", "train and export again"), (8, b"\x02", "found 2"), (12, b"\xff", "cut short"),
     (16, b"\x03", "size"), (20, b"\x11", ""), (28, b"\x01", ""), (40, b"\x00", "hash")])
 def test_changed(pinnquad, offset, value, keyword):
     """With its checksum made right again."""

@@ -98,8 +98,8 @@ def test_bias(pinnquad, trained):
     assert certified["bias"]["time_constants_s"] == pytest.approx(times)
     assert certified["bias"]["widens_command_bound"] == pytest.approx([0.5] * 4)
     assert report["certificate"]["bias_widens_command_bound"] == pytest.approx([0.5] * 4)
-    # a model of before says none, and nothing is said of it
-    assert "\nbias" not in pinnquad("block", SOURCE / "tests/models/v4/own_racer.block").out
+    # of a model that says none, nothing is said
+    assert "\nbias" not in pinnquad("block", SOURCE / "tests/models/own_racer.block").out
 
 
 def test_edited(pinnquad, trained):

@@ -766,7 +766,7 @@ def test_reference(pinnquad, name, request):
 
 # back
 
-SHIPPED = [*sorted((SOURCE / "examples/models").glob("*.block")), SOURCE / "tests/models/v4/own_racer.block"]
+SHIPPED = [*sorted((SOURCE / "examples/models").glob("*.block")), SOURCE / "tests/models/own_racer.block"]
 
 
 @pytest.mark.parametrize("block", SHIPPED, ids=lambda path: path.stem)

@@ -12,7 +12,7 @@
 
 #include "../examples/models/demo_quadrotor.hpp"
 #include "../examples/models/structured_quadrotor.hpp"
-#include "models/v3/own_racer.hpp"
+#include "models/own_racer.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/features/input_history.hpp"
@@ -160,13 +160,12 @@ InputsOf<Model> hovering() {
   return {};
 }
 template <>
-InputsOf<OwnRacerV3> hovering<OwnRacerV3>() {
-  InputsOf<OwnRacerV3> inputs;
-  using Present = InputHistory<OwnRacerV3::Features, double>::Present;
+InputsOf<OwnRacer> hovering<OwnRacer>() {
+  InputsOf<OwnRacer> inputs;
+  using Present = InputHistory<OwnRacer::Features, double>::Present;
   auto& present = static_cast<Present&>(inputs);
   constexpr auto voltage_at = static_cast<std::size_t>(PaperFeatures::size);
-  present.column<BatteryVoltage>() =
-      (OwnRacerV3::envelope_lower[voltage_at] + OwnRacerV3::envelope_upper[voltage_at]) / 2;
+  present.column<BatteryVoltage>() = (OwnRacer::envelope_lower[voltage_at] + OwnRacer::envelope_upper[voltage_at]) / 2;
   inputs.others[0] = present;
   inputs.complete = true;
   return inputs;
@@ -177,7 +176,7 @@ InputsOf<OwnRacerV3> hovering<OwnRacerV3>() {
 TEST_CASE_TEMPLATE(
     "a network without proof, with a past too: nothing is promised within; no jump at the edge, and order "
     "beyond it",
-    Model, DemoQuadModel, OwnRacerV3) {
+    Model, DemoQuadModel, OwnRacer) {
   using Scalar = typename Model::Scalar;
   const Flown<Model> inverse{typename Flown<Model>::Guard(Formula(vehicle<typename Model::Vehicle>()))};
   const PlaceAndTime<double> place{};

@@ -10,7 +10,7 @@
 
 #include "../examples/models/demo_quadrotor.hpp"
 #include "../examples/models/structured_quadrotor.hpp"
-#include "models/v3/near_ground_quadrotor.hpp"
+#include "models/near_ground_quadrotor.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"

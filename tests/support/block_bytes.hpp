@@ -33,12 +33,9 @@ class BlockBytes {
     }
   }
 
-  /// Where the scalars begin: behind the header and, in version 2, the records.
+  /// Where the scalars begin: behind the header and the records.
   std::size_t scalars() const {
-    const auto u32 = [this](std::size_t offset) { return detail::read_u32(bytes_.get() + offset); };
-    const std::size_t records =
-        u32(ModelBlockHeader::version) < 2 ? 0 : ModelBlockHeader::record_counts + u32(ModelBlockHeader::size + 4);
-    return ModelBlockHeader::size + records;
+    return ModelBlockHeader::size + ModelBlockHeader::record_counts + u32(ModelBlockHeader::size + 4);
   }
 
   template <class Scalar>
@@ -105,7 +102,7 @@ class BlockBytes {
                                                parameters,
                                                u32(Header::training_rows),
                                                detail::read_u64(bytes_.get() + Header::training_data_hash)};
-    const std::uint64_t hash = detail::BlockContents<Scalar>(records, numbers, vehicle).of_today();
+    const std::uint64_t hash = detail::BlockContents<Scalar>(records, numbers, vehicle).hash();
     std::size_t at = Header::size + Header::record_counts;
     while ((u32(at) & 0x7fffu) != static_cast<unsigned>(BlockRecord::contents)) {
       at += Header::record_head + Header::padded(u32(at + 4));

@@ -52,7 +52,6 @@ struct DoubleInstance {
   using Features = typename Header::Features;
   using Outputs = typename Header::Outputs;
   using Vehicle = typename Header::Vehicle;
-  static constexpr int format_version = 1;
   static constexpr auto features = static_cast<std::size_t>(Features::size);
 
   typename Network::Parameters parameters{};

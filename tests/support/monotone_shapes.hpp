@@ -48,7 +48,6 @@ struct MonotoneModel {
   using Vehicle = typename Shape::Vehicle;
   using Structure = detail::ProvenStructure<Network, Features>;
   using Base = typename Structure::Base;
-  static constexpr int format_version = 1;
   static constexpr std::size_t inputs = static_cast<std::size_t>(Features::size);
 
   typename Network::Parameters parameters{};

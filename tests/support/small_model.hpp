@@ -8,10 +8,11 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "as_header.hpp"
 
 namespace pinnquad::test {
 
-struct SmallModel {
+struct SmallNumbers {
   using Scalar = float;
   using Network =
       Mlp<float, pinnquad::InputSize<16>, pinnquad::Hidden<1, 8>, pinnquad::OutputSize<4>, pinnquad::Relu>;
@@ -19,7 +20,6 @@ struct SmallModel {
   using Outputs = CommandOutputs;
   using Vehicle = PaperQuadrotor;
 
-  static constexpr int format_version = 1;
   static constexpr const char* name = "small_model";
   static constexpr const char* provenance = "tests/support/small_model.py";
 
@@ -110,5 +110,7 @@ struct SmallModel {
       {
           0.555138684F, 0.483135985F, 0.524595396F, 0.401030371F}}};
 };
+
+using SmallModel = AsHeader<SmallNumbers>;
 
 }  // namespace pinnquad::test

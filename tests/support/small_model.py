@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes small_model.hpp: a 16 -> 8 -> 4 ReLU network in the form of an exported model.
+"""Writes small_model.hpp: a 16 -> 8 -> 4 ReLU network in the form of an exported header.
 
     python3 tests/support/small_model.py > tests/support/small_model.hpp
 
@@ -85,10 +85,11 @@ print(f"""// SPDX-License-Identifier: MIT
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/nn/relu.hpp"
+#include "as_header.hpp"
 
 namespace pinnquad::test {{
 
-struct SmallModel {{
+struct SmallNumbers {{
   using Scalar = float;
   using Network =
       Mlp<float, pinnquad::InputSize<{INPUTS}>, pinnquad::Hidden<1, {HIDDEN}>, pinnquad::OutputSize<{OUTPUTS}>, pinnquad::Relu>;
@@ -96,7 +97,6 @@ struct SmallModel {{
   using Outputs = CommandOutputs;
   using Vehicle = PaperQuadrotor;
 
-  static constexpr int format_version = 1;
   static constexpr const char* name = "small_model";
   static constexpr const char* provenance = "tests/support/small_model.py";
 
@@ -124,5 +124,7 @@ struct SmallModel {{
   static constexpr std::array<std::array<float, {OUTPUTS}>, {GOLDEN}> golden_commands = {{{{
 {rows(commands)}}}}};
 }};
+
+using SmallModel = AsHeader<SmallNumbers>;
 
 }}  // namespace pinnquad::test""")

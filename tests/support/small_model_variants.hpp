@@ -2,45 +2,46 @@
 // The small model in double, with an empty envelope, and as an instance whose numbers are members instead of constants.
 #pragma once
 
-#include "support/small_model.hpp"
+#include "small_model.hpp"
 
 namespace pinnquad::test {
 
 namespace detail {
+/// Float constants as doubles that no float is.
 template <std::size_t Size>
-constexpr std::array<double, Size> widened(const std::array<float, Size>& values) {
-  std::array<double, Size> result{};
-  for (std::size_t i = 0; i < Size; ++i) result[i] = static_cast<double>(values[i]);
-  return result;
+constexpr std::array<double, Size> widened(const std::array<float, Size>& from) {
+  std::array<double, Size> to{};
+  for (std::size_t i = 0; i < Size; ++i) to[i] = static_cast<double>(from[i]) * 1.0000000001;
+  return to;
 }
-template <std::size_t Rows, std::size_t Size>
-constexpr std::array<std::array<double, Size>, Rows> widened(const std::array<std::array<float, Size>, Rows>& rows) {
-  std::array<std::array<double, Size>, Rows> result{};
-  for (std::size_t i = 0; i < Rows; ++i) result[i] = widened(rows[i]);
-  return result;
+template <int Size>
+constexpr Scaler<double, Size> widened(const Scaler<float, Size>& from) {
+  return {widened(from.mean), widened(from.standard_deviation)};
+}
+template <std::size_t Rows, std::size_t Columns>
+constexpr std::array<std::array<double, Columns>, Rows> widened(
+    const std::array<std::array<float, Columns>, Rows>& from) {
+  std::array<std::array<double, Columns>, Rows> to{};
+  for (std::size_t i = 0; i < Rows; ++i) to[i] = widened(from[i]);
+  return to;
 }
 }  // namespace detail
 
-struct SmallDoubleModel {
+struct DoubleNumbers : SmallNumbers {
   using Scalar = double;
-  using Network = SmallModel::Network::Rebind<double>;
-  using Features = PaperFeatures;
-  using Outputs = CommandOutputs;
-  using Vehicle = PaperQuadrotor;
-  static constexpr int format_version = SmallModel::format_version;
-  static constexpr auto parameters = detail::widened(SmallModel::parameters);
-  static constexpr Scaler<double, 16> input{detail::widened(SmallModel::input.mean),
-                                            detail::widened(SmallModel::input.standard_deviation)};
-  static constexpr Scaler<double, 4> output{detail::widened(SmallModel::output.mean),
-                                            detail::widened(SmallModel::output.standard_deviation)};
-  static constexpr auto envelope_lower = detail::widened(SmallModel::envelope_lower);
-  static constexpr auto envelope_upper = detail::widened(SmallModel::envelope_upper);
-  static constexpr auto golden_features = detail::widened(SmallModel::golden_features);
-  static constexpr auto golden_commands = detail::widened(SmallModel::golden_commands);
+  using Network = SmallNumbers::Network::Rebind<double>;
+  static constexpr auto parameters = detail::widened(SmallNumbers::parameters);
+  static constexpr auto input = detail::widened(SmallNumbers::input);
+  static constexpr auto output = detail::widened(SmallNumbers::output);
+  static constexpr auto envelope_lower = detail::widened(SmallNumbers::envelope_lower);
+  static constexpr auto envelope_upper = detail::widened(SmallNumbers::envelope_upper);
+  static constexpr auto golden_features = detail::widened(SmallNumbers::golden_features);
+  static constexpr auto golden_commands = detail::widened(SmallNumbers::golden_commands);
 };
+using DoubleModel = AsHeader<DoubleNumbers>;
 
 /// Its envelope is empty: it declines always.
-struct NowhereTrained : SmallModel {
+struct NowhereTrained : Unchecked<SmallNumbers> {
   static constexpr std::array<float, 16> envelope_lower = pinnquad::detail::ones<float, 16>;
   static constexpr std::array<float, 16> envelope_upper{};
 };
@@ -53,7 +54,6 @@ struct SmallInstance {
   using Features = SmallModel::Features;
   using Outputs = SmallModel::Outputs;
   using Vehicle = SmallModel::Vehicle;
-  static constexpr int format_version = SmallModel::format_version;
 
   std::array<float, 172> parameters = SmallModel::parameters;
   Scaler<float, 16> input = SmallModel::input;

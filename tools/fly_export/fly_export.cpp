@@ -34,11 +34,11 @@ using Scalar = Model::Scalar;
 constexpr double agreement_tolerance = 1e-6;  // float rounding of another order of summation, commands in 0..1
 constexpr double fallback_limit = 0.05;       // more, and it is not the export that flies
 
-/// The exported model with all its numbers zero: what they contribute is what this one lacks. Of a format that says
-/// nothing of its numbers.
+/// The exported model with all its numbers zero: what they contribute is what this one lacks.
 struct ZeroedModel : Model {
-  static constexpr int format_version = 1;
+  static constexpr ModelKind kind = ModelKind::instance;
   static constexpr std::array<Scalar, Model::parameters.size()> parameters{};
+  void forward(const Scalar* x, Scalar* y) const noexcept { Network::forward(parameters.data(), x, y); }
 };
 
 /// A model that is shown the altitude flies near the ground, where it was trained.

@@ -18,15 +18,13 @@ void add_model(CLI::App& line, std::string& model) {
 
 namespace {
 
-/// The hash that a header says, 0 where it says none: one line of it is looked up, nothing is understood.
-std::uint64_t stated_hash(const std::string& header) {
-  const std::string text = pinnquad::file_text(header), line = " contents_hash = 0x";
+/// The number behind the last `line` of a header, 0 where there is none: nothing else is understood.
+std::uint64_t stated(const std::string& text, const std::string& line, int base) {
   const std::size_t at = text.rfind(line);
-  std::uint64_t hash = 0;
-  if (at == std::string::npos) return hash;
-  const char* first = text.data() + at + line.size();
-  std::from_chars(first, text.data() + text.size(), hash, 16);
-  return hash;
+  std::uint64_t number = 0;
+  if (at == std::string::npos) return number;
+  std::from_chars(text.data() + at + line.size(), text.data() + text.size(), number, base);
+  return number;
 }
 
 }  // namespace
@@ -34,7 +32,15 @@ std::uint64_t stated_hash(const std::string& header) {
 std::string block_path(const std::string& model) {
   const std::filesystem::path path(model);
   if (path.extension() != ".hpp") return model;
-  const std::uint64_t hash = stated_hash(model);
+  const std::string text = pinnquad::file_text(model);
+  const std::uint64_t format = stated(text, " format_version = ", 10);
+  if (format != 0 && format != pinnquad::model_format_version) {
+    throw pinnquad::InputError(model, 0, 0,
+                               "a header of format " + std::to_string(pinnquad::model_format_version) +
+                                   " (of another: train and export again)",
+                               "format " + std::to_string(format));
+  }
+  const std::uint64_t hash = stated(text, " contents_hash = 0x", 16);
   const std::string block = std::filesystem::path(path).replace_extension(".block").string();
   if (!std::filesystem::exists(block)) {
     throw pinnquad::InputError(

@@ -208,7 +208,7 @@ inline std::vector<unsigned char> whole_block(const BlockCounts& counts, const s
   }
   LittleEndianBytes<float> out;
   out.add(model_block_magic);
-  out.add(model_block_version);
+  out.add(static_cast<std::uint32_t>(model_format_version));
   for (const std::uint64_t count : {length, counts.scalar_bytes, counts.inputs, counts.outputs, counts.parameters,
                                     counts.golden_vectors, counts.training_rows}) {
     out.add(static_cast<std::uint32_t>(count));

@@ -286,7 +286,7 @@ using WordsOf = std::void_t<decltype(M::name), decltype(M::training_data), declt
 template <class M>
 using FiguresOf = std::void_t<decltype(M::test_r_squared), decltype(M::linear_regression_r_squared)>;
 
-/// Of an exported header, of whatever format.
+/// Of an exported header.
 template <class M>
 WrittenRecords records_of_header() {
   WrittenRecords records = records_of_types<M>();
@@ -306,16 +306,14 @@ WrittenRecords records_of_header() {
     records.verdict->linear_regression_r_squared = M::linear_regression_r_squared;
   }
   records.contents_hash = contents_hash_of<M>();
-  records.command_meaning = header_command_meaning<M>();
-  records.sample_period_s = header_period_s<M>();
-  if constexpr (is_detected<RecordsOf, M>) {
-    records.command_lower = M::command_lower;
-    records.command_upper = M::command_upper;
-    records.lag_removed_s = M::lag_removed_s;
-    records.allocation = M::allocation;
-    records.answer = M::answer;
-    records.base = M::base;
-  }
+  records.command_meaning = M::command_meaning;
+  records.sample_period_s = M::sample_period_s;
+  records.command_lower = M::command_lower;
+  records.command_upper = M::command_upper;
+  records.lag_removed_s = M::lag_removed_s;
+  records.allocation = M::allocation;
+  records.answer = M::answer;
+  records.base = M::base;
   if constexpr (is_detected<StatedVerdictOf, M>) {
     records.judged = judged_bits(M::worse_than_mean, M::beats_linear_regression);
   }

@@ -13,7 +13,6 @@
 #include "pinnquad/deploy/block_writer.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/exported/model_block.hpp"
-#include "pinnquad/exported/renamed.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/training/structured/trust_limits.hpp"
 #include "pinnquad/training/trained_model.hpp"
@@ -70,22 +69,18 @@ std::vector<unsigned char> model_block(
   return detail::block_beside_header(std::move(written));
 }
 
-/// The block of an exported header, of format 2 or later: the bytes that its training would have written as a block.
+/// The block of an exported header: the bytes that its training would have written as a block.
 /// `Trust`: the struct of trust.hpp beside it; void: none.
 template <class Model, class Trust = void>
 std::vector<unsigned char> model_block() {
   static_assert(require_model<Model>());
-  static_assert(Model::format_version >= 2,
-                "pinnquad: a header of format 1 does not check its own names; export it again");
   detail::WrittenModel<typename Model::Scalar> written;
   static_cast<detail::WrittenRecords&>(written) = detail::records_of_header<Model>();
   if constexpr (!std::is_void_v<Trust>) {
-    using Distance = detail::DistanceTrust<Trust>;
-    using Residual = detail::ResidualTrust<Trust>;
-    written.trust = {Distance::squared_distance_limit,
-                     Residual::command_residual_factor,
-                     Residual::command_residual_limit,
-                     Residual::command_residual_cleared,
+    written.trust = {Trust::squared_distance_limit,
+                     Trust::command_residual_factor,
+                     Trust::command_residual_limit,
+                     Trust::command_residual_cleared,
                      Trust::update_period_s,
                      detail::converted<double>(Trust::distribution_mean),
                      detail::converted<double>(Trust::whitening)};

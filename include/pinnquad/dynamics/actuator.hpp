@@ -205,10 +205,9 @@ constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before
 /// The meaning of a motor command. A model flies a vehicle only where both mean the same. The values are those of a
 /// model block (exported/model_block.hpp).
 enum class CommandMeaning : std::uint8_t {
-  thrust = 0,              ///< u = (n / n_max)^2, the thrust over that at full command
-  throttle = 1,            ///< the share of a speed controller's pulse range: thrust between a share and its square
-  speed = 2,               ///< u = n / n_max
-  pulse_width = throttle,  ///< its earlier name, said by exported headers
+  thrust = 0,    ///< u = (n / n_max)^2, the thrust over that at full command
+  throttle = 1,  ///< the share of a speed controller's pulse range: thrust between a share and its square
+  speed = 2,     ///< u = n / n_max
 };
 
 /// Number of meanings; values from here on are none.

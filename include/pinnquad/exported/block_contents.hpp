@@ -123,28 +123,9 @@ class BlockContents {
     return same;
   }
 
-  /// As a header of a format says it. A header of format 2 has no records: it says nothing of a range or a lag.
-  bool is_of(std::uint64_t hash) const noexcept {
-    constexpr std::uint64_t seed = seed_of("format_version");
-    const std::uint64_t all = of_every_format();
-    const std::uint64_t later = all + of_records() + output_units();
-    const auto format = [](std::uint32_t version) {
-      RunTimeHash number{seed};
-      number.add_word(version);
-      return number.hash;
-    };
-    if (hash == later + format(4) || hash == later + format(3)) return true;
-    const bool silent = said_.command_lower >= Scalar(0) && said_.command_lower <= Scalar(0) &&
-                        said_.command_upper >= Scalar(1) && said_.lag_removed_ns == 0;
-    const std::uint64_t second = all + format(2);
-    return silent && (hash == second + output_unit() || hash == second + output_units());
-  }
-  /// The hash of a header of today's format, for a writer of blocks.
-  std::uint64_t of_today() const noexcept {
-    constexpr std::uint64_t seed = seed_of("format_version");
-    RunTimeHash version{seed};
-    version.add_word(static_cast<std::uint32_t>(model_format_version));
-    return of_every_format() + of_records() + output_units() + version.hash;
+  std::uint64_t hash() const noexcept {
+    constexpr std::uint64_t version = constant_hash("format_version", model_format_version);
+    return version + of_description() + of_records();
   }
 
  private:
@@ -160,19 +141,20 @@ class BlockContents {
     return is_finite(value) && own <= rounded && own >= rounded;
   }
 
-  std::uint64_t of_every_format() const noexcept {
+  std::uint64_t of_description() const noexcept {
     constexpr std::uint64_t frame = constant_hash("frame", model_frame);
     constexpr std::uint64_t data = seed_of("training_data_hash"), rows = seed_of("training_rows"),
                             worse = seed_of("worse_than_mean"), beats = seed_of("beats_linear_regression"),
                             names = seed_of("feature_names"), units = seed_of("feature_units"),
-                            outputs = seed_of("output_names"), vehicle = seed_of("vehicle_name"),
-                            order = seed_of("motor_torque_signs"), airframe = seed_of("Vehicle"),
-                            signs = seed_of("slope_signs"), lower = seed_of("residual_lower"),
-                            upper = seed_of("residual_upper"), mean = seed_of("distance_mean"),
-                            triangle_seed = seed_of("distance_inverse_cholesky"), limit = seed_of("distance_limit"),
-                            input = seed_of("input"), output = seed_of("output"), least = seed_of("envelope_lower"),
-                            most = seed_of("envelope_upper"), golden = seed_of("golden_features"),
-                            commands = seed_of("golden_commands"), weights = seed_of("parameters");
+                            outputs = seed_of("output_names"), output_units = seed_of("output_units"),
+                            vehicle = seed_of("vehicle_name"), order = seed_of("motor_torque_signs"),
+                            airframe = seed_of("Vehicle"), signs = seed_of("slope_signs"),
+                            lower = seed_of("residual_lower"), upper = seed_of("residual_upper"),
+                            mean = seed_of("distance_mean"), triangle_seed = seed_of("distance_inverse_cholesky"),
+                            limit = seed_of("distance_limit"), input = seed_of("input"), output = seed_of("output"),
+                            least = seed_of("envelope_lower"), most = seed_of("envelope_upper"),
+                            golden = seed_of("golden_features"), commands = seed_of("golden_commands"),
+                            weights = seed_of("parameters");
     constexpr SpinPlaces spins = spin_places();
     const std::size_t inputs = numbers_.inputs, sums = numbers_.outputs;
     const Scales<Scalar> scales = numbers_.scales();
@@ -202,7 +184,7 @@ class BlockContents {
       sum += one.hash;
     }
     sum += every_second(names, said_.features, 0) + every_second(units, said_.features, 1);
-    sum += every_second(outputs, output_texts(), 0);
+    sum += every_second(outputs, output_texts(), 0) + every_second(output_units, output_texts(), 1);
     one = {vehicle};
     one.add_text(said_.vehicle_name);
     sum += one.hash;
@@ -296,34 +278,16 @@ class BlockContents {
     if (at == said_.outputs.count) return {};
     return {said_.outputs.first + at + 1, said_.outputs.count - at - 1};
   }
-  std::uint64_t output_units() const noexcept {
-    constexpr std::uint64_t seed = seed_of("output_units");
-    RunTimeHash hash{seed};
-    hash.add_every_second(output_texts(), 1);
-    return hash.hash;
-  }
-  /// The one of all.
-  std::uint64_t output_unit() const noexcept {
-    constexpr std::uint64_t seed = seed_of("output_unit");
-    RunTimeHash hash{seed};
-    const BlockText texts = output_texts();
-    unsigned place = 0;
-    for (std::size_t i = 0; i < texts.count && place < 2; ++i) {
-      if (place == 1) hash.add_word(texts.first[i] == 0 ? 0x100u : texts.first[i]);
-      place += texts.first[i] == 0 ? 1 : 0;
-    }
-    return hash.hash;
-  }
 
   const BlockRecords<Scalar>& said_;
   const BlockNumbers<Scalar>& numbers_;
   const BlockVehicle& vehicle_;
 };
 
-/// The first fault of a block whose records were read and fit its shape. `describes`: a block of version 4.
+/// The first fault of a block whose records were read and fit its shape.
 template <class Scalar>
 StatedNumber fault_of_block(const BlockRecords<Scalar>& said, const BlockNumbers<Scalar>& numbers,
-                            const BlockStructure& structure, const BlockVehicle& vehicle, bool describes) noexcept {
+                            const BlockStructure& structure, const BlockVehicle& vehicle) noexcept {
   const Scales<Scalar> scales = numbers.scales();
   const std::size_t inputs = numbers.inputs, outputs = numbers.outputs;
   const Scalar* features = numbers.golden_features();
@@ -351,10 +315,9 @@ StatedNumber fault_of_block(const BlockRecords<Scalar>& said, const BlockNumbers
       return StatedNumber::residual_bounds;
     }
   }
-  if (!describes) return StatedNumber::none;
   const BlockContents<Scalar> contents(said, numbers, vehicle);
   if (!contents.rounds()) return StatedNumber::unrounded;
-  return contents.is_of(said.contents_hash) ? StatedNumber::none : StatedNumber::contents;
+  return contents.hash() == said.contents_hash ? StatedNumber::none : StatedNumber::contents;
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

@@ -18,7 +18,6 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// A block's records, as far as they are not compared with the shape. As made, none is stated.
 template <class Scalar>
 struct ModelRecords {
-  bool stated = false;  ///< false for a block of version 1: the next five are not said
   CommandMeaning command_meaning = CommandMeaning::thrust;
   Scalar command_lower = Scalar(0);
   Scalar command_upper = Scalar(1);
@@ -72,7 +71,7 @@ struct BlockRecords : ModelRecords<Scalar> {
   StatedFault fault{};                       ///< where take() refuses
 
   constexpr bool said(BlockRecord record) const noexcept { return (seen >> static_cast<unsigned>(record) & 1u) != 0; }
-  /// Says all that a block of version 4 must.
+  /// Says all that a block must.
   constexpr bool describes_itself() const noexcept {
     constexpr BlockRecord must[] = {BlockRecord::commands,   BlockRecord::clock,   BlockRecord::window,
                                     BlockRecord::allocation, BlockRecord::answer,  BlockRecord::features,
@@ -106,7 +105,6 @@ struct BlockRecords : ModelRecords<Scalar> {
           fault = {StatedNumber::command_meaning};
           return Status::block_incompatible;
         }
-        this->stated = true;
         this->command_meaning = static_cast<CommandMeaning>(meaning);
         this->command_lower = range[0];
         this->command_upper = range[1];
@@ -278,15 +276,14 @@ struct RecordReader {
   using Base = typename BaseOf<Outputs>::type;
   using Window = WindowOf<Features>;
 
-  /// As read_records(); `block_incompatible` too where a record is missing that the shape or the version asks for, or
-  /// says another thing than the shape.
-  static Status read(const unsigned char* first, std::size_t available, std::uint32_t version,
-                     BlockRecords<Scalar>& records, std::size_t& size) noexcept {
+  /// As read_records(); `block_incompatible` too where a record is missing or says another thing than the shape.
+  static Status read(const unsigned char* first, std::size_t available, BlockRecords<Scalar>& records,
+                     std::size_t& size) noexcept {
     constexpr std::size_t inputs = std::size_t(Features::size), outputs = std::size_t(OutputMap<Outputs>::size);
     const Status status = read_records(first, available, inputs, outputs, records, size);
     if (status != Status::ok) return status;
-    const bool complete = version < 4 || records.describes_itself();
-    return complete && fits(records) && fits_header(records) ? Status::ok : Status::block_incompatible;
+    return records.describes_itself() && fits(records) && fits_header(records) ? Status::ok
+                                                                               : Status::block_incompatible;
   }
 
  private:
@@ -303,30 +300,23 @@ struct RecordReader {
     constexpr auto columns = column_bytes<Features>();
     constexpr auto base = description_letters<Base>();
     constexpr AllocationMatrix<Scalar> expected = allocation(airframe_value<typename Shape::Vehicle, Scalar>());
-    if (!said.said(BlockRecord::commands) || !said.said(BlockRecord::clock) || !said.said(BlockRecord::window)) {
-      return false;
-    }
-    if (said.allocation == nullptr || (has_base && !said.said(BlockRecord::base))) return false;
+    if (has_base && !said.said(BlockRecord::base)) return false;
     bool fits = said.window_taps == std::uint32_t(Window::taps) && said.causal == std::uint32_t(Window::causal);
     fits &= window_ns == 0 || same_period_ns(said.sample_period_ns, window_ns);
     fits &= said.columns.count == columns.count && same_start(&columns.text[0], said.columns);
     fits &= !said.said(BlockRecord::base) || said.base.is(&base.text[0], base.count);
     fits &= same_allocation<Scalar>(RowMajorAllocation<Scalar>{said.allocation},
                                     RowMajorAllocation<Scalar>{first_of<Scalar>(expected)});
-    if (said.said(BlockRecord::answer)) {
-      constexpr auto answer = description_letters<typename Shape::Network>();
-      fits &= said.answer.is(&answer.text[0], answer.count);
-    }
-    return fits;
+    constexpr auto answer = description_letters<typename Shape::Network>();
+    return fits && said.answer.is(&answer.text[0], answer.count);
   }
 
   /// Where the shape is an exported header: its commands mean the same, as often.
   static bool fits_header(const ModelRecords<Scalar>& records) noexcept {
-    if constexpr (is_model<Shape>) {
-      // constants: worked out by the compiler
-      constexpr std::uint32_t period = nanoseconds(header_period_s<Shape>());
-      constexpr CommandMeaning meaning = header_command_meaning<Shape>();
-      return records.command_meaning == meaning && (period == 0 || same_period_ns(records.sample_period_ns, period));
+    if constexpr (is_detected<RecordsOf, Shape>) {
+      constexpr std::uint32_t period = nanoseconds(Shape::sample_period_s);  // worked out by the compiler
+      return records.command_meaning == Shape::command_meaning &&
+             (period == 0 || same_period_ns(records.sample_period_ns, period));
     }
     return true;
   }

@@ -23,7 +23,7 @@ namespace pinnquad {
 inline constexpr std::string_view hashed_constants[] = {
     // clang-format off
     "format_version", "training_data_hash", "training_rows", "worse_than_mean", "beats_linear_regression", "frame",
-    "feature_names", "feature_units", "output_names", "output_unit", "output_units", "vehicle_name",
+    "feature_names", "feature_units", "output_names", "output_units", "vehicle_name",
     "motor_torque_signs", "Vehicle", "records", "answer", "command_meaning", "command_lower", "command_upper",
     "sample_period_s", "lag_removed_s", "window_taps", "causal", "column_names", "column_units", "allocation", "base",
     "slope_signs", "residual_lower", "residual_upper", "distance_mean", "distance_inverse_cholesky", "distance_limit",
@@ -114,9 +114,6 @@ constexpr std::size_t hashed_place(std::string_view name) noexcept {
 }
 constexpr bool is_hashed(std::string_view name) noexcept { return hashed_place(name) < std::size(hashed_constants); }
 
-template <class M>
-using ContentsHashOf = decltype(std::uint64_t{M::contents_hash});
-
 /// The value that the header's constant must have, from its members as they are.
 template <class M>
 constexpr std::uint64_t contents_hash_of() noexcept {
@@ -125,20 +122,12 @@ constexpr std::uint64_t contents_hash_of() noexcept {
     std::size_t place = hashed_place(first);
     ((sum += constant_hash(hashed_constants[place++], values)), ...);
   };
-  add("format_version", M::format_version, M::training_data_hash);
-  if constexpr (is_detected<TrainingRowsOf, M>) add("training_rows", M::training_rows);
+  add("format_version", M::format_version, M::training_data_hash, M::training_rows);
   if constexpr (is_detected<StatedVerdictOf, M>) add("worse_than_mean", M::worse_than_mean, M::beats_linear_regression);
-  add("frame", M::frame, M::feature_names, M::feature_units, M::output_names);
-  if constexpr (is_detected<OutputUnitsOf, M>) {
-    add("output_units", M::output_units);
-  } else {
-    add("output_unit", M::output_unit);
-  }
-  add("vehicle_name", M::vehicle_name, M::motor_torque_signs, airframe_value<typename M::Vehicle, double>());
-  if constexpr (is_detected<RecordsOf, M>) {
-    add("records", M::records, M::answer, M::command_meaning, M::command_lower, M::command_upper, M::sample_period_s,
-        M::lag_removed_s, M::window_taps, M::causal, M::column_names, M::column_units, M::allocation, M::base);
-  }
+  add("frame", M::frame, M::feature_names, M::feature_units, M::output_names, M::output_units, M::vehicle_name,
+      M::motor_torque_signs, airframe_value<typename M::Vehicle, double>(), M::records, M::answer, M::command_meaning,
+      M::command_lower, M::command_upper, M::sample_period_s, M::lag_removed_s, M::window_taps, M::causal,
+      M::column_names, M::column_units, M::allocation, M::base);
   if constexpr (is_detected<SlopeSignsOf, M>) add("slope_signs", M::slope_signs);
   if constexpr (is_detected<ResidualRangeOf, M>) add("residual_lower", M::residual_lower, M::residual_upper);
   if constexpr (is_detected<DistanceStatisticsOf, M>) {
@@ -149,11 +138,10 @@ constexpr std::uint64_t contents_hash_of() noexcept {
   return sum;
 }
 
-/// True for a header that says no hash, as those of before did, and where the compiler can't read the bits of a
-/// constant.
+/// True where the compiler can't read the bits of a constant.
 template <class M>
 constexpr bool same_contents() noexcept {
-  if constexpr (is_detected<ContentsHashOf, M> && reads_bits_of_constants) {
+  if constexpr (reads_bits_of_constants) {
     return M::contents_hash == contents_hash_of<M>();
   } else {
     return true;

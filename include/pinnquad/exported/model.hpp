@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The contract of an exported model, a struct with static constexpr members that deploy/header_writer.hpp writes. Each
+// The contract of an exported model, a struct with static constexpr members that deploy/header_writer.hpp writes. The
 // format is described here once; what a header says of itself is checked against what the including code's types say.
 #pragma once
 
@@ -20,24 +20,18 @@
 
 namespace pinnquad {
 
-/// Format that this library writes. A header of a newer one does not compile.
-///   1  types Scalar, Network, Features, Outputs, Vehicle; arrays parameters, envelope_lower, envelope_upper,
-///      golden_features, golden_commands; scalers input, output; format_version
-///   2  besides: frame, feature_names, feature_units, output_names, output_unit, vehicle_name, motor_torque_signs,
-///      training_data_hash; optional, of a model that was judged: test_r_squared, linear_regression_r_squared (finite),
-///      worse_than_mean, beats_linear_regression (evaluation/errors.hpp)
-///      Where the outputs have several units, output_units, one per output, in place of output_unit.
-///   3  besides, and with output_units always: records, and what they name (exported/model_records.hpp). A Vehicle
-///      that is none of the library's stands before the model, in the same header. Optional: contents_hash, over all
-///      of it (exported/contents_hash.hpp).
-///   4  as 3; contents_hash always. The block beside the header says the same hash and describes itself
-///      (exported/run_time_model.hpp).
+/// The format of headers and blocks, one number for both: this library writes it and reads no other one.
+/// A header has the types Scalar, Network, Features, Outputs, Vehicle; the arrays parameters, envelope_lower,
+/// envelope_upper, golden_features, golden_commands; the scalers input, output; format_version, frame, feature_names,
+/// feature_units, output_names, output_units, vehicle_name, motor_torque_signs, training_data_hash, training_rows;
+/// records, and what they name (exported/model_records.hpp); contents_hash, over all of it
+/// (exported/contents_hash.hpp). Optional, of a model that was judged: test_r_squared, linear_regression_r_squared
+/// (finite), worse_than_mean, beats_linear_regression (evaluation/errors.hpp). A Vehicle that is none of the library's
+/// stands before the model, in the same header. The block beside the header says the same hash
+/// (exported/model_block.hpp).
 inline constexpr int model_format_version = 4;
 
-/// The oldest format that still flies.
-inline constexpr int oldest_model_format_version = 1;
-
-/// The frames of every feature set, as a header states them from format 2 on.
+/// The frames of every feature set, as a header states them.
 inline constexpr const char* model_frame = "body FRD, world NED";
 
 /// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of
@@ -61,17 +55,17 @@ template <class S>
 inline constexpr bool has_shape = is_detected<ShapeTypes, S>;
 
 template <class M>
-using ModelMembers =
-    std::void_t<ShapeTypes<M>, decltype(M::format_version), decltype(M::parameters), decltype(M::input),
-                decltype(M::output), decltype(M::envelope_lower), decltype(M::envelope_upper),
-                decltype(M::golden_features), decltype(M::golden_commands)>;
-
+using ModelMembers = std::void_t<ShapeTypes<M>, decltype(M::parameters), decltype(M::input), decltype(M::output),
+                                 decltype(M::envelope_lower), decltype(M::envelope_upper), decltype(M::golden_features),
+                                 decltype(M::golden_commands)>;
 template <class M>
-using DescriptionOf = std::void_t<decltype(M::frame), decltype(M::feature_names), decltype(M::feature_units),
-                                  decltype(M::output_names), decltype(M::vehicle_name), decltype(M::motor_torque_signs),
-                                  decltype(std::uint64_t{M::training_data_hash})>;
+using FormatOf = decltype(int{M::format_version});
 template <class M>
-using OutputUnitOf = decltype(M::output_unit);
+using DescriptionOf =
+    std::void_t<FormatOf<M>, decltype(M::frame), decltype(M::feature_names), decltype(M::feature_units),
+                decltype(M::output_names), decltype(M::output_units), decltype(M::vehicle_name),
+                decltype(M::motor_torque_signs), decltype(std::uint64_t{M::training_data_hash}),
+                decltype(int{M::training_rows}), RecordsOf<M>, decltype(std::uint64_t{M::contents_hash})>;
 
 /// All texts are one.
 template <class Texts>
@@ -80,17 +74,6 @@ constexpr bool one_unit(const Texts& texts) noexcept {
     if (!same_values(text, texts[0])) return false;
   }
   return true;
-}
-
-/// The units that a header states are its schema's.
-template <class M>
-constexpr bool same_output_units() noexcept {
-  using Map = OutputMap<typename M::Outputs>;
-  if constexpr (is_detected<OutputUnitsOf, M>) {
-    return same_values(M::output_units, Map::units);
-  } else {
-    return one_unit(Map::units) && same_values(M::output_unit, Map::units[0]);
-  }
 }
 
 /// The first fault of the numbers that every model has.
@@ -128,16 +111,13 @@ constexpr bool header_verdict_is_borne_out() noexcept {
   return true;
 }
 
-/// Compares the words of a header of format 2 or later with its types.
+/// Compares the words of a header with its types.
 template <class M>
 constexpr void require_description() noexcept {
-  constexpr bool described =
-      is_detected<DescriptionOf, M> && (is_detected<OutputUnitsOf, M> || is_detected<OutputUnitOf, M>);
-  static_assert(
-      described,
-      "pinnquad: the model lacks what its format demands: frame, names, units, vehicle, motor order, hash of the "
-      "training data (exported/model.hpp)");
-  if constexpr (described) {
+  static_assert(is_detected<DescriptionOf, M>,
+                "pinnquad: the model lacks what its format demands: frame, names, units, vehicle, motor order, hash of "
+                "the training data, records, contents_hash (exported/model.hpp)");
+  if constexpr (is_detected<DescriptionOf, M>) {
     using Features = typename M::Features;
     using Outputs = typename M::Outputs;
     static_assert(same_values(M::frame, model_frame), "pinnquad: the model was trained in other frames (frame)");
@@ -147,8 +127,8 @@ constexpr void require_description() noexcept {
                   "pinnquad: the model was trained in other units than its feature set now has (feature_units)");
     static_assert(same_values(M::output_names, OutputMap<Outputs>::names),
                   "pinnquad: the model has other outputs than its output schema now has (output_names)");
-    static_assert(same_output_units<M>(),
-                  "pinnquad: the model's outputs have another unit than its output schema (output_unit, output_units)");
+    static_assert(same_values(M::output_units, OutputMap<Outputs>::units),
+                  "pinnquad: the model's outputs have another unit than its output schema (output_units)");
     static_assert(same_values(M::vehicle_name, M::Vehicle::name),
                   "pinnquad: the model was trained for another airframe than its Vehicle (vehicle_name)");
     static_assert(
@@ -171,9 +151,28 @@ constexpr void require_description() noexcept {
     static_assert(header_verdict_is_borne_out<M>(),
                   "pinnquad: the model's verdict is not that of its R^2 (test_r_squared, linear_regression_r_squared, "
                   "worse_than_mean, beats_linear_regression)");
+    require_records<M>();
     static_assert(same_contents<M>(),
                   "pinnquad: the header, or the airframe that it was trained for, was edited since it was exported: "
                   "a number, a name or a text is another (contents_hash); export it again");
+  }
+}
+
+/// The compiler names both formats beside the message.
+template <int found, int expected>
+constexpr bool require_format() noexcept {
+  static_assert(found == expected,
+                "pinnquad: the model's header has the format `found`, and this library reads the format `expected` "
+                "(numbers of require_format, in the lines about this one): train and export again");
+  return true;
+}
+/// True where M says no format: a header must, and is refused for what it lacks.
+template <class M>
+constexpr bool is_of_this_format() noexcept {
+  if constexpr (is_detected<FormatOf, M>) {
+    return M::format_version == model_format_version;
+  } else {
+    return true;
   }
 }
 }  // namespace detail
@@ -233,11 +232,11 @@ constexpr bool require_model() noexcept {
   static_assert(is_model<M> || made_for_shape, "pinnquad: this type is not an exported model (exported/model.hpp)");
   if constexpr (made_for_shape) {
     return require_shape<typename M::Shape>();
-  } else if constexpr (is_model<M> && model_kind<M> == ModelKind::header) {
-    static_assert(M::format_version <= model_format_version,
-                  "pinnquad: the model was exported by a newer pinnquad than this one; update the library");
-    static_assert(M::format_version >= oldest_model_format_version,
-                  "pinnquad: the model's format is older than this library reads; export it again");
+  } else if constexpr (!is_model<M> || model_kind<M> != ModelKind::header) {
+    return is_model<M>;
+  } else if constexpr (!detail::is_of_this_format<M>()) {
+    return detail::require_format<M::format_version, model_format_version>();
+  } else {
     static_assert(require_shape<M>());
     static_assert(M::parameters.size() == static_cast<std::size_t>(M::Network::parameter_count),
                   "pinnquad: the exported parameters do not have the network's length");
@@ -253,14 +252,9 @@ constexpr bool require_model() noexcept {
                       std::tuple_size<typename std::decay_t<decltype(M::golden_commands)>::value_type>::value ==
                           static_cast<std::size_t>(rotor_count),
                   "pinnquad: a golden vector does not have the length of features or commands");
-    if constexpr (M::format_version >= 2) detail::require_description<M>();
-    if constexpr (M::format_version >= 3) detail::require_records<M>();
-    if constexpr (M::format_version >= 4) {
-      static_assert(is_detected<detail::ContentsHashOf, M>,
-                    "pinnquad: the model lacks the hash over all that it says (contents_hash); export it again");
-    }
+    detail::require_description<M>();
+    return true;
   }
-  return is_model<M>;
 }
 
 }  // namespace pinnquad

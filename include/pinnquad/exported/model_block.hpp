@@ -20,19 +20,14 @@ namespace pinnquad {
 /// The first bytes of a block.
 inline constexpr std::array<unsigned char, 8> model_block_magic = {'P', 'I', 'N', 'N', 'Q', 'U', 'A', 'D'};
 
-/// The version that this library writes, the format of its headers: 4 describes itself, 2 has records that need the
-/// shape of the including code, 1 has none; both still open.
-inline constexpr std::uint32_t model_block_version = 4;
-/// The least version that open() reads.
-inline constexpr std::uint32_t oldest_model_block_version = 1;
-
 /// Where a block may begin: at multiples of this many bytes, so that its scalars can be read in place.
 inline constexpr std::size_t model_block_alignment = 8;
 
 /// Byte offsets of the header's fields, and what they hold:
-///   magic, u32 version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754), u32 inputs,
-///   u32 outputs, u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(), u64 training data hash.
-/// From version 2 on the records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow:
+///   magic, u32 model_format_version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754),
+///   u32 inputs, u32 outputs, u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(),
+///   u64 training data hash.
+/// The records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow:
 /// input mean and standard deviation, output mean and standard deviation, envelope lower and upper, golden features,
 /// golden commands, parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before
 /// them.
@@ -71,7 +66,7 @@ enum class BlockRecord : std::uint16_t {
   slope_signs = 8,     ///< 12 x i8: of du_i/d(angular acceleration), rotor by rotor about x, y, z, 0 unproven; optional
   residual_range = 9,  ///< scalars: lower bounds of all outputs, then upper ones; optional
   distance = 10,  ///< scalars: means of all features, lower triangle of L^-1 row by row, limit of the norm; optional
-  // those of version 4, with which a block describes itself (exported/run_time_model.hpp)
+  // with those a block describes itself (exported/run_time_model.hpp)
   answer = 11,    ///< description of the predictor (model/description.hpp)
   features = 12,  ///< name and unit of each feature, every text closed by a 0
   outputs = 13,   ///< description of the output schema, then name and unit of each output, every text closed by a 0
@@ -91,11 +86,6 @@ enum class BlockRecord : std::uint16_t {
 inline constexpr std::uint16_t mandatory_record = 0x8000;
 
 namespace detail {
-
-/// Version 3 was of headers alone.
-PINNQUAD_ALWAYS_INLINE constexpr bool is_block_version(std::uint32_t version) noexcept {
-  return version >= oldest_model_block_version && version <= model_block_version && version != 3;
-}
 
 inline constexpr std::uint32_t block_record_types = 21;
 
@@ -284,19 +274,23 @@ struct ExpectedBlock {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
+inline bool has_magic(const unsigned char* block) noexcept {
+  const unsigned char* magic = first_of<unsigned char>(model_block_magic);
+  bool same = true;
+  for (std::size_t i = 0; i < sizeof model_block_magic; ++i) same &= block[i] == magic[i];
+  return same;
+}
+
 /// The checks of a block that need no scalar and no shape, in this order: place and length (`block_truncated`), magic
-/// and version (`block_incompatible`), length stated (`block_truncated`), checksum (`block_corrupt`).
+/// and format (`block_incompatible`), length stated (`block_truncated`), checksum (`block_corrupt`).
 inline Status check_bytes(const unsigned char* block, std::size_t available) noexcept {
   using Header = ModelBlockHeader;
   if (block == nullptr || reinterpret_cast<std::uintptr_t>(block) % model_block_alignment != 0) {
     return Status::block_truncated;
   }
   if (available < Header::size + Header::checksum_size) return Status::block_truncated;
-  const unsigned char* magic = first_of<unsigned char>(model_block_magic);
-  for (std::size_t i = 0; i < sizeof model_block_magic; ++i) {
-    if (block[i] != magic[i]) return Status::block_incompatible;
-  }
-  if (!is_block_version(read_u32(block + Header::version))) return Status::block_incompatible;
+  if (!has_magic(block)) return Status::block_incompatible;
+  if (read_u32(block + Header::version) != std::uint32_t(model_format_version)) return Status::block_incompatible;
   const std::size_t length = read_u32(block + Header::length);
   if (length > available) return Status::block_truncated;
   if (length < Header::size + Header::checksum_size) return Status::block_corrupt;

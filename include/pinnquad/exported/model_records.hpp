@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The records of a header of format 3, which format 2 has not: each is compared with the model's types. `records` names
+// The records of a header, in which terms it was trained: each is compared with the model's types. `records` names
 // those that a reader must understand; it may ignore any other constant.
 #pragma once
 
@@ -183,17 +183,11 @@ constexpr bool knows_records() noexcept {
 }
 
 template <class M>
-using RecordNamesOf = decltype(M::records);
-template <class M>
 using RecordsOf =
-    std::void_t<decltype(M::answer), decltype(CommandMeaning{M::command_meaning}), decltype(M::command_lower),
-                decltype(M::command_upper), decltype(M::sample_period_s), decltype(M::lag_removed_s),
-                decltype(M::window_taps), decltype(M::causal), decltype(M::column_names), decltype(M::column_units),
-                decltype(M::allocation), decltype(M::base)>;
-template <class M>
-using TrainingRowsOf = decltype(int{M::training_rows});
-template <class M>
-using OutputUnitsOf = decltype(M::output_units);
+    std::void_t<decltype(M::records), decltype(M::answer), decltype(CommandMeaning{M::command_meaning}),
+                decltype(M::command_lower), decltype(M::command_upper), decltype(M::sample_period_s),
+                decltype(M::lag_removed_s), decltype(M::window_taps), decltype(M::causal), decltype(M::column_names),
+                decltype(M::column_units), decltype(M::allocation), decltype(M::base)>;
 template <class M>
 using StatedVerdictOf = std::void_t<decltype(M::worse_than_mean), decltype(M::beats_linear_regression)>;
 
@@ -225,25 +219,6 @@ inline double seconds_of(std::uint32_t nanoseconds) noexcept {
 constexpr bool same_period_ns(std::uint32_t a, std::uint32_t b) noexcept {
   const std::uint32_t difference = a < b ? b - a : a - b;
   return difference <= b / std::uint32_t(1.0 / period_tolerance);
-}
-
-/// Of an exported header. One of format 1 or 2 does not state it: its commands are those of its vehicle's curves.
-template <class M>
-constexpr CommandMeaning header_command_meaning() noexcept {
-  if constexpr (is_detected<RecordsOf, M>) {
-    return M::command_meaning;
-  } else {
-    return command_meaning_of(M::Vehicle::template value<double>());
-  }
-}
-/// Of its rows, 0 if not said; of format 1 or 2, of its window.
-template <class M>
-constexpr double header_period_s() noexcept {
-  if constexpr (is_detected<RecordsOf, M>) {
-    return M::sample_period_s;
-  } else {
-    return WindowOf<typename M::Features>::period_s;
-  }
 }
 
 /// True for four times that are one each; false for NaN.
@@ -343,40 +318,35 @@ constexpr void require_optional_records() noexcept {
   }
 }
 
-/// Compares the records of a header of format 3 with its types.
+/// Compares the records of a header with its types.
 template <class M>
 constexpr void require_records() noexcept {
-  static_assert(is_detected<RecordNamesOf, M> && is_detected<RecordsOf, M>,
-                "pinnquad: the model lacks what format 3 demands: records, answer, commands, clock, window, columns, "
-                "allocation, base (exported/model_records.hpp)");
-  if constexpr (is_detected<RecordNamesOf, M> && is_detected<RecordsOf, M>) {
-    static_assert(knows_records<M>(),
-                  "pinnquad: the model has a record that must be understood and that this pinnquad does not know "
-                  "(records); update the library");
-    using Window = WindowOf<typename M::Features>;
-    static_assert(describes<typename M::Network>(M::answer),
-                  "pinnquad: the model's parameters are of another answer than its Network now is (answer)");
-    static_assert(is_command_range(M::command_lower, M::command_upper),
-                  "pinnquad: the range of the model's commands is none, or beyond -1 to 1: a command is a share of the "
-                  "full one (command_lower, command_upper)");
-    static_assert(in_range<StatedNumber::sample_period_s>(M::sample_period_s) &&
-                      in_range<StatedNumber::lag_removed_s>(M::lag_removed_s),
-                  "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s that it can be: a period "
-                  "is 0 (not said) or 0.00001 s and more, a lag 1 s at most (sample_period_s, lag_removed_s)");
-    static_assert(M::window_taps == Window::taps && M::causal == Window::causal,
-                  "pinnquad: the model has another window than its feature set now has (window_taps, causal)");
-    static_assert(Window::period_s <= 0.0 || same_period(M::sample_period_s, Window::period_s),
-                  "pinnquad: the model's sample period is another than its window's (sample_period_s)");
-    static_assert(
-        same_values(M::column_names, extra_column_names<typename M::Features>) &&
-            same_values(M::column_units, extra_column_units<typename M::Features>),
-        "pinnquad: the model has other extra columns than its feature set now has (column_names, column_units)");
-    static_assert(same_header_allocation<M>(),
-                  "pinnquad: the model was trained for another allocation than its Vehicle now has (allocation)");
-    static_assert(describes<typename BaseOf<typename M::Outputs>::type>(M::base),
-                  "pinnquad: the model's outputs add to another base than its output schema's (base)");
-    require_optional_records<M>();
-  }
+  static_assert(knows_records<M>(),
+                "pinnquad: the model has a record that must be understood and that this pinnquad does not know "
+                "(records); update the library");
+  using Window = WindowOf<typename M::Features>;
+  static_assert(describes<typename M::Network>(M::answer),
+                "pinnquad: the model's parameters are of another answer than its Network now is (answer)");
+  static_assert(is_command_range(M::command_lower, M::command_upper),
+                "pinnquad: the range of the model's commands is none, or beyond -1 to 1: a command is a share of the "
+                "full one (command_lower, command_upper)");
+  static_assert(in_range<StatedNumber::sample_period_s>(M::sample_period_s) &&
+                    in_range<StatedNumber::lag_removed_s>(M::lag_removed_s),
+                "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s that it can be: a period "
+                "is 0 (not said) or 0.00001 s and more, a lag 1 s at most (sample_period_s, lag_removed_s)");
+  static_assert(M::window_taps == Window::taps && M::causal == Window::causal,
+                "pinnquad: the model has another window than its feature set now has (window_taps, causal)");
+  static_assert(Window::period_s <= 0.0 || same_period(M::sample_period_s, Window::period_s),
+                "pinnquad: the model's sample period is another than its window's (sample_period_s)");
+  static_assert(
+      same_values(M::column_names, extra_column_names<typename M::Features>) &&
+          same_values(M::column_units, extra_column_units<typename M::Features>),
+      "pinnquad: the model has other extra columns than its feature set now has (column_names, column_units)");
+  static_assert(same_header_allocation<M>(),
+                "pinnquad: the model was trained for another allocation than its Vehicle now has (allocation)");
+  static_assert(describes<typename BaseOf<typename M::Outputs>::type>(M::base),
+                "pinnquad: the model's outputs add to another base than its output schema's (base)");
+  require_optional_records<M>();
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

@@ -43,7 +43,6 @@ struct ModelScales {
   FeatureVector envelope_upper{};
   std::uint64_t training_data_hash = 0;
   std::uint32_t training_rows = 0;
-  /// Stated by a block of version 2.
   ModelRecords<Scalar> records{};
 };
 
@@ -106,8 +105,8 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
   Rows<rotor_count> golden_commands{};
 
   /// Makes `view` a view of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
-  /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, another version, for
-  /// another shape, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
+  /// `block_truncated`: null, misaligned, or shorter than it says. `block_incompatible`: no block, of another format,
+  /// for another shape, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
   /// not fit their place, no golden vector or one outside the envelope, a value that is NaN or Inf, a deviation that is
   /// not positive, an envelope upside down or out of reach, a time above 4 s, what is said twice and contradicts itself
   /// (exported/model_agreement.hpp), a model of proven structure whose certificate its numbers don't fulfil. `view` is
@@ -121,14 +120,10 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
         {sizeof(Scalar), Layout::inputs, Layout::outputs, Layout::parameter_count, shape_hash<ShapeType>});
     if (checked != Status::ok) return checked;
     const std::size_t whole = detail::read_u32(bytes + Header::length);
-    const std::uint32_t version = detail::read_u32(bytes + Header::version);
     detail::BlockRecords<Scalar> records;
     std::size_t record_bytes = 0;
-    const Status read =
-        version < 2  // has none
-            ? Status::ok
-            : detail::RecordReader<ShapeType>::read(bytes + Header::size, whole - Header::size - Header::checksum_size,
-                                                    version, records, record_bytes);
+    const Status read = detail::RecordReader<ShapeType>::read(
+        bytes + Header::size, whole - Header::size - Header::checksum_size, records, record_bytes);
     if (read != Status::ok) return read;
     const std::uint32_t golden = detail::read_u32(bytes + Header::golden_vectors);
     if (golden == 0 || Layout::length(golden) != whole - record_bytes) return Status::block_corrupt;
@@ -141,7 +136,7 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
                                                Layout::parameter_count,
                                                detail::read_u32(bytes + Header::training_rows),
                                                detail::read_u64(bytes + Header::training_data_hash)};
-    if (!sound(numbers, records, version)) return Status::block_corrupt;
+    if (!sound(numbers, records)) return Status::block_corrupt;
 
     copy(scalars + Layout::input_mean, view.input.mean);
     copy(scalars + Layout::input_deviation, view.input.standard_deviation);
@@ -204,14 +199,13 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
     std::memcpy(&to, from, sizeof to);
   }
 
-  static bool sound(const detail::BlockNumbers<Scalar>& numbers, const detail::BlockRecords<Scalar>& records,
-                    std::uint32_t version) noexcept {
+  static bool sound(const detail::BlockNumbers<Scalar>& numbers, const detail::BlockRecords<Scalar>& records) noexcept {
     constexpr detail::BlockStructure structure = detail::block_structure<Network>();
     constexpr auto allocation = pinnquad::allocation(airframe_value<typename ShapeType::Vehicle, double>());
     constexpr detail::TorqueSigns signs = motor_torque_signs<typename ShapeType::Vehicle>();
     const detail::BlockVehicle vehicle{detail::first_of<double>(allocation), detail::first_of<int>(signs)};
     using detail::StatedNumber;
-    bool sound = detail::fault_of_block(records, numbers, structure, vehicle, version >= 4) == StatedNumber::none;
+    bool sound = detail::fault_of_block(records, numbers, structure, vehicle) == StatedNumber::none;
     if constexpr (has_certificate<ShapeType>) {
       constexpr auto certified =
           detail::certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A model as its block describes it (version 4): any network, feature set, columns and outputs, of no type that the
+// A model as its block describes it: any network, feature set, columns and outputs, of no type that the
 // compiler has seen. It commands what the compiled model commands, to the bit of the portable kernel. The numbers stay
 // in the block, which must neither move nor change; no heap: the caller owns the workspace.
 #pragma once
@@ -34,8 +34,8 @@ class RunTimeModel {
   using Layout = ModelBlockHeader;
 
   /// Makes `model` the model of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
-  /// Statuses as ModelView::open(); `block_incompatible` too for a block that does not describe itself, and for a
-  /// layer, column or schema that this library can't work out. `model` is of no use unless the Status is ok. Weights
+  /// Statuses as ModelView::open(); `block_incompatible` too for a layer, column or schema that this library can't work
+  /// out. `model` is of no use unless the Status is ok. Weights
   /// are not asked: see golden_difference().
   static Status open(const void* block, std::size_t length, RunTimeModel& model, BlockFault& fault) noexcept {
     return model.read(static_cast<const unsigned char*>(block), length, fault);
@@ -138,10 +138,12 @@ class RunTimeModel {
     if (checked == Status::block_corrupt) {
       return refuse(fault, checked, "a model block", "one whose checksum does not hold");
     }
-    if (checked != Status::ok) return refuse(fault, checked, "a model block of version 4", "another version, or none");
-    if (detail::read_u32(block + Layout::version) < model_block_version) {
-      return refuse(fault, Status::block_incompatible, "a model block that describes itself (version 4)",
-                    "an earlier one: write it again from its header (docs/blocks.md)");
+    if (checked != Status::ok) {
+      if (!detail::has_magic(block)) return refuse(fault, checked, "a model block", "another file");
+      static_assert(model_format_version == 4);
+      fault = {"format 4 of a model block (of another: train and export again)", "",
+               static_cast<double>(detail::read_u32(block + Layout::version))};
+      return checked;
     }
     if (detail::read_u32(block + Layout::scalar_bytes) != sizeof(Scalar)) {
       return refuse(fault, Status::block_incompatible, "numbers of the size that is asked for", "others");
@@ -319,7 +321,7 @@ class RunTimeModel {
     const AllocationMatrix<double> own = allocation(airframe_);
     const detail::TorqueSigns signs = motor_torque_signs(airframe_);
     const detail::BlockVehicle vehicle{detail::first_of<double>(own), detail::first_of<int>(signs)};
-    const detail::StatedNumber number = detail::fault_of_block(records_, numbers_, structure, vehicle, true);
+    const detail::StatedNumber number = detail::fault_of_block(records_, numbers_, structure, vehicle);
     if (number == detail::StatedNumber::none) return Status::ok;
     return refuse(fault, Status::block_corrupt, detail::StatedFault{number});
   }

@@ -11,7 +11,6 @@
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
-#include "pinnquad/exported/renamed.hpp"
 
 namespace pinnquad {
 
@@ -51,9 +50,7 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 template <class Trust, class Scalar = float>
 class CommandResidualMonitor {
  public:
-  /// `Trust` by the names of today.
-  using Limits = detail::ResidualTrust<Trust>;
-  static_assert(detail::require_command_residual<Limits>());
+  static_assert(detail::require_command_residual<Trust>());
 
   /// Commands predicted and flown of one instant: those that the rotors follow then, behind their lag as the training
   /// rows have it. `periods`: the number of updates that the two are means of.
@@ -66,13 +63,13 @@ class CommandResidualMonitor {
     }
     error /= Scalar(rotor_count);
     Scalar mean = mean_;
-    for (int i = 0; i < periods; ++i) mean += Scalar(Limits::command_residual_factor) * (error - mean);
+    for (int i = 0; i < periods; ++i) mean += Scalar(Trust::command_residual_factor) * (error - mean);
     // each command by itself, as -ffast-math may lose a NaN in a sum; and the sum, which may overflow
     if (!all_finite(predicted) || !all_finite(flown) || !is_finite(mean)) return Status::not_finite;
     mean_ = mean;
-    if (mean_ > Scalar(Limits::command_residual_limit)) {
+    if (mean_ > Scalar(Trust::command_residual_limit)) {
       trusted_ = false;
-    } else if (mean_ < Scalar(Limits::command_residual_cleared)) {
+    } else if (mean_ < Scalar(Trust::command_residual_cleared)) {
       trusted_ = true;
     }
     return Status::ok;

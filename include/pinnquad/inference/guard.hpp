@@ -113,8 +113,8 @@ class Guard : private detail::Held<typename detail::ArgumentOf<Fallback, detail:
 
  public:
   using FallbackInverse = typename FallenBack::type;
-  /// JointDistance's, by the names of today.
-  using Distribution = detail::DistanceTrust<typename Distributed::type>;
+  /// JointDistance's.
+  using Distribution = typename Distributed::type;
 
   static constexpr bool checks_inputs = count<FiniteInputs> > 0;
   static constexpr bool refuses_outside_envelope = count<TrainingEnvelope> > 0;

@@ -14,7 +14,6 @@
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/instruction_set.hpp"
 #include "pinnquad/exported/model_records.hpp"
-#include "pinnquad/exported/renamed.hpp"
 
 namespace pinnquad {
 

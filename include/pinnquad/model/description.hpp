@@ -38,7 +38,7 @@ template <class T>
 inline constexpr auto description_of = described<T>();
 template <int Value>
 inline constexpr int description_of<Number<Value>> = Value;
-/// By its name of formats 1 and 2: weights on flash keep their identity.
+/// By the name that exported models say: weights on flash keep their identity.
 template <int Size>
 inline constexpr TemplateText<Number<Size>> description_of<InputSize<Size>>{"pinnquad::Inputs"};
 template <int Size>

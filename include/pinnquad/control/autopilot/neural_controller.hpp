@@ -60,7 +60,7 @@ class NeuralController {
     settings_.distance_limit = settings_.innovation_limit = 0;
     if constexpr (trusts) {
       settings_.distance_limit = static_cast<float>(NetworkGuard::Distribution::squared_distance_limit);
-      settings_.innovation_limit = static_cast<float>(CommandResidualMonitor<Trust>::Limits::command_residual_limit);
+      settings_.innovation_limit = static_cast<float>(Trust::command_residual_limit);
     }
   }
   NeuralController(const NeuralController&) = delete;  // slots are pointed to
