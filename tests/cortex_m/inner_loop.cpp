@@ -81,9 +81,6 @@ unsigned char pinnquad_loop_start(const void* block, std::size_t length) {
 }
 
 unsigned char pinnquad_loop_tick(std::uint32_t now_us, const LoopSample* sample, float* commands) {
-#ifdef PLANTED_INSTRUCTIONS
-  for (int i = 0; i < PLANTED_INSTRUCTIONS / 100; ++i) __asm__ volatile(".rept 96\n nop\n .endr");
-#endif
   static_cast<void>(loop->body_rates(now_us, vector(sample->body_rates_rad_s)));
   static_cast<void>(loop->attitude(now_us, quaternion(sample->attitude)));
   static_cast<void>(loop->local(now_us, {vector(sample->position_m), vector(sample->velocity_m_s)}));

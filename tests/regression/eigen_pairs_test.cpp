@@ -63,6 +63,20 @@ TEST_CASE("negative eigenvalues, equal ones, and a matrix that is diagonal") {
   CHECK(eigen_pairs(Eigen::MatrixXd(0, 0)).values.size() == 0);
 }
 
+TEST_CASE(
+    "blocks along the diagonal: each has eigenvectors of its own, one that only its last unknown holds together too") {
+  std::mt19937_64 engine(4);
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(17, 17);
+  a.block(1, 1, 5, 5) = gram(engine, 5, 3);
+  a.block(6, 6, 10, 10) = gram(engine, 10, 10).diagonal().asDiagonal();
+  for (Eigen::Index i = 6; i < 15; ++i) a(i, 15) = a(15, i) = 0.1;
+  const pinnquad::detail::EigenPairs pairs = eigen_pairs(a);
+  CHECK(most(pairs.vectors * pairs.values.asDiagonal() * pairs.vectors.transpose() - a) < 1e-13);
+  CHECK(most(pairs.vectors.transpose() * pairs.vectors - Eigen::MatrixXd::Identity(17, 17)) < 1e-13);
+  for (const Eigen::Index end : {1, 6, 16}) CHECK(most(pairs.vectors.bottomLeftCorner(17 - end, end)) == 0);
+  CHECK((pairs.values[0] == 0 && pairs.values[16] == 0));
+}
+
 TEST_CASE("of all that come closest the one of least norm: Eigen's complete orthogonal decomposition") {
   std::mt19937_64 engine(3);
   for (const Eigen::Index size : {2, 5, 21, 40}) {

@@ -115,27 +115,40 @@ struct EigenPairs {
 };
 
 /// Of a symmetric matrix, by Jacobi's rotations: Eigen's solver is faster when it runs, and takes each translation unit
-/// that fits a ridge four seconds longer to compile, for a case that is rare.
-inline EigenPairs eigen_pairs(Eigen::MatrixXd a) {
+/// that fits a ridge four seconds longer to compile, for a case that is rare. Blocks along the diagonal with nothing
+/// between them, as equations without a common unknown make them, are turned one by one.
+inline EigenPairs eigen_pairs(const Eigen::MatrixXd& a) {
   constexpr int most_sweeps = 60;  // a handful is usual: it converges quadratically
   const Eigen::Index size = a.rows();
-  Eigen::MatrixXd vectors = Eigen::MatrixXd::Identity(size, size);
+  EigenPairs pairs{Eigen::VectorXd(size), Eigen::MatrixXd::Zero(size, size)};
   const double negligible = size > 0 ? std::numeric_limits<double>::epsilon() * a.cwiseAbs().maxCoeff() : 0.0;
-  for (int sweep = 0, turned = 1; sweep < most_sweeps && turned > 0; ++sweep) {
-    turned = 0;
-    for (Eigen::Index p = 0; p < size; ++p) {
-      for (Eigen::Index q = p + 1; q < size; ++q) {
-        if (!(std::abs(a(p, q)) > negligible)) continue;
-        Eigen::JacobiRotation<double> rotation;
-        rotation.makeJacobi(a, p, q);
-        a.applyOnTheLeft(p, q, rotation.adjoint());
-        a.applyOnTheRight(p, q, rotation);
-        vectors.applyOnTheRight(p, q, rotation);
-        ++turned;
+  for (Eigen::Index first = 0, next = 0; first < size; first = next) {
+    next = first + 1;
+    for (Eigen::Index i = first; i < next; ++i) {
+      for (Eigen::Index j = next; j < size; ++j) {
+        if (a(i, j) != 0 || a(j, i) != 0) next = j + 1;
       }
     }
+    const Eigen::Index count = next - first;
+    Eigen::MatrixXd block = a.block(first, first, count, count), vectors = Eigen::MatrixXd::Identity(count, count);
+    for (int sweep = 0, turned = 1; sweep < most_sweeps && turned > 0; ++sweep) {
+      turned = 0;
+      for (Eigen::Index p = 0; p < count; ++p) {
+        for (Eigen::Index q = p + 1; q < count; ++q) {
+          if (!(std::abs(block(p, q)) > negligible)) continue;
+          Eigen::JacobiRotation<double> rotation;
+          rotation.makeJacobi(block, p, q);
+          block.applyOnTheLeft(p, q, rotation.adjoint());
+          block.applyOnTheRight(p, q, rotation);
+          vectors.applyOnTheRight(p, q, rotation);
+          ++turned;
+        }
+      }
+    }
+    pairs.values.segment(first, count) = block.diagonal();
+    pairs.vectors.block(first, first, count, count) = vectors;
   }
-  return {a.diagonal(), vectors};
+  return pairs;
 }
 
 /// X of A X = B, of all that come closest to it the one of least norm: what A does not tell is 0. A: symmetric, no
