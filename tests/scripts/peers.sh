@@ -10,12 +10,12 @@ echo '#include <benchmark/benchmark.h>' | "$compiler" -E -x c++ - >/dev/null 2>&
 rm -rf "$work"
 mkdir -p "$work/peers" "$work/results"
 cp "$root/tests/scripts/peers/plain_eigen.cpp" "$work/peers"
-echo 'set_source_files_properties(${peers} PROPERTIES COMPILE_OPTIONS "${wrong}")' >"$work/peers/peers.cmake"
+echo 'set_source_files_properties(${peers} PROPERTIES COMPILE_OPTIONS -DSECOND_MOMENT=0.999F)' >"$work/peers/peers.cmake"
 
 build() {
   cmake -S "$root" -B "$work/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_CXX_FLAGS_RELEASE='-O1 -DNDEBUG' -DPINNQUAD_BUILD_BENCH=ON -DPINNQUAD_BUILD_TESTS=OFF \
-    -DPINNQUAD_BUILD_EXAMPLES=OFF -DPINNQUAD_BUILD_TOOLS=OFF -DPINNQUAD_BENCH_PEERS="$1" -Dwrong="${2:-}" >"$work/log" 2>&1 &&
+    -DPINNQUAD_BUILD_EXAMPLES=OFF -DPINNQUAD_BUILD_TOOLS=OFF -DPINNQUAD_BENCH_PEERS="$1" >"$work/log" 2>&1 &&
     cmake --build "$work/build" --target bench_peers >>"$work/log" 2>&1
 }
 
@@ -29,9 +29,8 @@ for row in 'prediction, plain_eigen over ours' 'training epoch, plain_eigen over
   'TrainEpoch/plain_eigen' 'TrainEpoch/vanilla'; do
   grep -qE "^\| $row \| [0-9]" <<<"$table" || fail "no row '$row' in: $table"
 done
-for wrong in WRONG_NETWORK:Predict WRONG_TRAINER:TrainEpoch; do
-  build "$work/peers" "-D${wrong%:*}" || fail "${wrong%:*} does not build"
-  if said=$("$work/build/bench/bench_peers" 2>&1); then fail "${wrong%:*} is timed"; fi
+for wrong in network:Predict trainer:TrainEpoch; do
+  if said=$(WRONG=${wrong%:*} "$work/build/bench/bench_peers" 2>&1); then fail "${wrong%:*} is timed"; fi
   [[ $said == "${wrong#*:}/plain_eigen computes something else"* ]] || fail "${wrong%:*}: $said"
 done
 mkdir "$work/none"

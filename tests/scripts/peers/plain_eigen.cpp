@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: MIT
 // A peer as a user writes one: Eq. (4) and its training in plain Eigen, matrices of sizes known at run time alone.
-// WRONG_NETWORK, WRONG_TRAINER: one with a fault that the check before the first timing must find.
+// The environment's WRONG, network or trainer, is a fault that the check before the first timing must find. peers.cmake
+// gives SECOND_MOMENT.
 #include <Eigen/Core>
 #include <cmath>
+#include <cstdlib>
+#include <string_view>
 #include <vector>
 
 #include "peer.hpp"
 
 namespace {
+
+bool wrong(std::string_view what) {
+  static const char* const planted = std::getenv("WRONG");
+  return planted != nullptr && what == planted;
+}
 
 using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -38,9 +46,7 @@ class PlainNetwork {
       h = layer.weight * h + layer.bias;
       if (&layer != &layers_.back()) h = h.cwiseMax(0.0F);
     }
-#if defined(WRONG_NETWORK)
-    h[3] += 1e-3F;
-#endif
+    if (wrong("network")) h[3] += 1e-3F;
     Eigen::Map<Eigen::VectorXf>(y, 4) = h;
   }
 
@@ -101,11 +107,8 @@ class PlainTrainer {
     const float scale = 1.0F / std::sqrt(1.0F - std::pow(0.999F, t));
     const Array gradient = by_loss + 1e-5F * value;
     first = 0.9F * first + 0.1F * gradient;
-#if defined(WRONG_TRAINER)
-    second = 0.99F * second + 0.01F * gradient.cwiseProduct(gradient);
-#else
-    second = 0.999F * second + 0.001F * gradient.cwiseProduct(gradient);
-#endif
+    const float kept = wrong("trainer") ? 0.99F : SECOND_MOMENT;
+    second = kept * second + (1.0F - kept) * gradient.cwiseProduct(gradient);
     value.array() -= rate * first.array() / (second.array().sqrt() * scale + 1e-8F);
   }
 
