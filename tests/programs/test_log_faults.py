@@ -142,26 +142,27 @@ NAMES = "first", "second", "third", "fourth"
 
 @pytest.fixture(scope="module")
 def flights(flown):
-    """The rows of four flights, two minutes each."""
-    return {name: logged(flown(f"d1 --airframe px4_sih --seed {seed} --samples 2400"))
-            for seed, name in enumerate(NAMES, start=11)}
+    """The rows of four flights, by how long they are, in minutes."""
+    return {minutes: {name: logged(flown(f"d1 --airframe px4_sih --seed {seed} --samples {1200 * minutes}"))
+                      for seed, name in enumerate(NAMES, start=11)} for minutes in (1, 2)}
 
 
 @pytest.fixture(scope="module")
 def loaded(flown, tmp_path_factory):
     """A flight with a payload of a fifth of the mass."""
     heavy = replaced(SIH, tmp_path_factory.mktemp("heavy") / "heavy.toml", ("^mass_kg = 1.0", "mass_kg = 1.2"))
-    return logged(flown(f"d1 --airframe {heavy} --seed 21 --samples 2400"))
+    return logged(flown(f"d1 --airframe {heavy} --seed 21 --samples 1200"))
 
 
 @pytest.fixture
 def logs(flights):
-    """logs(plant, names): log.toml, and the four flights as logs/NAME.csv, the fault planted into those."""
+    """logs(plant, names): log.toml, and the four flights as logs/NAME.csv, the fault planted into those. A minute is
+    enough for most faults."""
 
-    def write(plant=None, names=NAMES):
+    def write(plant=None, names=NAMES, minutes=1):
         Path("log.toml").write_text(MAPPING)
         Path("logs").mkdir()
-        for name, rows in flights.items():
+        for name, rows in flights[minutes].items():
             rows = [dict(row) for row in rows]
             if plant and name in names:
                 plant(rows)
@@ -231,7 +232,7 @@ def left_nothing(before):
 @pytest.mark.parametrize("name", FAULTS)
 def test_import(pinnquad, logs, name):
     plant, names, words, code = FAULTS[name]
-    logs(plant, names)
+    logs(plant, names, minutes=2 if name == "radians as degrees" else 1)
     before = listing(".")
     finds(pinnquad(f"import logs {MAPPED} --out dataset", code=code), words)
     if code:
@@ -279,7 +280,7 @@ def test_no_two_flights_that_agree(pinnquad, logs, flown, tmp_path):
     Path("logs/fourth.csv").unlink()
     for name, mass in ("second", 1.2), ("third", 1.45):
         heavy = replaced(SIH, tmp_path / f"{name}.toml", ("^mass_kg = 1.0", f"mass_kg = {mass}"))
-        pinnquad(f"fly d1 --airframe {heavy} --seed 31 --samples 2400 --out flight.csv")
+        pinnquad(f"fly d1 --airframe {heavy} --seed 31 --samples 1200 --out flight.csv")
         written(f"logs/{name}.csv", logged("flight.csv"))
     before = listing(".")
     for command in TRAIN, "identify --out vehicle.toml":
@@ -306,7 +307,7 @@ def test_spins_against_the_motion(pinnquad, logs):
 
 def test_without_an_accelerometer(pinnquad, logs):
     """A negated z then contradicts the commands alone."""
-    logs(scaled(-1, "vd", "z"))
+    logs(scaled(-1, "vd", "z"), minutes=2)
     replaced("log.toml", "log.toml", (r"\[specific_force\]\ncolumns.*\n", ""))
     finds(pinnquad(f"import logs {MAPPED} --out dataset"), ("first", "vdot_bz", "by its slope", "-4."))
     pinnquad.refused(f"{TRAIN} --log logs {MAPPED}", at="logs/first.csv", keyword="is negated")
@@ -321,12 +322,12 @@ def rounded(rows):
     return [{name: round(value, 5) for name, value in row.items()} for row in rows]
 
 
-@pytest.mark.parametrize("change", [lambda rows: rows, shifted, rounded, lambda rows: rows[300:1500]],
+@pytest.mark.parametrize("change", [lambda rows: rows, shifted, rounded, lambda rows: rows[150:750]],
                          ids=["again", "another clock", "rounded", "a part"])
 @pytest.mark.parametrize("command", ["import --out dataset", f"{TRAIN} --log", "identify --out vehicle.toml --log"])
 def test_a_log_twice(pinnquad, logs, flights, change, command):
     logs()
-    written("logs/copy.csv", change(flights["first"]))
+    written("logs/copy.csv", change(flights[1]["first"]))
     before = listing(".")
     pinnquad.refused(f"{command} logs {MAPPED}", keyword="hold the same flight")
     left_nothing(before)
