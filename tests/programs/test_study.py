@@ -14,7 +14,7 @@ from conftest import Program, edited, ended, listing, no_partial_files, replaced
 
 MODELS = "--models 1,7,9,13 --seeds 3"
 OPTIONS = f"{MODELS} --epochs 12 --threads 2"
-LONG = f"{MODELS} --epochs 80 --threads 2"  # enough to be killed before it is over
+LONG = f"{MODELS} --epochs 40 --threads 2"  # enough to be killed before it is over
 TRAININGS = 10
 
 

@@ -58,8 +58,8 @@ def test_refused(pinnquad, dataset, write, logs, words, at, keyword):
     assert listing(".") == before
 
 
-def test_each_flight_in_turn(pinnquad, logs, fly_export):
-    """A table, a report, a header that compiles and agrees, a closed loop."""
+def test_each_flight_in_turn(pinnquad, logs):
+    """A table, a report, a header, a closed loop. programs.log_headers compiles such headers."""
     said = pinnquad(f"{TRAIN} --hold-out-each flight --models constant,linear,ridge --seeds 2 --out each").out
     assert "what the others are compared with" in said
     assert {"results.csv", "report.json", "report.html", "model.hpp", "model.block", "replay.txt"} <= set(listing("each"))
@@ -80,8 +80,6 @@ def test_each_flight_in_turn(pinnquad, logs, fly_export):
     assert constant["adaptive"]["mean_absolute_error"]["mean"] < 0.9 * constant["mean_absolute_error"]["mean"]
     assert "With a bias of the past" in page
     held_out(report_of("each"), page, Path("each/model.hpp").read_text())
-    flown = fly_export("each/model.hpp")("--replay each/replay.txt", code=None)
-    assert re.search("self test .*: ok", flown.out) and ": agrees" in flown.out, flown
 
 
 def held_out(report, page, header):
@@ -181,7 +179,7 @@ def test_recipe(pinnquad, logs):
 def test_interrupted(pinnquad, logs):
     """Ctrl-C keeps the finished fits, and the same command goes on from there."""
     words = f"{TRAIN} --hold-out-each flight --models constant,vanilla --export vanilla --threads 1 --out cut"
-    process = pinnquad.start(f"{words} --seeds 20")
+    process = pinnquad.start(f"{words} --seeds 20 --epochs 60")
     until(lambda: len(list(Path("cut").glob("fits/*.fit"))) >= 8, process)
     done = ended(process)
     assert done.code == 130 and re.search("interrupted; [1-9][0-9]* of 147 fits .* cut/fits", done.err), done
@@ -195,7 +193,7 @@ def test_real_vehicle(pinnquad, recorded, made):
     log = recorded("flight_logs/nanobench_subset_50hz.csv")
     nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
     said = pinnquad(f"train --dataset {nano} --airframe crazyflie_2_1 --hold-out-each trajectory --seeds 1 --out nano "
-                    "--models constant,physics,linear,ridge,ridge_centred").out
+                    "--models constant,ridge,ridge_centred").out
     assert "looking ahead: for planned trajectories only" in said, "no centred model was ranked apart"
     ridge = report_of("nano")["models"]["ridge"]
     assert ridge["adaptive"]["r2"]["mean"] > 0.85 > ridge["r2"]["mean"], "battery, trim: a bias of the past takes them"
@@ -220,12 +218,12 @@ def test_vehicle_of_the_flights(pinnquad, dataset, flown):
     did not fly is contradicted, and stays."""
     dataset("logs", {f"flight{seed}": flown(f"d1 --airframe racer_5_inch --seed {seed} --samples 2000")
                      for seed in (1, 2, 3)})
-    words = "train --dataset logs --hold-out flight2 --models constant,structured --seeds 1"
-    done = pinnquad(f"{words} --out own")
+    words = "train --dataset logs --hold-out flight2 --seeds 1 --models constant"
+    done = pinnquad(f"{words},structured --out own")
     report = report_of("own")
     assert report["vehicle"]["airframe"] == "identified" and report["vehicle"]["flights"] == ["flight1", "flight3"]
     thinner = 0.985  # the air at 157 m over that of the coefficients
-    pinnquad(f"{words} --airframe racer_5_inch --out given")
+    pinnquad(f"{words},ridge --airframe racer_5_inch --out given")
     truth = [effect * thinner for effect in (11.29, 340.0, 304.0, 43.47)]
     assert effects_of("own/model.hpp") == pytest.approx(truth, rel=0.06)
     for axis, number in ("roll", truth[1]), ("pitch", truth[2]), ("yaw", truth[3]):
@@ -241,7 +239,7 @@ def test_vehicle_of_the_flights(pinnquad, dataset, flown):
     assert "using Vehicle = TrainedQuadModelAirframe" in header and "Slopes over the airframe's own in hover" in header
     assert "ASSUMED" not in header
     assert not report_of("given")["vehicle"]["contradicted"]
-    said = pinnquad(f"{words} --airframe px4_sih --out other").err
+    said = pinnquad(f"{words},ridge --airframe px4_sih --out other").err
     assert len(re.findall("contradict --airframe: (the hover|roll|pitch|yaw)", said)) == 4, said
     assert report_of("other")["vehicle"]["airframe"] == "given"
 
@@ -250,7 +248,7 @@ def test_what_identify_refuses_no_header_holds(pinnquad, dataset, flown, slowed)
     """A rotor lag that no quadrotor has: one rule for both, and one line with what to do."""
     names = [f"slow{seed}" for seed in (1, 2, 3)]
     dataset("slow", {name: slowed(flown(f"d1 --airframe crazyflie_2_1 --max-speed 2 --interval 10 --seed {name[-1]} "
-                                        "--samples 6000"), f"{name}.csv") for name in names})
+                                        "--samples 3000"), f"{name}.csv") for name in names})
     refused = pinnquad.refused("identify --dataset slow --airframe crazyflie_2_1", keyword="rotor lag is 0.2", code=1)
     why = refused.lines[0].split("columns u1 to u4: ")[1].split(":")[0]
     done = pinnquad("train --dataset slow --hold-out slow2 --models constant,ridge --seeds 1 --out own")

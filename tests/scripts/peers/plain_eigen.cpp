@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A peer as a user writes one: Eq. (4) and its training in plain Eigen, matrices of sizes known at run time alone.
-// The environment's WRONG, network or trainer: a fault that the check before the first timing must find. peers.cmake gives
-// SECOND_MOMENT.
+// The environment's WRONG, network or trainer, is a fault that the check before the first timing must find. peers.cmake
+// gives SECOND_MOMENT.
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdlib>
