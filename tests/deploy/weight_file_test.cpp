@@ -130,7 +130,7 @@ TEST_CASE("the bytes of a block are fixed") {
   CHECK(begin == expected);
   CHECK(crc32(block.data(), block.size()) == 0x2144df1cu);  // of anything that ends in its own CRC-32
   // of the records up to the last one, which says the version of the library, and of the scalars
-  CHECK(crc32(block.data() + 64, 1312 - 64) == 0x7e1d5bb9u);
+  CHECK(crc32(block.data() + 64, 1312 - 64) == 0x3cbb7127u);
   CHECK(detail::read_u32(block.data() + 1312) == static_cast<std::uint32_t>(BlockRecord::provenance));
   CHECK(crc32(block.data() + 1560, 3020 - 4 - 1560) == 0x2d309b64u);
 }

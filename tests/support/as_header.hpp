@@ -2,11 +2,33 @@
 // Numbers of a test as an exported header: what its writer would say of their types, and the hash over it.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "pinnquad/exported/model.hpp"
 
 namespace pinnquad::test {
+
+/// A description as the writer of a header writes it, spaces among it.
+template <std::size_t Most>
+struct DescriptionWords {
+  char text[Most + 1] = {};
+  std::size_t count = 0;
+  constexpr void add(std::string_view piece) noexcept {
+    for (const char letter : piece) text[count++] = letter;
+  }
+  constexpr void add(int number) noexcept {
+    if (number >= 10) add(number / 10);
+    text[count++] = static_cast<char>('0' + number % 10);
+  }
+};
+template <class T>
+constexpr auto description_words() noexcept {
+  DescriptionWords<pinnquad::detail::description_length<T>()> words;
+  pinnquad::detail::describe<T>(words);
+  return words;
+}
 
 /// `Model` with the hash over what it says.
 template <class Model>
@@ -20,9 +42,9 @@ struct Described : Numbers {
   using Map = OutputMap<typename Numbers::Outputs>;
   using Window = pinnquad::detail::WindowOf<typename Numbers::Features>;
   static constexpr auto airframe = airframe_value<typename Numbers::Vehicle, double>();
-  static constexpr auto answer_letters = pinnquad::detail::description_letters<typename Numbers::Network>();
+  static constexpr auto answer_letters = description_words<typename Numbers::Network>();
   static constexpr auto base_letters =
-      pinnquad::detail::description_letters<typename pinnquad::detail::BaseOf<typename Numbers::Outputs>::type>();
+      description_words<typename pinnquad::detail::BaseOf<typename Numbers::Outputs>::type>();
 
   static constexpr int format_version = model_format_version;
   static constexpr std::uint64_t training_data_hash = 0x0123456789abcdefu;
