@@ -7,10 +7,11 @@ cmake_minimum_required(VERSION 3.22)
 include(CMakePackageConfigHelpers)
 file(REMOVE_RECURSE "${WORK}")
 
-# stand_in(<name> <version> <target>): in WORK/<name>-<version>
+# stand_in(<name> <version> <target> [<what it links>]): in WORK/<name>-<version>
 function(stand_in name version target)
   set(folder "${WORK}/${name}-${version}/share/cmake/${name}")
-  file(WRITE "${folder}/${name}Config.cmake" "add_library(${target} INTERFACE IMPORTED)\n")
+  file(WRITE "${folder}/${name}Config.cmake" "add_library(${target} INTERFACE IMPORTED)\n"
+    "set_target_properties(${target} PROPERTIES INTERFACE_LINK_LIBRARIES \"${ARGN}\")\n")
   write_basic_package_version_file("${folder}/${name}ConfigVersion.cmake"
     VERSION ${version} COMPATIBILITY SameMajorVersion ARCH_INDEPENDENT)
 endfunction()
@@ -54,14 +55,16 @@ foreach(way IN ITEMS source installed)
   configured("${way}, no Eigen" 1 "${needs}Eigen3 3.4 or newer, which was not found" ${from} -B "${WORK}/${way}-none")
 endforeach()
 
-stand_in(ONNX 1.12.0 onnx_proto)
-stand_in(ONNX 1.20.0 ONNX::onnx_proto)
+stand_in(ONNX 1.12.0 onnx_proto protobuf::libprotobuf)
+stand_in(ONNX 1.17.0 ONNX::onnx_proto protobuf::libprotobuf)
+stand_in(ONNX 1.20.0 ONNX::onnx_proto) # Debian's says nothing of protobuf's light library, which it needs
 stand_in(ONNX 9.0.0 ONNX::other)
 file(WRITE "${WORK}/onnx/CMakeLists.txt" "cmake_minimum_required(VERSION 3.22)\nproject(onnx LANGUAGES CXX)\n"
   "add_library(protobuf::libprotobuf INTERFACE IMPORTED)\ninclude(\"${SOURCE_DIR}/cmake/PinnquadPackages.cmake\")\n"
   "pinnquad_find_onnx(onnx)\nmessage(STATUS \"found <\${onnx}>\")\n")
 set(left_out "-- pinnquad: pinnquad convert reads and writes no ONNX ")
-foreach(expected IN ITEMS "1.12.0=<onnx_proto>" "1.20.0=<ONNX::onnx_proto>" "9.0.0=${left_out}.ONNX in [^ ]*9.0.0[^ ]* has no target")
+foreach(expected IN ITEMS "1.12.0=<onnx_proto>" "1.17.0=<ONNX::onnx_proto>"
+    "1.20.0=<ONNX::onnx_proto.protobuf::libprotobuf-lite>" "9.0.0=${left_out}.ONNX in [^ ]*9.0.0[^ ]* has no target")
   string(REGEX MATCH "^([0-9.]+)=(.*)$" expected "${expected}")
   set(words "${CMAKE_MATCH_2}")
   configured("ONNX ${CMAKE_MATCH_1}" 0 "${words}" -S "${WORK}/onnx" -B "${WORK}/onnx-${CMAKE_MATCH_1}"
