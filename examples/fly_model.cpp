@@ -84,7 +84,8 @@ Errors fly_core(const std::vector<char>& block, bool learns) {
     Commands<float> commands{};
     autopilot::StepReport report;
     if (core.step(now_us, commands, report) != autopilot::Reaction::flies) throw std::runtime_error("the core gave up");
-    const Commands<double> u{commands[0], commands[1], commands[2], commands[3]};
+    Commands<double> u{};
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] = double(commands[i]);
     if (vehicle.step(state, u, step_s) != Status::ok) throw std::runtime_error("the flight ended early");
   }
   return errors;
