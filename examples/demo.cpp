@@ -15,8 +15,19 @@
 #include <thread>
 #include <vector>
 
+#include "pinnquad/data/csv.hpp"
+#include "pinnquad/deploy/export_model.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
-#include "pinnquad/pinnquad.hpp"
+#include "pinnquad/evaluation/judgement.hpp"
+#include "pinnquad/evaluation/past_bias.hpp"
+#include "pinnquad/loss/physics_informed.hpp"
+#include "pinnquad/schedule/schedule.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/training/adam.hpp"
+#include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/structured/fit_structured.hpp"
+#include "pinnquad/training/trainer.hpp"
 
 using namespace pinnquad;
 
