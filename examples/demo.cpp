@@ -3,7 +3,6 @@
 // are trained on it, judged on rows that they have not seen, and the best structured one is proven and exported.
 //   demo FOLDER [SEEDS [EPOCHS [SEED]]]     scripts/demo runs it; examples/fly_model.cpp flies what it writes
 #include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -101,15 +100,15 @@ double linearized_error(const RowSet& rows) {
 }
 
 int main(int count, char** arguments) try {
+  const char* expected = "expected FOLDER [SEEDS [EPOCHS [SEED]]]";
+  if (count < 2) throw std::invalid_argument(expected);
   const auto number = [&](int place, int usual, int least) {
     if (count <= place) return usual;
     char* end = nullptr;
     const long value = std::strtol(arguments[place], &end, 10);
-    if (*end != 0 || value < least || value > 100000)
-      throw std::invalid_argument("expected FOLDER [SEEDS [EPOCHS [SEED]]]");
+    if (*end != 0 || value < least || value > 999'999'999) throw std::invalid_argument(expected);
     return static_cast<int>(value);
   };
-  if (count < 2) throw std::invalid_argument("expected FOLDER [SEEDS [EPOCHS [SEED]]]");
   const std::string folder = arguments[1];
   const int seeds = number(2, 5, 1), epochs = number(3, 300, 1);
   const auto seed = static_cast<std::uint64_t>(number(4, 1, 0));

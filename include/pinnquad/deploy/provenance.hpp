@@ -286,7 +286,7 @@ using WordsOf = std::void_t<decltype(M::name), decltype(M::training_data), declt
 template <class M>
 using FiguresOf = std::void_t<decltype(M::test_r_squared), decltype(M::linear_regression_r_squared)>;
 
-/// Of an exported header.
+/// The records of an exported header.
 template <class M>
 WrittenRecords records_of_header() {
   WrittenRecords records = records_of_types<M>();
