@@ -35,6 +35,7 @@ inline void complete(CLI::App& command, const std::string& version) {
   command.get_help_ptr()->description("Print this help and exit");
   command.formatter(std::make_shared<HelpFormatter>());
   refuse_empty_values(command);
+  read_before_required(command);
   command.require_subcommand(0, 1);  // `airframe list check` is a word too many
   for (CLI::App* part : command.get_subcommands({})) {
     part->group("Commands");
@@ -82,6 +83,7 @@ inline std::optional<int> choose_command(CLI::App& program, int argument_count, 
           "options from a file: a table per command, such as [" + program.get_subcommands({}).front()->get_name() +
               "], an entry per option, such as seed = 3; what stands on the command line goes first")
       ->type_name("FILE.toml");
+  read_before_required(program);
   program.allow_extras();
   for (CLI::App* command : program.get_subcommands({})) {
     command->preparse_callback([&name, command](std::size_t /*words*/) { name = command->get_name(); });

@@ -102,11 +102,22 @@ inline void refuse_empty_values(CLI::App& app) {
   }
 }
 
+/// Reads options before it is asked which are missing, so that a wrong value is named, and --config gives what is
+/// required: CLI11 2.6 asks first.
+inline void read_before_required([[maybe_unused]] CLI::App& app) {
+#if CLI11_VERSION_MAJOR > 2 || (CLI11_VERSION_MAJOR == 2 && CLI11_VERSION_MINOR >= 6)
+  for (CLI::Option* option : app.get_options()) {
+    if (option != app.get_help_ptr()) option->callback_priority(CLI::CallbackPriority::PreRequirementsCheckPreHelp);
+  }
+#endif
+}
+
 /// Adds --version and parses. Empty to go on; else the exit code: --help and --version have been printed, or one line
 /// says what is wrong.
 inline std::optional<int> parse_command_line(CLI::App& app, int argument_count, char** arguments) {
   refuse_empty_values(app);
   app.set_version_flag("--version", app.get_name() + " (pinnquad) " + PINNQUAD_VERSION);
+  read_before_required(app);
   try {
     app.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
