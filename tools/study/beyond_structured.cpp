@@ -7,7 +7,7 @@
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/outputs/rigid_body_base.hpp"
-#include "pinnquad/training/structured/residual_fit.hpp"
+#include "pinnquad/training/structured/path_bounded_fit.hpp"
 #include "study/beyond_models.hpp"
 
 namespace study {

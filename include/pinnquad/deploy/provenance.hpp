@@ -20,6 +20,7 @@
 #include "pinnquad/exported/run_time_outputs.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/training/described_predictor.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"
 
 namespace pinnquad {
@@ -70,19 +71,6 @@ struct Provenance {
 };
 
 namespace detail {
-
-/// A description as a text (model/description.hpp).
-struct DescriptionText {
-  std::string text;
-  void add(std::string_view piece) { text += piece; }
-  void add(int number) { text += std::to_string(number); }
-};
-template <class T>
-std::string description_text() {
-  DescriptionText sink;
-  describe<T>(sink);
-  return sink.text;
-}
 
 /// The records of a model, as header and block state them: those of its training, and those that its types say.
 struct WrittenRecords : Provenance {
