@@ -2,7 +2,6 @@
 // A predictor by its description (model/description.hpp) and its parameters: code that asks one is compiled once.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <stdexcept>
@@ -34,12 +33,11 @@ class DescribedPredictor {
  public:
   DescribedPredictor(const std::string& description, std::vector<float> parameters)
       : parameters_(std::move(parameters)) {
-    if (!network_->parse(description) || network_->parameter_count() != static_cast<int>(parameters_.size())) {
+    auto network = std::make_shared<RunTimeNetwork>();
+    if (!network->parse(description) || network->parameter_count() != static_cast<int>(parameters_.size())) {
       throw std::logic_error("structured fit: no predictor of these parameters: " + description);
     }
-    x_.resize(static_cast<std::size_t>(network_->inputs()));
-    y_.resize(static_cast<std::size_t>(network_->outputs()));
-    work_.resize(network_->workspace());
+    network_ = std::move(network);
   }
   /// Inputs of the last layer of its first part.
   int last_width() const {
@@ -52,17 +50,21 @@ class DescribedPredictor {
     }
     return last;
   }
-  /// The outputs of standardised features; they stay until it is asked again.
-  const std::vector<std::array<float, 1>>& operator()(const float* x) {
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i][0] = x[i];
-    network_->forward<float, 1>(parameters_.data(), x_.data(), y_.data(), work_.data());
-    return y_;
+  /// The outputs of standardised features.
+  std::vector<float> operator()(const float* x) const {
+    using Entry = RunTimeNetwork::Values<float, 1>;
+    static_assert(sizeof(Entry) == sizeof(float));
+    const auto outputs = static_cast<std::size_t>(network_->outputs());
+    std::vector<float> y(outputs + network_->workspace());
+    Entry* const made = reinterpret_cast<Entry*>(y.data());
+    network_->forward<float, 1>(parameters_.data(), reinterpret_cast<const Entry*>(x), made, made + outputs);
+    y.resize(outputs);
+    return y;
   }
 
  private:
-  std::unique_ptr<RunTimeNetwork> network_ = std::make_unique<RunTimeNetwork>();
+  std::shared_ptr<const RunTimeNetwork> network_;
   std::vector<float> parameters_;
-  std::vector<std::array<float, 1>> x_, y_, work_;
 };
 
 }  // namespace pinnquad::detail

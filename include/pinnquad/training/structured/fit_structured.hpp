@@ -97,7 +97,8 @@ template <class Features>
 StructuredSet structured_set(const GivenAirframe& airframe) {
   using Setting = Context<Features, GivenAirframe, AxisCommandOutputs>;
   using Residual = detail::StructuredResidual<Features>;
-  using Trained = pinnquad::Mlp<float, InputSize<(residual_inputs<Features> + 15) / 16 * 16>, Hidden<2, 32>, OutputSize<4>, Relu>;
+  using Trained =
+      pinnquad::Mlp<float, InputSize<(residual_inputs<Features> + 15) / 16 * 16>, Hidden<2, 32>, OutputSize<4>, Relu>;
   return {[airframe](const RowSet& training) { return fit_context(make_context<Setting>(training, airframe)); },
           detail::residual_kind<Trained, Residual, MonotonePredictor<Features, Residual>, MonotoneBase<Features>>(
               false, detail::NoProjection{})};

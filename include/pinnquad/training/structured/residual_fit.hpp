@@ -45,15 +45,15 @@ struct ResidualFit {
 namespace detail {
 
 /// Mean absolute error of the commands over standardised rows.
-inline double command_error(const FitContext& context, DescribedPredictor predictor, const FitRows& rows) {
+inline double command_error(const FitContext& context, const DescribedPredictor& predictor, const FitRows& rows) {
   const auto mix = OutputMap<AxisCommandOutputs>::setting(context.airframe);
   double sum = 0;
   for (int row = 0; row < rows.size(); ++row) {
-    const auto& said = predictor(rows.features_of(row));
+    const std::vector<float> said = predictor(rows.features_of(row));
     double difference[4], commands[rotor_count];
     for (std::size_t k = 0; k < 4; ++k) {
-      difference[k] = (static_cast<double>(said[k][0]) - static_cast<double>(rows.outputs_of(row)[k])) *
-                      context.output_deviation[k];
+      difference[k] =
+          (static_cast<double>(said[k]) - static_cast<double>(rows.outputs_of(row)[k])) * context.output_deviation[k];
     }
     AxisCommandOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(difference), mix,
                                  static_cast<double*>(commands));
@@ -96,13 +96,13 @@ inline bool train_residual(const FitContext& context, const ResidualKind& kind, 
 /// Parameters of base and residual, which is bounded to its outputs on these rows: lower bounds, upper bounds, its own.
 inline std::vector<float> base_and_residual(const ResidualKind& kind, std::vector<float> base,
                                             const std::vector<float>& residual, const FitRows& rows) {
-  DescribedPredictor network(kind.network, residual);
+  const DescribedPredictor network(kind.network, residual);
   std::vector<float> lower(AxisCommandOutputs::size), upper(AxisCommandOutputs::size);
   for (int row = 0; row < rows.size(); ++row) {
-    const auto& said = network(rows.features_of(row));
+    const std::vector<float> said = network(rows.features_of(row));
     for (std::size_t k = 0; k < lower.size(); ++k) {
-      lower[k] = row == 0 ? said[k][0] : std::min(lower[k], said[k][0]);
-      upper[k] = row == 0 ? said[k][0] : std::max(upper[k], said[k][0]);
+      lower[k] = row == 0 ? said[k] : std::min(lower[k], said[k]);
+      upper[k] = row == 0 ? said[k] : std::max(upper[k], said[k]);
     }
   }
   for (const auto* part :
