@@ -73,7 +73,7 @@ inline FitRows shown_rows(const FitContext& context, const ResidualKind& kind, F
   return rows;
 }
 
-/// What a base leaves of rows, as the residual is shown it.
+/// The rest that a base leaves of rows, as the residual is shown it.
 inline FitRows left_by(const FitContext& context, const ResidualKind& kind, const AffineMap& map, FitRows rows) {
   take_away(map, rows);
   return shown_rows(context, kind, std::move(rows));
