@@ -18,7 +18,7 @@ using namespace pinnquad;
 using namespace pinnquad::bench;
 
 constexpr double rolling_slope = 0.001;  // command per rad/s^2, of each rotor, with its sign
-using FitContext = Context<InverseFeatures, PaperQuadrotor, AxisCommandOutputs>;
+using Setting = Context<InverseFeatures, PaperQuadrotor, AxisCommandOutputs>;
 
 /// 150 s at 100 Hz: sines about every axis, commands affine in the motion, noise on both.
 Flight noisy_flight(std::size_t rows = 15000) {
@@ -54,11 +54,12 @@ Flight noisy_flight(std::size_t rows = 15000) {
 int main(int argc, char** argv) {
   static const Flight flight = noisy_flight();
   static const RowSet rows(flight, {0, flight.size()});
-  static const FitContext context = make_context<FitContext>(rows);
-  static const MonotoneShape shape = monotone_shape(context);
+  static const Setting context = make_context<Setting>(rows);
+  static const FitContext value = fit_context(context);
+  static const MonotoneShape shape = monotone_shape(value);
   static const AffineMap base = fit_monotone_base(context, rows);
   AffineMap map = base;
-  const MeasuredSlopes found = measure_slopes(shape, detail::instrumented_blocks(context, rows, shape.noisy), {}, map);
+  const MeasuredSlopes found = measure_slopes(shape, detail::instrumented_blocks(value, rows, shape.noisy), {}, map);
   require_close("Fit/instruments", 4 * rolling_slope, found.of[1].slope, 0.4 * rolling_slope);
   benchmark::RegisterBenchmark("Fit/closed_form", [](benchmark::State& state) {
     for (auto _ : state) {
@@ -69,8 +70,7 @@ int main(int argc, char** argv) {
   benchmark::RegisterBenchmark("Fit/instruments", [](benchmark::State& state) {
     for (auto _ : state) {
       AffineMap fitted = base;
-      MeasuredSlopes slopes =
-          measure_slopes(shape, detail::instrumented_blocks(context, rows, shape.noisy), {}, fitted);
+      MeasuredSlopes slopes = measure_slopes(shape, detail::instrumented_blocks(value, rows, shape.noisy), {}, fitted);
       benchmark::DoNotOptimize(&slopes);
     }
   })->Unit(benchmark::kMillisecond);

@@ -11,8 +11,8 @@ using namespace pinnquad;
 
 namespace {
 
-FittedTrust<2> small_trust() {
-  FittedTrust<2> trust;
+FittedTrust small_trust() {
+  FittedTrust trust;
   trust.distribution.mean = {0.5, -2};
   trust.distribution.whitening = {1, 0.25, 0.1};
   trust.squared_distance_limit = 30.5;

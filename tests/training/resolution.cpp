@@ -21,10 +21,9 @@ std::vector<std::array<double, 1>> column(std::initializer_list<double> values) 
 }
 
 ColumnStatistics statistics(const std::vector<std::array<double, 1>>& rows) {
-  const auto each_row = [&](const auto& visit) {
-    for (const auto& row : rows) visit(row);
-  };
-  return pinnquad::detail::column_statistics<1>(each_row, [](std::size_t) { return "m/s"; })[0];
+  return pinnquad::detail::column_statistics({"m/s"}, [&](const pinnquad::detail::RowVisit& visit) {
+    for (const auto& row : rows) visit(row.data());
+  })[0];
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ template <class Answer, class AnyContext>
 std::shared_ptr<const programs::TrainedNetwork> judged(const Answer& answer, const AnyContext& context,
                                                        const pinnquad::RowSet& rows) {
   const auto model = pinnquad::make_trained_model(answer, context, rows);
-  return std::make_shared<programs::BlockNetwork>(model, rows);
+  return std::make_shared<programs::BlockNetwork>(pinnquad::ground_model(model), rows);
 }
 
 /// The paper's network, its last weights.

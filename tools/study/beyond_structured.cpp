@@ -7,7 +7,7 @@
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/outputs/rigid_body_base.hpp"
-#include "pinnquad/training/structured/residual_fit.hpp"
+#include "pinnquad/training/structured/path_bounded_fit.hpp"
 #include "study/beyond_models.hpp"
 
 namespace study {
@@ -34,7 +34,8 @@ BeyondTraining train_structured(const BeyondTask& task, Slopes slopes, const Fit
     for (int k = 0; k < 4; ++k) residual[Bound::lower + k] = residual[Bound::upper + k] = 0;
   }
   const auto model = pinnquad::make_trained_model(answer, context, task.split.train);
-  return {std::make_shared<programs::BlockNetwork>(model, task.split.train), fit.residual_kept, fit.residual_kept};
+  return {std::make_shared<programs::BlockNetwork>(pinnquad::ground_model(model), task.split.train), fit.residual_kept,
+          fit.residual_kept};
 }
 
 template <int Inputs>

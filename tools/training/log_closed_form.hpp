@@ -37,9 +37,8 @@ Context log_context(const FitTask& fit, const pinnquad::RowSet& rows) {
 template <class Answer, class Context>
 std::shared_ptr<const TrainedNetwork> log_model_of(const Answer& answer, const Context& context,
                                                    const pinnquad::RowSet& rows) {
-  const auto model = pinnquad::make_trained_model(answer, context, rows);
-  using Model = std::decay_t<decltype(model)>;
-  return std::make_shared<NetworkOfModel<Model, ExportedAirframe::by_value>>(model, rows);
+  return std::make_shared<ExportedNetwork>(pinnquad::ground_model(pinnquad::make_trained_model(answer, context, rows)),
+                                           rows);
 }
 
 /// `solve(context, rows)` gives the map of standardised features to standardised outputs.

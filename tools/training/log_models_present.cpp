@@ -25,8 +25,8 @@ std::shared_ptr<const TrainedNetwork> fit_physics(const FitTask& fit) {
     using Features = typename decltype(tag)::type;
     return fit_affine<Features>(fit, [](const auto& context, const pinnquad::RowSet& rows) {
       const auto allocation = pinnquad::allocation(context.template airframe<double>());
-      const pinnquad::RegressionSums sums =
-          pinnquad::regression_sums(context, rows, 4, [&](const auto&, const pinnquad::Commands<double>& commands) {
+      const pinnquad::RegressionSums sums = pinnquad::regression_sums(
+          pinnquad::fit_context(context), rows, 4, [&](const double*, const pinnquad::Commands<double>& commands) {
             const std::array<double, 4> wrench = pinnquad::product(allocation, commands);
             return std::vector<double>(wrench.begin(), wrench.end());
           });

@@ -22,7 +22,7 @@ enum class TimeReach { present, causal, centred };
 
 /// Options of `train` for the recipe structured, and for what it exports.
 struct FitSettings {
-  bool library_airframe = false;  ///< see NetworkOfModel
+  bool library_airframe = false;  ///< the program knows it by name: of_library_airframe()
   std::optional<bool> altitude;   ///< is the model shown it? none: where the validation rows gain much
   bool pinned_slopes = false;     ///< to the airframe's in hover; false: learnt
   bool fit_validation = false;    ///< of the structured model: no rows are left to find limits of trust by

@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line/interrupt.hpp"
@@ -68,8 +69,9 @@ std::shared_ptr<const TrainedNetwork> fit_by_parts(const FitTask& task, const Ma
   const auto network = std::make_unique<typename Parts::Network>(
       trained_network<typename Parts::Network>(task, context, loss(), optimizer(), epochs, KeptEpoch::last));
   const auto model = pinnquad::make_trained_model(*network, context, task.training);
-  return std::make_shared<NetworkOfModel<std::decay_t<decltype(model)>>>(model, task.training,
-                                                                         task.settings.library_airframe);
+  auto ground = pinnquad::ground_model(model);
+  if (task.settings.library_airframe) ground = of_library_airframe(std::move(ground));
+  return std::make_shared<ExportedNetwork>(std::move(ground), task.training);
 }
 
 }  // namespace detail

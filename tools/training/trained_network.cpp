@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/decimal.hpp"
@@ -64,6 +65,29 @@ std::optional<pinnquad::Certificate> TrainedNetwork::certificate() const {
 bool TrainedNetwork::is_proven() const { return block() != nullptr && block()->proven_signs().has_value(); }
 
 BlockNetwork::BlockNetwork(const std::vector<unsigned char>& block) : block_("a trained model", block) {}
+
+BlockNetwork::BlockNetwork(const pinnquad::GroundModel<float>& model, const pinnquad::RowSet& training)
+    : BlockNetwork(pinnquad::model_block(model, pinnquad::golden_features(model.asked, training), {})) {}
+
+ExportedNetwork::ExportedNetwork(pinnquad::GroundModel<float> model, const pinnquad::RowSet& training, bool with_trust)
+    : BlockNetwork(model, training), model_(std::move(model)), with_trust_(with_trust) {}
+
+pinnquad::Exported ExportedNetwork::export_to(const pinnquad::Exported::Files& files, const std::string& name,
+                                              const pinnquad::RowSplit& split,
+                                              const pinnquad::Provenance& provenance) const {
+  return pinnquad::export_model(files, name, model_, split, provenance);
+}
+
+pinnquad::GroundModel<float> of_library_airframe(pinnquad::GroundModel<float> model) {
+  with_airframe(std::string(model.written.vehicle_name), [&model](auto tag) {
+    using Vehicle = typename decltype(tag)::type;
+    pinnquad::detail::take_airframe<pinnquad::CommandOutputs>(model.written, Vehicle::name,
+                                                              pinnquad::airframe_value<Vehicle, double>(),
+                                                              pinnquad::airframe_value<Vehicle, float>());
+    model.written.vehicle_type = pinnquad::type_name<Vehicle>();
+  });
+  return model;
+}
 
 Predictions BlockNetwork::predictions(const pinnquad::RowSet& rows) const { return commands(rows, false); }
 

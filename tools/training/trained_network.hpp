@@ -121,10 +121,8 @@ std::shared_ptr<const TrainedNetwork> formula_model(const pinnquad::GivenAirfram
 class BlockNetwork : public TrainedNetwork {
  public:
   explicit BlockNetwork(const std::vector<unsigned char>& block);
-  /// Of a pinnquad::TrainedModel; `training`: what it was trained on.
-  template <class Model>
-  BlockNetwork(const Model& model, const pinnquad::RowSet& training)
-      : BlockNetwork(pinnquad::model_block(model, pinnquad::golden_features(model, training), {})) {}
+  /// `training`: what it was trained on.
+  BlockNetwork(const pinnquad::GroundModel<float>& model, const pinnquad::RowSet& training);
 
   Predictions predictions(const pinnquad::RowSet& rows) const override;
   Predictions guarded_predictions(const pinnquad::RowSet& rows) const override;
@@ -139,52 +137,22 @@ class BlockNetwork : public TrainedNetwork {
   pinnquad::BlockModel block_;
 };
 
-/// How an export says which airframe it is for.
-enum class ExportedAirframe {
-  by_value,  ///< a struct before the model
-  by_name    ///< the type, where it is one of those that the program knows by name
-};
-
-/// Of a model that was trained for an airframe as a value. `library_airframe`: one of those that the program knows by
-/// name. `WithTrust`: its export has limits of trust, where they are asked for.
-template <class Model, ExportedAirframe Exported = ExportedAirframe::by_name, bool WithTrust = false>
-class NetworkOfModel : public BlockNetwork {
+/// A model that is exported. `with_trust`: with limits of trust, where they are asked for.
+class ExportedNetwork : public BlockNetwork {
  public:
-  NetworkOfModel(const Model& model, const pinnquad::RowSet& training, bool library_airframe = false)
-      : BlockNetwork(model, training), model_(model), library_airframe_(library_airframe) {}
+  ExportedNetwork(pinnquad::GroundModel<float> model, const pinnquad::RowSet& training, bool with_trust = false);
 
-  bool has_trust() const override { return WithTrust; }
+  bool has_trust() const override { return with_trust_; }
   pinnquad::Exported export_to(const pinnquad::Exported::Files& files, const std::string& name,
-                               const pinnquad::RowSplit& split, const pinnquad::Provenance& provenance) const override {
-    pinnquad::Exported exported;
-    with_exported([&](const auto& model) {
-      exported = pinnquad::export_model<WithTrust>(files, name, model, split, provenance);
-    });
-    return exported;
-  }
+                               const pinnquad::RowSplit& split, const pinnquad::Provenance& provenance) const override;
 
  private:
-  /// Calls `use` with the model of the airframe's own type, or of the value.
-  template <class Use>
-  void with_exported(const Use& use) const {
-    if (!library_airframe_ || Exported == ExportedAirframe::by_value) return use(model_);
-    if constexpr (Exported == ExportedAirframe::by_name) {
-      with_airframe(model_.airframe_name(), [&](auto tag) {
-        using Context = pinnquad::Context<typename Model::Features, typename decltype(tag)::type>;
-        pinnquad::TrainedModel<typename Model::Network, Context> named;
-        named.network = model_.network;
-        named.input = model_.input;
-        named.output = model_.output;
-        named.envelope_lower = model_.envelope_lower;
-        named.envelope_upper = model_.envelope_upper;
-        use(named);
-      });
-    }
-  }
-
-  Model model_;
-  bool library_airframe_;
+  pinnquad::GroundModel<float> model_;
+  bool with_trust_;
 };
+
+/// The model, whose airframe is one of those that the program knows by name: its header names the type.
+pinnquad::GroundModel<float> of_library_airframe(pinnquad::GroundModel<float> model);
 
 /// Rows as the flight side is asked them, and what the model predicts: a line of counts, then a row of numbers per
 /// sample: v_dot (3), omega_dot (3), v (3), omega (3), attitude (w, x, y, z), the altitude if the model asks for it,

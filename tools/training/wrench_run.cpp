@@ -120,7 +120,7 @@ int programs::train_wrench(const TrainOptions& options) {
                                      {"validation_r_squared", by_component(validated.r_squared)}})
                          .dump(1, ' ', false, nlohmann::json::error_handler_t::replace)
                   << '\n';
-  export_model<false>(Exported::Files{files[0], files[1], ""}, options.model_name, best, split, from);
+  export_model(Exported::Files{files[0], files[1], ""}, options.model_name, best, split, from);
   report.commit();
   for (const std::string& file : files) std::printf("  %s\n", printable(file).c_str());
   return 0;

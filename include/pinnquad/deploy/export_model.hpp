@@ -44,35 +44,30 @@ inline Provenance provenance_of(const Dataset& flights, const RowSplit& split, s
 
 /// Writes `struct <name>` and, to be included after it, `struct <name>Trust`. Golden vectors are of the training rows.
 /// Validation rows that are too few for limits of trust are no error: then the trust file of an earlier export is
-/// removed. Throws what write_model() and AtomicFile throw; no file has changed then. `WithTrust` false: limits are not
-/// compiled.
-template <bool WithTrust = true, class NetworkType, class ContextType>
-Exported export_model(const Exported::Files& files, const std::string& name,
-                      const TrainedModel<NetworkType, ContextType>& model, const RowSplit& split,
-                      Provenance provenance) {
-  using Model = TrainedModel<NetworkType, ContextType>;
-  if constexpr (is_windowed<typename Model::Features>) provenance.sample_period_s = 0;  // a window has its own
+/// removed. Throws what write_model() and AtomicFile throw; no file has changed then.
+template <class Scalar>
+Exported export_model(const Exported::Files& files, const std::string& name, const GroundModel<Scalar>& model,
+                      const RowSplit& split, Provenance provenance) {
+  if (model.window_s > 0) provenance.sample_period_s = 0;  // a window has its own
   Exported result;
-  if constexpr (has_certificate<Model>) result.certificate = certificate_of_trained(model);
-  const auto golden = golden_features(model, split.train);
+  result.certificate = model.written.certificate;
+  const auto golden = golden_features(model.asked, split.train);
   AtomicFile header(files.header);
   write_model(header.stream(), name, model, golden, provenance);
   std::optional<AtomicFile> block, trust;
-  std::optional<FittedTrust<Model::Features::size>> limits;
-  if constexpr (WithTrust) {
-    if (!files.trust.empty()) {
-      try {
-        limits = fit_trust(model, split.train, split.validation);
-        trust.emplace(files.trust);
-        trust->stream() << "// To be included after the header of " << name << ". Limits by " << split.validation.size()
-                        << " validation rows: guesses where those are\n// less than 30 minutes of flight "
-                           "(docs/trust.md).\n#pragma once\n\n#include <array>\n#include <cstdint>\n";
-        write_trust<typename Model::Scalar>(trust->stream(), name, *limits, provenance.training_data_hash);
-      } catch (const std::invalid_argument& refused) {
-        result.no_trust_because = refused.what();
-        trust.reset();
-        limits.reset();
-      }
+  std::optional<FittedTrust> limits;
+  if (!files.trust.empty()) {
+    try {
+      limits = fit_trust(model.asked, split.train, split.validation);
+      trust.emplace(files.trust);
+      trust->stream() << "// To be included after the header of " << name << ". Limits by " << split.validation.size()
+                      << " validation rows: guesses where those are\n// less than 30 minutes of flight "
+                         "(docs/trust.md).\n#pragma once\n\n#include <array>\n#include <cstdint>\n";
+      write_trust<Scalar>(trust->stream(), name, *limits, provenance.training_data_hash);
+    } catch (const std::invalid_argument& refused) {
+      result.no_trust_because = refused.what();
+      trust.reset();
+      limits.reset();
     }
   }
   if (!files.block.empty()) {
@@ -91,6 +86,12 @@ Exported export_model(const Exported::Files& files, const std::string& name,
   std::error_code ignored;
   if (!result.no_trust_because.empty()) std::filesystem::remove(files.trust, ignored);
   return result;
+}
+template <class NetworkType, class ContextType>
+Exported export_model(const Exported::Files& files, const std::string& name,
+                      const TrainedModel<NetworkType, ContextType>& model, const RowSplit& split,
+                      const Provenance& provenance) {
+  return export_model(files, name, ground_model(model), split, provenance);
 }
 
 /// The same of the model that a fit chose.

@@ -4,75 +4,64 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/training/asked_model.hpp"
 
 namespace pinnquad {
 namespace detail {
 
 /// Feature vectors inside the envelope at which a bounded residual would leave its bounds. Deterministic: no number is
 /// drawn.
-template <class Model>
 class BoundSearch {
  public:
-  using FeatureVector = typename Model::FeatureVector;
-  using Structure = StatedStructure<typename Model::Network>;
-  static constexpr std::size_t bounds = 2 * std::size_t(Model::Network::outputs);  ///< lower ones, then upper ones
+  using Vector = std::vector<double>;
 
-  explicit BoundSearch(const Model& model) : model_(model) {}
+  explicit BoundSearch(const AskedModel& model) : model_(model), outputs_(model.residual_lower.size()) {}
 
   /// One vector for each bound that none before it passes, as far as one is found; `most` of them.
-  std::vector<FeatureVector> beyond(const std::vector<FeatureVector>& rows, std::size_t most) const {
-    std::vector<FeatureVector> found;
-    std::array<bool, bounds> missing{};
-    for (std::size_t bound = 0; bound < bounds; ++bound) missing[bound] = has_range(bound);
-    for (std::size_t bound = 0; bound < bounds && found.size() < most; ++bound) {
+  std::vector<Vector> beyond(const std::vector<Vector>& rows, std::size_t most) const {
+    std::vector<Vector> found;
+    std::vector<bool> missing(2 * outputs_);  // lower ones, then upper ones
+    for (std::size_t bound = 0; bound < missing.size(); ++bound) missing[bound] = has_range(bound);
+    for (std::size_t bound = 0; bound < missing.size() && found.size() < most; ++bound) {
       if (!missing[bound]) continue;
-      const FeatureVector far = climbed(nearest(rows, bound), bound, missing);
-      const std::array<double, bounds> by = passed(far);
+      const Vector far = climbed(nearest(rows, bound), bound, missing);
+      const Vector by = passed(far);
       if (by[bound] < enough) continue;
       found.push_back(far);
-      for (std::size_t k = 0; k < bounds; ++k) missing[k] = missing[k] && by[k] < enough;
+      for (std::size_t k = 0; k < missing.size(); ++k) missing[k] = missing[k] && by[k] < enough;
     }
     return found;
   }
 
  private:
-  using Scalar = typename Model::Scalar;
-  static constexpr std::size_t outputs = std::size_t(Model::Network::outputs);
   static constexpr double enough = 0.05;  ///< of the residual's range
 
-  const Scalar* parameters() const { return model_.network.parameters.data() + Structure::at; }
   bool has_range(std::size_t bound) const {
-    return parameters()[outputs + bound % outputs] > parameters()[bound % outputs];
+    return model_.residual_upper[bound % outputs_] > model_.residual_lower[bound % outputs_];
   }
 
   /// How far beyond each bound the residual is without it, in shares of its range.
-  std::array<double, bounds> passed(const FeatureVector& x) const {
-    FeatureVector z{};
-    model_.input.standardise(x.data(), z.data());
-    Scalar y[outputs] = {};
-    Structure::Inner::forward(parameters() + bounds, z.data(), y);
-    std::array<double, bounds> by{};
-    for (std::size_t k = 0; k < outputs; ++k) {
-      const auto lower = static_cast<double>(parameters()[k]), upper = static_cast<double>(parameters()[outputs + k]);
-      by[k] = (lower - static_cast<double>(y[k])) / (upper - lower);
-      by[outputs + k] = (static_cast<double>(y[k]) - upper) / (upper - lower);
+  Vector passed(const Vector& x) const {
+    Vector y(outputs_), by(2 * outputs_);
+    model_.residual(x.data(), y.data());
+    for (std::size_t k = 0; k < outputs_; ++k) {
+      const double lower = model_.residual_lower[k], upper = model_.residual_upper[k];
+      by[k] = (lower - y[k]) / (upper - lower);
+      by[outputs_ + k] = (y[k] - upper) / (upper - lower);
     }
     return by;
   }
 
   /// The row at which the residual is nearest to the bound.
-  FeatureVector nearest(const std::vector<FeatureVector>& rows, std::size_t bound) const {
-    const FeatureVector* best = &rows.front();
+  Vector nearest(const std::vector<Vector>& rows, std::size_t bound) const {
+    const Vector* best = &rows.front();
     double most = passed(*best)[bound];
-    for (const FeatureVector& row : rows) {
+    for (const Vector& row : rows) {
       const double by = passed(row)[bound];
       if (by > most) {
         most = by;
@@ -83,26 +72,26 @@ class BoundSearch {
   }
 
   /// The search climbs for the bound first, then for the others that no vector passes.
-  double height(const FeatureVector& x, std::size_t bound, const std::array<bool, bounds>& missing) const {
-    const std::array<double, bounds> by = passed(x);
+  double height(const Vector& x, std::size_t bound, const std::vector<bool>& missing) const {
+    const Vector by = passed(x);
     double sum = 0;
-    for (std::size_t k = 0; k < bounds; ++k) {
-      if (missing[k]) sum += (k == bound ? double(bounds) : 1.0) * std::min(by[k], enough);
+    for (std::size_t k = 0; k < by.size(); ++k) {
+      if (missing[k]) sum += (k == bound ? static_cast<double>(by.size()) : 1.0) * std::min(by[k], enough);
     }
     return sum;
   }
 
   /// From there, one feature after the other to a border of the envelope, the one that gains most first; then back
   /// along the line, as far as no bound that it passes is lost.
-  FeatureVector climbed(const FeatureVector& start, std::size_t bound, const std::array<bool, bounds>& missing) const {
-    FeatureVector x = start;
+  Vector climbed(const Vector& start, std::size_t bound, const std::vector<bool>& missing) const {
+    Vector x = start;
     double highest = height(x, bound, missing);
     for (std::size_t step = 0; step < x.size(); ++step) {
-      FeatureVector best = x;
+      Vector best = x;
       const double before = highest;
       for (std::size_t i = 0; i < x.size(); ++i) {
-        for (const Scalar border : {model_.envelope_lower[i], model_.envelope_upper[i]}) {
-          FeatureVector moved = x;
+        for (const double border : {model_.envelope_lower[i], model_.envelope_upper[i]}) {
+          Vector moved = x;
           moved[i] = border;
           const double reached = height(moved, bound, missing);
           if (reached > highest) {
@@ -114,9 +103,9 @@ class BoundSearch {
       if (!(highest > before)) break;
       x = best;
     }
-    const std::array<double, bounds> by = passed(x);
-    const auto keeps = [&](const std::array<double, bounds>& other) {
-      for (std::size_t k = 0; k < bounds; ++k) {
+    const Vector by = passed(x);
+    const auto keeps = [&](const Vector& other) {
+      for (std::size_t k = 0; k < by.size(); ++k) {
         if (missing[k] && by[k] >= enough && other[k] < enough) return false;
       }
       return true;
@@ -129,17 +118,18 @@ class BoundSearch {
     return between(start, x, far);
   }
 
-  FeatureVector between(const FeatureVector& from, const FeatureVector& to, double share) const {
-    FeatureVector x = from;
+  Vector between(const Vector& from, const Vector& to, double share) const {
+    Vector x = from;
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const double moved =
-          static_cast<double>(from[i]) + share * (static_cast<double>(to[i]) - static_cast<double>(from[i]));
-      x[i] = std::clamp(static_cast<Scalar>(moved), model_.envelope_lower[i], model_.envelope_upper[i]);
+      const double moved = from[i] + share * (to[i] - from[i]);
+      const double own = model_.is_double ? moved : static_cast<double>(static_cast<float>(moved));
+      x[i] = std::clamp(own, model_.envelope_lower[i], model_.envelope_upper[i]);
     }
     return x;
   }
 
-  const Model& model_;
+  const AskedModel& model_;
+  std::size_t outputs_;
 };
 
 }  // namespace detail
@@ -147,22 +137,26 @@ class BoundSearch {
 /// `count` feature vectors, inside the envelope of a model that was trained on these rows. Of a model with a bounded
 /// residual first those at which it is clipped, all but two at most; then rows, the first and the last among them, the
 /// rest evenly between. Throws std::invalid_argument where no row has features, or for fewer than two.
-template <class Model>
-std::vector<typename Model::FeatureVector> golden_features(const Model& model, const RowSet& training,
-                                                           std::size_t count = 8) {
-  std::vector<typename Model::FeatureVector> all, golden;
-  each_features<typename Model::Features, typename Model::Scalar>(
-      training, [&all](const Flight&, std::size_t, const auto& x) { all.push_back(x); });
+inline std::vector<std::vector<double>> golden_features(const AskedModel& model, const RowSet& training,
+                                                        std::size_t count = 8) {
+  std::vector<std::vector<double>> all, golden;
+  model.each_row(training, [&](const Flight&, std::size_t, const double* x) { all.emplace_back(x, x + model.size()); });
   if (all.empty()) throw std::invalid_argument("golden_features: expected rows that have features, found none");
   if (count < 2)
     throw std::invalid_argument("golden_features: expected a count from 2, found " + std::to_string(count));
-  if constexpr (detail::has_bounded_residual<typename Model::Network>) {
-    golden = detail::BoundSearch<Model>(model).beyond(all, count - 2);
-  } else {
-    static_cast<void>(model);
-  }
+  if (model.residual) golden = detail::BoundSearch(model).beyond(all, count - 2);
   const std::size_t rows = count - golden.size();
   for (std::size_t i = 0; i < rows; ++i) golden.push_back(all[i * (all.size() - 1) / (rows - 1)]);
+  return golden;
+}
+/// The same of a model of types.
+template <class Model>
+std::vector<typename Model::FeatureVector> golden_features(const Model& model, const RowSet& training,
+                                                           std::size_t count = 8) {
+  std::vector<typename Model::FeatureVector> golden;
+  for (const std::vector<double>& x : golden_features(asked_with_residual(model), training, count)) {
+    golden.push_back(detail::as_features<typename Model::FeatureVector>(x.data()));
+  }
   return golden;
 }
 

@@ -248,13 +248,18 @@ std::string header_text(const WrittenModel<Scalar>& model) {
 /// its head. Throws std::invalid_argument, and writes nothing, for a name that no struct may have, for no golden
 /// vector, for one outside the envelope, for a number that is not finite, for a provenance that no model has, and for a
 /// model of proven structure that has no certificate.
+template <class Scalar>
+void write_model(std::ostream& stream, const std::string& struct_name, const GroundModel<Scalar>& model,
+                 const std::vector<std::vector<double>>& golden, const Provenance& provenance) {
+  detail::require_identifier(struct_name);
+  stream << detail::header_text(detail::written_model(model, golden, provenance, struct_name));
+}
 template <class NetworkType, class ContextType>
 void write_model(std::ostream& stream, const std::string& struct_name,
                  const TrainedModel<NetworkType, ContextType>& model,
                  const std::vector<typename TrainedModel<NetworkType, ContextType>::FeatureVector>& golden,
                  const Provenance& provenance) {
-  detail::require_identifier(struct_name);
-  stream << detail::header_text(detail::written_model(model, golden, provenance, struct_name));
+  write_model(stream, struct_name, detail::ground_without_rows(model), detail::as_numbers(golden), provenance);
 }
 
 /// The same into a file that appears whole or not at all.

@@ -20,6 +20,7 @@
 #include "pinnquad/exported/run_time_outputs.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/training/described_predictor.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"
 
 namespace pinnquad {
@@ -70,19 +71,6 @@ struct Provenance {
 };
 
 namespace detail {
-
-/// A description as a text (model/description.hpp).
-struct DescriptionText {
-  std::string text;
-  void add(std::string_view piece) { text += piece; }
-  void add(int number) { text += std::to_string(number); }
-};
-template <class T>
-std::string description_text() {
-  DescriptionText sink;
-  describe<T>(sink);
-  return sink.text;
-}
 
 /// The records of a model, as header and block state them: those of its training, and those that its types say.
 struct WrittenRecords : Provenance {
@@ -186,10 +174,9 @@ WrittenRecords records_of_types() {
   return records;
 }
 
-/// Throws std::invalid_argument for a range that is none, a time beyond 0 to 4 s, another period than the window's, and
-/// for statistics of another length than the model's, or that are not finite.
-template <class Features, class Outputs>
-void require_provenance(const Provenance& from) {
+/// Throws std::invalid_argument for a range that is none, a time beyond 0 to 4 s, another period than the window's
+/// (`window_s`; 0 without one), and for statistics of another length than the model's, or that are not finite.
+inline void require_provenance(const Provenance& from, double window_s, std::size_t inputs, std::size_t outputs) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument("export: " + what); };
   if (!is_command_range(from.command_lower, from.command_upper)) {
     refuse("the range of the commands is none, or beyond -1 to 1");
@@ -198,12 +185,10 @@ void require_provenance(const Provenance& from) {
     refuse("the sample period is not one of 0 to 4 s, or below 0.00001 s");
   }
   if (!in_range<StatedNumber::lag_removed_s>(from.lag_removed_s)) refuse("the lag removed is not one of 0 to 1 s");
-  constexpr double window_s = WindowOf<Features>::period_s;
   if (window_s > 0 && from.sample_period_s > 0 && !same_period(from.sample_period_s, window_s)) {
     refuse("the sample period is not that of the features' window");
   }
   if (const auto& range = from.residual_range) {
-    constexpr auto outputs = static_cast<std::size_t>(OutputMap<Outputs>::size);
     if (range->lower.size() != outputs || range->upper.size() != outputs) {
       refuse("the range of a residual is not one of bounds for every output");
     }
@@ -222,9 +207,8 @@ void require_provenance(const Provenance& from) {
                 : "a time constant of the bias is not one of 0 to 60 s");
   }
   if (const auto& distance = from.distance) {
-    constexpr auto size = static_cast<std::size_t>(Features::size);
-    if (distance->mean.size() != size || distance->inverse_cholesky.size() != triangle(size)) {
-      refuse("the statistics of a distance are not those of " + std::to_string(size) + " features");
+    if (distance->mean.size() != inputs || distance->inverse_cholesky.size() != triangle(inputs)) {
+      refuse("the statistics of a distance are not those of " + std::to_string(inputs) + " features");
     }
     require_finite(distance->mean, "the means of the distance");
     require_finite(distance->inverse_cholesky, "the triangle of the distance");
@@ -234,42 +218,39 @@ void require_provenance(const Provenance& from) {
   }
 }
 
-/// Of a trained model; what is proven of one with a certificate is among them. Throws std::invalid_argument where
-/// require_provenance() does, and where nothing is proven of a model that has the structure.
-template <class Model>
-WrittenRecords records_of_training(const Model& model, const Provenance& from) {
-  WrittenRecords records = records_of_types<Model>();
-  static_cast<Provenance&>(records) = from;
-  const Airframe<double> airframe = model.template airframe<double>();
-  if constexpr (has_certificate<Model>) {
-    const Certificate certificate = certificate_of_trained(model);
-    if (!certificate.proven()) {
-      throw std::invalid_argument("export: " + std::string(certificate.bounded
-                                                               ? "a slope of the model is not above its floor"
-                                                               : "the bounds of the residual are none"));
-    }
-    records.slope_signs = motor_torque_signs(airframe);
-    records.certificate = certificate;
-    Provenance::ResidualRange range;
-    using Scalar = typename Model::Scalar;
-    const auto outward = [](double bound, double to) {  // as the model's Scalar holds it
-      const auto rounded = static_cast<Scalar>(bound);
-      return std::abs(bound) > 0 ? static_cast<double>(std::nextafter(rounded, static_cast<Scalar>(to))) : 0.0;
-    };
-    for (const double bound : certificate.residual_lower) range.lower.push_back(outward(bound, -1e30));
-    for (const double bound : certificate.residual_upper) range.upper.push_back(outward(bound, 1e30));
-    records.residual_range = range;
+/// States the proof of records.certificate: signs and range of the residual, outward as the model's Scalar holds it.
+/// Throws std::invalid_argument where nothing is proven.
+template <class Scalar>
+void state_proof(WrittenRecords& records) {
+  const Certificate& certificate = *records.certificate;
+  if (!certificate.proven()) {
+    throw std::invalid_argument("export: " + std::string(certificate.bounded
+                                                             ? "a slope of the model is not above its floor"
+                                                             : "the bounds of the residual are none"));
   }
-  require_provenance<typename Model::Features, typename Model::Outputs>(records);
-  if (!from.command_meaning) records.command_meaning = command_meaning_of(airframe);
-  constexpr double window_s = WindowOf<typename Model::Features>::period_s;
+  records.slope_signs = motor_torque_signs(records.airframe);
+  Provenance::ResidualRange range;
+  const auto outward = [](double bound, double to) {
+    const auto rounded = static_cast<Scalar>(bound);
+    return std::abs(bound) > 0 ? static_cast<double>(std::nextafter(rounded, static_cast<Scalar>(to))) : 0.0;
+  };
+  for (const double bound : certificate.residual_lower) range.lower.push_back(outward(bound, -1e30));
+  for (const double bound : certificate.residual_upper) range.upper.push_back(outward(bound, 1e30));
+  records.residual_range = range;
+}
+
+/// Adds the facts of a training to the records of a model; what is proven of one with a certificate is among them.
+/// Throws std::invalid_argument where require_provenance() and state_proof() do.
+template <class Scalar>
+void take_provenance(WrittenRecords& records, const Provenance& from, double window_s) {
+  static_cast<Provenance&>(records) = from;
+  if (records.certificate) state_proof<Scalar>(records);
+  require_provenance(records, window_s, records.feature_texts.size() / 2, records.output_texts.size() / 2);
+  if (!from.command_meaning) records.command_meaning = command_meaning_of(records.airframe);
   if (window_s > 0) records.sample_period_s = window_s;
-  take_airframe<typename Model::Outputs>(records, printable(model.airframe_name()), airframe,
-                                         model.template airframe<typename Model::Scalar>());
   if (from.verdict) {
     records.judged = judged_bits(from.verdict->worse_than_mean(), from.verdict->beats_linear_regression());
   }
-  return records;
 }
 
 /// The same numbers in another type.

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/io/decimal.hpp"
@@ -19,13 +20,13 @@ namespace pinnquad {
 /// Writes `struct <model_name>Trust`, to follow what write_model() wrote under that name: the header's contract is
 /// unchanged, and a header without it is whole. `Scalar`: the model's. Throws std::invalid_argument, and writes
 /// nothing, for a name that no struct may have and a number that is not finite as the model's Scalar has it.
-template <class Scalar, int Size>
-void write_trust(std::ostream& stream, const std::string& model_name, const FittedTrust<Size>& trust,
+template <class Scalar>
+void write_trust(std::ostream& stream, const std::string& model_name, const FittedTrust& trust,
                  std::uint64_t training_data_hash) {
   detail::require_identifier(model_name);
   const auto rounded = [](const auto& values) {
-    std::array<Scalar, std::tuple_size_v<std::decay_t<decltype(values)>>> result{};
-    for (std::size_t i = 0; i < values.size(); ++i) result[i] = static_cast<Scalar>(values[i]);
+    std::vector<Scalar> result;
+    for (const double value : values) result.push_back(static_cast<Scalar>(value));
     return result;
   };
   const auto mean = rounded(trust.distribution.mean);

@@ -50,23 +50,24 @@ std::vector<unsigned char> block_beside_header(WrittenModel<Scalar> model) {
 /// The block of a trained model. `golden` as for write_model(): feature vectors inside the envelope, at least one.
 /// `name`: of the header's struct. `trust`: limits of trust, or null.
 /// Throws std::invalid_argument where write_model() does.
+template <class Scalar>
+std::vector<unsigned char> model_block(const GroundModel<Scalar>& model, const std::vector<std::vector<double>>& golden,
+                                       const Provenance& provenance, const std::string& name = "Model",
+                                       const FittedTrust* trust = nullptr) {
+  auto written = detail::written_model(model, golden, provenance, name);
+  if (trust != nullptr) {
+    written.trust = {trust->squared_distance_limit,   trust->command_residual_factor, trust->command_residual_limit,
+                     trust->command_residual_cleared, trust->update_period_s,         trust->distribution.mean,
+                     trust->distribution.whitening};
+  }
+  return detail::block_beside_header(std::move(written));
+}
 template <class NetworkType, class ContextType>
 std::vector<unsigned char> model_block(
     const TrainedModel<NetworkType, ContextType>& model,
     const std::vector<typename TrainedModel<NetworkType, ContextType>::FeatureVector>& golden,
-    const Provenance& provenance, const std::string& name = "Model",
-    const FittedTrust<ContextType::Features::size>* trust = nullptr) {
-  auto written = detail::written_model(model, golden, provenance, name);
-  if (trust != nullptr) {
-    written.trust = {trust->squared_distance_limit,
-                     trust->command_residual_factor,
-                     trust->command_residual_limit,
-                     trust->command_residual_cleared,
-                     trust->update_period_s,
-                     {trust->distribution.mean.begin(), trust->distribution.mean.end()},
-                     {trust->distribution.whitening.begin(), trust->distribution.whitening.end()}};
-  }
-  return detail::block_beside_header(std::move(written));
+    const Provenance& provenance, const std::string& name = "Model", const FittedTrust* trust = nullptr) {
+  return model_block(detail::ground_without_rows(model), detail::as_numbers(golden), provenance, name, trust);
 }
 
 /// The block of an exported header: the bytes that its training would have written as a block.

@@ -11,7 +11,7 @@
 
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
-#include "pinnquad/training/trained_model.hpp"
+#include "pinnquad/training/asked_model.hpp"
 
 namespace pinnquad {
 namespace detail {
@@ -83,26 +83,74 @@ void take_numbers(WrittenModel<Scalar>& written, const Model& model) {
   take(model.envelope_upper, written.envelope_upper);
 }
 
-/// Of a trained model; the commands of its golden vectors are worked out by the portable kernel. Throws
-/// std::invalid_argument where require_numbers() and records_of_training() do.
+}  // namespace detail
+
+/// A trained model as an export takes it: whatever its types are, the export is compiled once.
+template <class Scalar>
+struct GroundModel {
+  AskedModel asked;
+  detail::WrittenModel<Scalar> written;  ///< but for its name, golden vectors and provenance
+  double window_s = 0;                   ///< period of its window; 0 without one
+};
+
+namespace detail {
+/// Without rows: to be written with given golden vectors.
 template <class Model>
-WrittenModel<typename Model::Scalar> written_model(const Model& model,
-                                                   const std::vector<typename Model::FeatureVector>& golden,
-                                                   const Provenance& provenance, const std::string& name) {
-  WrittenModel<typename Model::Scalar> written;
+GroundModel<typename Model::Scalar> ground_without_rows(const Model& model) {
+  using Scalar = typename Model::Scalar;
+  using Outputs = typename Model::Outputs;
+  GroundModel<Scalar> ground{asked_without_rows(model), {}, WindowOf<typename Model::Features>::period_s};
+  WrittenModel<Scalar>& written = ground.written;
+  static_cast<WrittenRecords&>(written) = records_of_types<Model>();
   take_numbers(written, model);
   written.parameters.assign(model.network.parameters.begin(), model.network.parameters.end());
-  for (const auto& x : golden) {
-    written.golden_features.emplace_back(x.begin(), x.end());
-    written.golden_commands.push_back(model.predict(x));
-  }
-  require_numbers(written);
-  static_cast<WrittenRecords&>(written) = records_of_training(model, provenance);
-  written.name = name;
+  take_airframe<Outputs>(written, printable(model.airframe_name()), model.template airframe<double>(),
+                         model.template airframe<Scalar>());
+  if constexpr (has_certificate<Model>) written.certificate = certificate_of_trained(model);
   if constexpr (!std::is_same_v<typename Model::Vehicle, GivenAirframe>) {
     written.vehicle_type = type_name<typename Model::Vehicle>();
   }
+  return ground;
+}
+}  // namespace detail
+
+/// A model of types (training/trained_model.hpp) as a value.
+template <class Model>
+GroundModel<typename Model::Scalar> ground_model(const Model& model) {
+  auto ground = detail::ground_without_rows(model);
+  ground.asked = asked_with_residual(model);
+  return ground;
+}
+
+namespace detail {
+
+/// All that is written of a model; the commands of its golden vectors are worked out by the portable kernel. Throws
+/// std::invalid_argument where require_numbers() and take_provenance() do.
+template <class Scalar>
+WrittenModel<Scalar> written_model(const GroundModel<Scalar>& model, const std::vector<std::vector<double>>& golden,
+                                   const Provenance& provenance, const std::string& name) {
+  WrittenModel<Scalar> written = model.written;
+  for (const std::vector<double>& x : golden) {
+    written.golden_features.emplace_back();
+    for (const double number : x) written.golden_features.back().push_back(static_cast<Scalar>(number));
+    const Commands<double> commands = model.asked.predict(x.data());
+    written.golden_commands.emplace_back();
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      written.golden_commands.back()[i] = static_cast<Scalar>(commands[i]);
+    }
+  }
+  require_numbers(written);
+  take_provenance<Scalar>(written, provenance, model.window_s);
+  written.name = name;
   return written;
+}
+
+/// Feature vectors of types as numbers.
+template <class FeatureVector>
+std::vector<std::vector<double>> as_numbers(const std::vector<FeatureVector>& vectors) {
+  std::vector<std::vector<double>> numbers;
+  for (const FeatureVector& vector : vectors) numbers.emplace_back(vector.begin(), vector.end());
+  return numbers;
 }
 
 }  // namespace detail

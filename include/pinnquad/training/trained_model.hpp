@@ -57,6 +57,14 @@ template <class Predictor>
 inline constexpr bool affine_predictor = StatedStructure<Predictor>::known;
 template <class Scalar, int Inputs, int Outputs>
 inline constexpr bool affine_predictor<Network<Scalar, InputSize<Inputs>, Dense<Outputs>>> = true;
+
+/// Weight decay leaves a dead neuron weights of 1e-30 and below. As 0 they change no prediction by a bit that matters;
+/// their products would be denormal and cost a hundred times an ordinary operation in flight.
+template <class Scalar>
+Scalar without_negligible(Scalar weight) noexcept {
+  constexpr double negligible = 1e-20;
+  return std::abs(static_cast<double>(weight)) < negligible ? Scalar(0) : weight;
+}
 }  // namespace detail
 
 /// Joins a network with the scalers of its context and the envelope of its training rows: their range, wider by a tenth
@@ -70,12 +78,7 @@ TrainedModel<detail::Folded<NetworkType>, ContextType> make_trained_model(const 
   using Scalar = typename Model::Scalar;
   Model model{context};
   model.network = folded(network);
-  // Weight decay leaves a dead neuron weights of 1e-30 and below. As 0 they change no prediction by a bit that matters;
-  // their products would be denormal and cost a hundred times an ordinary operation in flight.
-  constexpr double negligible_weight = 1e-20;
-  for (Scalar& weight : model.network.parameters) {
-    if (std::abs(static_cast<double>(weight)) < negligible_weight) weight = Scalar(0);
-  }
+  for (Scalar& weight : model.network.parameters) weight = detail::without_negligible(weight);
   const auto cast = [](const auto& from, auto& to) {
     for (std::size_t i = 0; i < from.mean.size(); ++i) {
       to.mean[i] = static_cast<Scalar>(from.mean[i]);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -100,22 +101,23 @@ struct ColumnStatistics {
 };
 
 /// Statistics of every column of a table that is made row by row and never held, by two passes: `each_row(visit)` calls
-/// `visit(row)` for every row, an array of Size numbers, the same ones in the same order each time. `unit_of(i)` is
-/// the unit of column i.
-template <std::size_t Size, class EachRow, class UnitOf>
-std::array<ColumnStatistics, Size> column_statistics(const EachRow& each_row, const UnitOf& unit_of) {
-  std::array<ColumnStatistics, Size> columns;
-  std::array<double, Size> sums{}, squares{};
+/// `visit(row)` for every row, the same ones in the same order each time, with a number for each of the units.
+using RowVisit = std::function<void(const double* row)>;
+inline std::vector<ColumnStatistics> column_statistics(const std::vector<std::string_view>& units,
+                                                       const std::function<void(const RowVisit&)>& each_row) {
+  const std::size_t size = units.size();
+  std::vector<ColumnStatistics> columns(size);
+  std::vector<double> sums(size), squares(size);
   std::size_t rows = 0;
-  each_row([&](const auto& row) {
-    for (std::size_t i = 0; i < Size; ++i) sums[i] += row[i];
+  each_row([&](const double* row) {
+    for (std::size_t i = 0; i < size; ++i) sums[i] += row[i];
     ++rows;
   });
   const double count = static_cast<double>(rows);
-  for (std::size_t i = 0; i < Size; ++i) columns[i].mean = sums[i] / count;
+  for (std::size_t i = 0; i < size; ++i) columns[i].mean = sums[i] / count;
   bool first = true;
-  each_row([&](const auto& row) {
-    for (std::size_t i = 0; i < Size; ++i) {
+  each_row([&](const double* row) {
+    for (std::size_t i = 0; i < size; ++i) {
       ColumnStatistics& column = columns[i];
       const double value = row[i];
       squares[i] += (value - column.mean) * (value - column.mean);
@@ -124,9 +126,9 @@ std::array<ColumnStatistics, Size> column_statistics(const EachRow& each_row, co
     }
     first = false;
   });
-  for (std::size_t i = 0; i < Size; ++i) {
+  for (std::size_t i = 0; i < size; ++i) {
     columns[i].standard_deviation = std::sqrt(squares[i] / count);
-    columns[i].resolution = resolution_of(unit_of(i), columns[i].mean);
+    columns[i].resolution = resolution_of(units[i], columns[i].mean);
   }
   return columns;
 }
@@ -156,13 +158,10 @@ void each_standardised(const ContextType& context, const RowSet& rows, const Vis
 
 /// Statistics of every feature, physical units.
 template <class Features>
-std::array<ColumnStatistics, static_cast<std::size_t>(Features::size)> feature_statistics(const RowSet& rows) {
-  constexpr auto size = static_cast<std::size_t>(Features::size);
-  return column_statistics<size>(
-      [&](const auto& visit) {
-        each_features<Features, double>(rows, [&](const Flight&, std::size_t, const auto& x) { visit(x); });
-      },
-      [](std::size_t i) { return Features::units[i]; });
+std::vector<ColumnStatistics> feature_statistics(const RowSet& rows) {
+  return column_statistics({Features::units.begin(), Features::units.end()}, [&](const RowVisit& visit) {
+    each_features<Features, double>(rows, [&](const Flight&, std::size_t, const auto& x) { visit(x.data()); });
+  });
 }
 
 }  // namespace detail
@@ -192,7 +191,11 @@ ContextType make_context(const RowSet& rows,
       airframe.template signs<Roll>(), airframe.template signs<Pitch>(), airframe.template signs<Yaw>()};
   const auto setting = airframe.template output_setting<typename ContextType::Outputs, double>();
   // one table: features, outputs, signed sums of the commands
-  const auto each_row = [&](const auto& visit) {
+  std::vector<std::string_view> units(Features::units.begin(), Features::units.end());
+  units.insert(units.end(), OutputMap<typename ContextType::Outputs>::units.begin(),
+               OutputMap<typename ContextType::Outputs>::units.end());
+  units.insert(units.end(), axes, CommandOutputs::unit);
+  const auto columns = detail::column_statistics(units, [&](const detail::RowVisit& visit) {
     each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, const auto& x) {
       const Sample& sample = flight[row];
       const auto y = detail::sample_outputs<ContextType>(x, sample, setting);
@@ -200,14 +203,9 @@ ContextType make_context(const RowSet& rows,
       for (std::size_t i = 0; i < inputs; ++i) values[i] = x[i];
       for (std::size_t i = 0; i < outputs; ++i) values[inputs + i] = y[i];
       for (std::size_t i = 0; i < axes; ++i) values[inputs + outputs + i] = signed_sum(signs[i], sample.commands);
-      visit(values);
+      visit(values.data());
     });
-  };
-  const auto unit_of = [](std::size_t i) {
-    if (i < inputs) return Features::units[i];
-    return i < inputs + outputs ? OutputMap<typename ContextType::Outputs>::units[i - inputs] : CommandOutputs::unit;
-  };
-  const auto columns = detail::column_statistics<inputs + outputs + axes>(each_row, unit_of);
+  });
   ContextType context{airframe};
   for (std::size_t i = 0; i < inputs; ++i) {
     context.input.mean[i] = columns[i].mean;

@@ -11,6 +11,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pinnquad/aero/air_density.hpp"
@@ -160,15 +161,15 @@ WrenchModel fit_wrench(const RowSet& training, const RowSet& validation, const G
                                 std::to_string(training.size()) + " and " + std::to_string(validation.size()));
   }
   WrenchContext context{airframe};
-  const auto columns = detail::column_statistics<16>(
-      [&](const auto& visit) {
-        detail::each_wrench_row(training, value, [&](const auto& x, const auto& y) {
-          std::array<double, 16> row{};
-          std::copy(y.begin(), y.end(), std::copy(x.begin(), x.end(), row.begin()));
-          visit(row);
-        });
-      },
-      [](std::size_t i) { return i < 10 ? WrenchFeatures::units[i] : AccelerationOutputs::units[i - 10]; });
+  std::vector<std::string_view> units(WrenchFeatures::units.begin(), WrenchFeatures::units.end());
+  units.insert(units.end(), AccelerationOutputs::units.begin(), AccelerationOutputs::units.end());
+  const auto columns = detail::column_statistics(units, [&](const detail::RowVisit& visit) {
+    detail::each_wrench_row(training, value, [&](const auto& x, const auto& y) {
+      std::array<double, 16> row{};
+      std::copy(y.begin(), y.end(), std::copy(x.begin(), x.end(), row.begin()));
+      visit(row.data());
+    });
+  });
   for (std::size_t i = 0; i < 16; ++i) {
     auto& mean = i < 10 ? context.input.mean[i] : context.output.mean[i - 10];
     auto& deviation = i < 10 ? context.input.standard_deviation[i] : context.output.standard_deviation[i - 10];

@@ -48,11 +48,18 @@ Vector6 features(const Sample& sample) {
 
 RowSet all(const Flight& flight) { return RowSet(flight, {0, flight.size()}); }
 
+detail::JointDistribution fitted_to(const RowSet& rows, double shrinkage = TrustSettings{}.shrinkage) {
+  AskedModel model;
+  model.units.assign(Features::units.begin(), Features::units.end());
+  model.each_exact_row = detail::rows_of_features<Features, double>();
+  return detail::fit_joint_distribution(model, rows, shrinkage);
+}
+
 }  // namespace
 
 TEST_CASE("the squared distance is (x - mean)' C^-1 (x - mean) of the shrunk covariance, by a dense inverse") {
   const Flight flight = normal_rows(400, 1);
-  const auto fitted = detail::fit_joint_distribution<Features>(all(flight), 0.05);
+  const auto fitted = fitted_to(all(flight), 0.05);
   Vector6 mean = Vector6::Zero();
   for (const Sample& sample : flight) mean += features(sample) / 400;
   Matrix6 covariance = Matrix6::Zero();
@@ -64,18 +71,18 @@ TEST_CASE("the squared distance is (x - mean)' C^-1 (x - mean) of the shrunk cov
   const Matrix6 inverse = covariance.inverse();
   for (const Sample& sample : normal_rows(50, 2)) {
     const Vector6 d = features(sample) - mean;
-    CHECK(fitted.squared_distance(sample_features<Features, double>(sample)) ==
+    CHECK(fitted.squared_distance(sample_features<Features, double>(sample).data()) ==
           doctest::Approx(d.dot(inverse * d)).epsilon(1e-2));
   }
 }
 
 TEST_CASE("of normal rows it is distributed as chi square with as many degrees of freedom as features") {
   const Flight flight = normal_rows(20000, 3), fresh = normal_rows(20000, 4);
-  const auto fitted = detail::fit_joint_distribution<Features>(all(flight));
+  const auto fitted = fitted_to(all(flight));
   double sum = 0;
   int beyond_5 = 0, beyond_1 = 0;
   for (const Sample& sample : fresh) {
-    const double squared = fitted.squared_distance(sample_features<Features, double>(sample));
+    const double squared = fitted.squared_distance(sample_features<Features, double>(sample).data());
     sum += squared;
     beyond_5 += squared > 12.592 ? 1 : 0;  // 95 % and 99 % quantiles, 6 degrees of freedom
     beyond_1 += squared > 16.812 ? 1 : 0;
@@ -91,30 +98,30 @@ TEST_CASE("rows that break what all training rows keep are far, and a feature th
     sample.angular_acceleration_rad_s2[1] = 2 * sample.angular_acceleration_rad_s2[0];  // no inverse without shrinkage
     sample.body_rates_rad_s[2] = 7;
   }
-  const auto fitted = detail::fit_joint_distribution<Features>(all(flight));
+  const auto fitted = fitted_to(all(flight));
   auto x = fitted.mean;
-  CHECK(fitted.squared_distance(x) == 0);
+  CHECK(fitted.squared_distance(x.data()) == 0);
   x[5] += 3;
-  CHECK(fitted.squared_distance(x) == doctest::Approx(9));
+  CHECK(fitted.squared_distance(x.data()) == doctest::Approx(9));
   const auto columns = detail::feature_statistics<Features>(all(flight));
   auto kept = fitted.mean, broken = fitted.mean;
   kept[0] += columns[0].scale(), kept[1] += columns[1].scale();
   broken[0] += columns[0].scale(), broken[1] -= columns[1].scale();
-  CHECK(fitted.squared_distance(kept) < 10);
-  CHECK(fitted.squared_distance(broken) > 1000);
+  CHECK(fitted.squared_distance(kept.data()) < 10);
+  CHECK(fitted.squared_distance(broken.data()) > 1000);
   for (const double w : fitted.whitening) CHECK(is_finite(w));
 }
 
 TEST_CASE("too few rows and shares that are none are refused") {
   const Flight few = normal_rows(6, 6), enough = normal_rows(7, 6);
-  CHECK_THROWS_AS(detail::fit_joint_distribution<Features>(all(few)), std::invalid_argument);
-  CHECK_NOTHROW(detail::fit_joint_distribution<Features>(all(enough)));
+  CHECK_THROWS_AS(fitted_to(all(few)), std::invalid_argument);
+  CHECK_NOTHROW(fitted_to(all(enough)));
   for (const double share : {0.0, -0.1, 1.1, std::nan("")}) {
-    CHECK_THROWS_AS(detail::fit_joint_distribution<Features>(all(enough), share), std::invalid_argument);
+    CHECK_THROWS_AS(fitted_to(all(enough), share), std::invalid_argument);
   }
   // a share that is lost in the rounding of correlations without an inverse
   Flight dependent = normal_rows(500, 7);
   for (Sample& sample : dependent) sample.angular_acceleration_rad_s2[1] = 2 * sample.angular_acceleration_rad_s2[0];
-  CHECK_NOTHROW(detail::fit_joint_distribution<Features>(all(dependent)));
-  CHECK_THROWS_AS(detail::fit_joint_distribution<Features>(all(dependent), 1e-30), std::invalid_argument);
+  CHECK_NOTHROW(fitted_to(all(dependent)));
+  CHECK_THROWS_AS(fitted_to(all(dependent), 1e-30), std::invalid_argument);
 }

@@ -12,7 +12,6 @@
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
-#include "pinnquad/outputs/rigid_body_base.hpp"
 
 using namespace pinnquad;
 
@@ -72,10 +71,6 @@ Certificate certificate_of_base(const Setting<Features>& context, const AffineMa
 }
 
 }  // namespace
-
-// a residual of a model on a formula is not shown what the formula reads, and does not ask for it
-static_assert(sizeof(residual_context(
-                  std::declval<Context<PhysicsFeatures, PaperQuadrotor, SignedSumsOn<RigidBodyBase>>>())) > 0);
 
 TEST_CASE("hover slopes are the inertias over what the commands do: closed form of an X") {
   const auto airframe = PaperQuadrotor::value<double>();

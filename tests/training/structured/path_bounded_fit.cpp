@@ -2,7 +2,7 @@
 // A network that is shown the angular acceleration, trained beside a base: what it may not do, however much the rows
 // ask for it; what it learns that one which is not shown it can't; and what a projection leaves alone. Rows that say
 // what a derivative should be.
-#include "pinnquad/training/structured/residual_fit.hpp"
+#include "pinnquad/training/structured/path_bounded_fit.hpp"
 
 #include <doctest/doctest.h>
 
@@ -53,7 +53,7 @@ Flight flight_of(const Shape& shape, std::uint64_t seed) {
 }
 
 struct Fitted {
-  detail::ResidualFit<PhysicsFeatures, PathBoundedPredictor<PhysicsFeatures, Seeing>> fit;
+  ResidualFit<PhysicsFeatures, PathBoundedPredictor<PhysicsFeatures, Seeing>> fit;
   Certificate certificate;
   double blind_error;
 };

@@ -178,21 +178,19 @@ TEST_CASE("a window's thrust slope, all taps together, is held where noise bends
 
   const RowSet rows(shaken, {100, 600});
   std::array<double, taps> denoised{}, measured{};
-  std::visit(
-      [&](const auto& model) {
-        const auto context = make_context<Context<Window, PaperQuadrotor, AxisCommandOutputs>>(rows);
-        const std::vector<int> places = monotone_shape(context).thrusts;
-        REQUIRE(places.size() == taps);
-        each_denoised<Window>(model.input, fit.slopes, rows, [&](std::size_t row, const std::vector<double>& x) {
-          for (std::size_t tap = 0; tap < places.size(); ++tap) {
-            const auto at = 100 + row - tap;
-            const double truth = sample_features<InverseFeatures, double>(quiet()[at])[0];
-            denoised[tap] += std::pow(x[static_cast<std::size_t>(places[tap])] - truth, 2);
-            measured[tap] += std::pow(sample_features<InverseFeatures, double>(shaken[at])[0] - truth, 2);
-          }
-        });
-      },
-      fit.model);
+  const Dataset dataset(shaken);
+  const FitContext context =
+      fit_context(make_context<Context<Window, PaperQuadrotor, AxisCommandOutputs>>(split_for_training(dataset).train));
+  const std::vector<int> places = monotone_shape(context).thrusts;
+  REQUIRE(places.size() == taps);
+  each_denoised(context, fit.slopes, rows, [&](std::size_t row, const std::vector<double>& x) {
+    for (std::size_t tap = 0; tap < places.size(); ++tap) {
+      const auto at = 100 + row - tap;
+      const double truth = sample_features<InverseFeatures, double>(quiet()[at])[0];
+      denoised[tap] += std::pow(x[static_cast<std::size_t>(places[tap])] - truth, 2);
+      measured[tap] += std::pow(sample_features<InverseFeatures, double>(shaken[at])[0] - truth, 2);
+    }
+  });
   for (std::size_t tap = 0; tap < denoised.size(); ++tap) CHECK(denoised[tap] < 0.8 * measured[tap]);
 }
 
@@ -220,13 +218,21 @@ TEST_CASE("neighbours are a tenth of a second away, and none is beyond a gap or 
   RowSet rows(flight, {10, 60});
   rows.add(flight, {100, 200});
   std::vector<std::size_t> seen;
-  detail::each_with_neighbours<InverseFeatures>(
-      rows, [&](const Flight&, std::size_t row, const auto& x, const auto& before, const auto& after) {
-        CHECK(x == sample_features<InverseFeatures, double>(flight[row]));
-        CHECK(before == sample_features<InverseFeatures, double>(flight[row - 2]));
-        CHECK(after == sample_features<InverseFeatures, double>(flight[row + 2]));
-        seen.push_back(row);
-      });
+  const FitContext context = fit_context(make_context<Setting>(rows));
+  const auto are_of = [&](const double* x, std::size_t row) {
+    const auto expected = sample_features<InverseFeatures, double>(flight[row]);
+    return std::equal(expected.begin(), expected.end(), x);
+  };
+  for (const FlightRows& piece : rows.pieces()) {
+    detail::each_with_neighbours(
+        context, piece,
+        [&](std::size_t row, const double* x, const double*, const double* before, const double* after) {
+          CHECK(are_of(x, row));
+          CHECK(are_of(before, row - 2));
+          CHECK(are_of(after, row + 2));
+          seen.push_back(row);
+        });
+  }
   std::vector<std::size_t> expected;
   for (const auto& [begin, end] : {std::pair<std::size_t, std::size_t>{12, 58}, {102, 118}, {122, 198}}) {
     for (std::size_t row = begin; row < end; ++row) expected.push_back(row);
@@ -237,21 +243,18 @@ TEST_CASE("neighbours are a tenth of a second away, and none is beyond a gap or 
 TEST_CASE("rows to judge by are nearer to the truth than those with noise, and all else is as it was") {
   const StructuredFits::Fit& fit = noisy_fit();
   const RowSet rows(noisy(), {100, 600});
-  std::visit(
-      [&](const auto& model) {
-        using Features = typename std::decay_t<decltype(model)>::Features;
-        double denoised = 0, measured = 0;
-        std::size_t count = 0;
-        each_denoised<Features>(model.input, fit.slopes, rows, [&](std::size_t row, const std::vector<double>& x) {
-          const auto truth = sample_features<Features, double>(quiet()[100 + row]);
-          const auto seen = sample_features<Features, double>(noisy()[100 + row]);
-          denoised += std::pow(x[1] - truth[1], 2);
-          measured += std::pow(seen[1] - truth[1], 2);
-          for (std::size_t i = 4; i < x.size(); ++i) CHECK(x[i] == seen[i]);
-          ++count;
-        });
-        CHECK(count == 500 - 4);
-        CHECK(denoised < 0.8 * measured);
-      },
-      fit.model);
+  const Dataset dataset(noisy());
+  const FitContext context = fit_context(make_context<Setting>(split_for_training(dataset).train));
+  double denoised = 0, measured = 0;
+  std::size_t count = 0;
+  each_denoised(context, fit.slopes, rows, [&](std::size_t row, const std::vector<double>& x) {
+    const auto truth = sample_features<InverseFeatures, double>(quiet()[100 + row]);
+    const auto seen = sample_features<InverseFeatures, double>(noisy()[100 + row]);
+    denoised += std::pow(x[1] - truth[1], 2);
+    measured += std::pow(seen[1] - truth[1], 2);
+    for (std::size_t i = 4; i < x.size(); ++i) CHECK(x[i] == seen[i]);
+    ++count;
+  });
+  CHECK(count == 500 - 4);
+  CHECK(denoised < 0.8 * measured);
 }

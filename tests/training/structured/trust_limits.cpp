@@ -109,7 +109,7 @@ TEST_CASE("fitted limits: new flights of the same kind raise as many alarms as a
   CHECK(trust.command_residual_cleared < trust.command_residual_limit);
   CHECK(trust.command_residual_cleared > 0.0159);  // mean |error| = 0.02 sqrt(2 / pi)
   const auto alarms = [&](const Flight& flight) {
-    const auto series = trust_series(Stub{}, trust.distribution, RowSet(flight, {0, flight.size()}));
+    const auto series = trust_series(asked_model(Stub{}), trust.distribution, RowSet(flight, {0, flight.size()}));
     std::array<int, 2> count{};
     for (const double most : block_maxima(series.squared_distances, 200))
       count[0] += most > trust.squared_distance_limit ? 1 : 0;

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "pinnquad/dynamics/rotor.hpp"
@@ -19,6 +22,7 @@
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/regression/ridge.hpp"
+#include "pinnquad/training/structured/fit_context.hpp"
 #include "pinnquad/training/trained_model.hpp"
 
 namespace pinnquad {
@@ -47,16 +51,18 @@ Sum<First, Second> sum_of(const First& first, const Second& second) {
   return sum;
 }
 
-/// Subtracts the map's outputs from those of standardised rows.
-template <class Scalar, int InputCount, int OutputCount>
-void take_away(const AffineMap& map, TrainingData<Scalar, InputCount, OutputCount>& data) {
-  std::array<double, static_cast<std::size_t>(InputCount)> x{};
-  for (int row = 0; row < data.size(); ++row) {
-    const Scalar* features = data.features_of(row);
-    std::copy(features, features + InputCount, x.begin());
+/// Subtracts the map's outputs from those of standardised rows: a TrainingData or a FitRows.
+template <class Rows>
+void take_away(const AffineMap& map, Rows& rows) {
+  std::vector<double> x(static_cast<std::size_t>(map.inputs));
+  for (int row = 0; row < rows.size(); ++row) {
+    const auto* features = rows.features_of(row);
+    std::copy(features, features + map.inputs, x.begin());
     const std::vector<double> said = map(x.data());
-    Scalar* outputs = data.outputs.data() + std::ptrdiff_t{row} * OutputCount;
-    for (int k = 0; k < OutputCount; ++k) outputs[k] -= static_cast<Scalar>(said[static_cast<std::size_t>(k)]);
+    auto* outputs = rows.outputs.data() + std::ptrdiff_t{row} * map.outputs;
+    for (int k = 0; k < map.outputs; ++k) {
+      outputs[k] -= static_cast<std::decay_t<decltype(*outputs)>>(said[static_cast<std::size_t>(k)]);
+    }
   }
 }
 
@@ -101,33 +107,38 @@ inline std::vector<RowSet> left_out_groups(const RowSet& rows) {
 }
 
 /// Sums of standardised features and of `target(y, commands)`, y the standardised outputs.
-template <class ContextType, class Target>
-RegressionSums regression_sums(const ContextType& context, const RowSet& rows, int targets, const Target& target) {
-  RegressionSums sums(ContextType::Features::size, targets);
-  detail::each_standardised(context, rows, [&](const Flight& flight, std::size_t row, const auto& x, const auto& y) {
-    const std::vector<double> values = target(y, flight[row].commands);
-    sums.add(x.data(), values.data());
+using RegressionTarget = std::function<std::vector<double>(const double* y, const Commands<double>& commands)>;
+inline RegressionSums regression_sums(const FitContext& context, const RowSet& rows, int targets,
+                                      const RegressionTarget& target) {
+  RegressionSums sums(context.inputs(), targets);
+  context.each_standardised(rows, [&](const Flight& flight, std::size_t row, const double* x, const double* y) {
+    sums.add(x, target(y, flight[row].commands).data());
   });
   return sums;
 }
 
 /// Sums of standardised features and outputs.
-template <class ContextType>
-RegressionSums regression_sums(const ContextType& context, const RowSet& rows) {
-  return regression_sums(context, rows, ContextType::output_count, [](const auto& y, const Commands<double>&) {
-    return std::vector<double>(y.begin(), y.end());
-  });
+inline RegressionSums regression_sums(const FitContext& context, const RowSet& rows) {
+  RegressionSums sums(context.inputs(), context.outputs());
+  context.each_standardised(rows,
+                            [&](const Flight&, std::size_t, const double* x, const double* y) { sums.add(x, y); });
+  return sums;
 }
 
 /// The same of each group that has rows with all features.
-template <class ContextType>
-std::vector<RegressionSums> regression_sums(const ContextType& context, const std::vector<RowSet>& groups) {
+inline std::vector<RegressionSums> regression_sums(const FitContext& context, const std::vector<RowSet>& groups) {
   std::vector<RegressionSums> sums;
   for (const RowSet& group : groups) {
     RegressionSums of_group = regression_sums(context, group);
-    if (of_group.rows() > 0) sums.push_back(of_group);
+    if (of_group.rows() > 0) sums.push_back(std::move(of_group));
   }
   return sums;
+}
+
+/// The same of a context of types, for one set of rows or for groups.
+template <class ContextType, class Rows>
+auto regression_sums(const ContextType& context, const Rows& rows) {
+  return regression_sums(fit_context(context), rows);
 }
 
 /// The sizes and scales of a base, without its types: the equations are compiled once for all feature sets.
@@ -144,26 +155,25 @@ struct MonotoneShape {
 };
 
 /// The places and scales of a context's features, as the equations of the fit read them.
-template <class ContextType>
-MonotoneShape monotone_shape(const ContextType& context) {
-  using Features = typename ContextType::Features;
-  static_assert(is_signed_sums<typename ContextType::Outputs>,
-                "pinnquad: a monotone base answers signed sums: Context<Features, Vehicle, AxisCommandOutputs>");
+inline MonotoneShape monotone_shape(const FitContext& context) {
   MonotoneShape shape;
-  shape.inputs = Features::size;
-  MonotoneBase<Features>::Threes::each([&](int place, int) { shape.places.push_back(place); });
-  shape.input_deviation.assign(context.input.standard_deviation.begin(), context.input.standard_deviation.end());
-  shape.output_deviation.assign(context.output.standard_deviation.begin(), context.output.standard_deviation.end());
-  shape.airframe_slopes = hover_slopes(context.template airframe<double>());
-  constexpr auto thrusts = detail::thrust_places<Features>();
-  shape.thrusts.assign(thrusts.place, thrusts.place + thrusts.count);
-  if constexpr (!is_windowed<Features>) {
-    for (int i = 0; i < Features::size; ++i) {
-      const std::string_view unit = Features::units[static_cast<std::size_t>(i)];
-      if (unit == "m/s^2" || unit == "rad/s" || unit == "rad/s^2" || unit == "rad^2/s^2") shape.noisy.push_back(i);
-    }
+  shape.inputs = context.inputs();
+  shape.places = context.accelerations;
+  shape.input_deviation = context.input_deviation;
+  shape.output_deviation = context.output_deviation;
+  shape.airframe_slopes = hover_slopes(context.airframe);
+  shape.thrusts = context.thrusts;
+  for (int i = 0; i < shape.inputs && !context.is_windowed(); ++i) {
+    const std::string_view unit = context.units[static_cast<std::size_t>(i)];
+    if (unit == "m/s^2" || unit == "rad/s" || unit == "rad/s^2" || unit == "rad^2/s^2") shape.noisy.push_back(i);
   }
   return shape;
+}
+template <class ContextType>
+MonotoneShape monotone_shape(const ContextType& context) {
+  static_assert(is_signed_sums<typename ContextType::Outputs>,
+                "pinnquad: a monotone base answers signed sums: Context<Features, Vehicle, AxisCommandOutputs>");
+  return monotone_shape(fit_context(context));
 }
 
 namespace detail {
@@ -244,25 +254,32 @@ AffineMap fit_monotone_base(const ContextType& context, const RowSet& rows,
   return fit_monotone_base(monotone_shape(context), regression_sums(context, left_out_groups(rows)), pinned);
 }
 
+/// The parameters of the MonotoneBase of such a map. `accelerations`: FitContext's.
+inline std::vector<float> base_parameters(const std::vector<int>& accelerations, const AffineMap& map) {
+  const auto weight = [&](int output, int feature) {
+    return static_cast<float>(map.weights.at(static_cast<std::size_t>(output * map.inputs + feature)));
+  };
+  std::vector<float> parameters;
+  for (const int place : accelerations) {
+    for (int axis = 0; axis < 3; ++axis) parameters.push_back(weight(1 + axis, place + axis));
+  }
+  const std::vector<int> others = detail::other_features(map.inputs, accelerations);
+  for (int output = 0; output < map.outputs; ++output) {
+    for (const int feature : others) parameters.push_back(weight(output, feature));
+  }
+  for (const double intercept : map.intercept) parameters.push_back(static_cast<float>(intercept));
+  return parameters;
+}
+
 /// The predictor of such a map.
 template <class ContextType>
 MonotoneBase<typename ContextType::Features> monotone_base(const AffineMap& map) {
-  using Features = typename ContextType::Features;
-  using Base = MonotoneBase<Features>;
+  using Base = MonotoneBase<typename ContextType::Features>;
   Base base;
-  const auto weight = [&](int output, int feature) {
-    return static_cast<float>(
-        map.weights.at(static_cast<std::size_t>(output) * Features::size + static_cast<std::size_t>(feature)));
-  };
-  auto* const to = base.parameters.data();
-  Base::Threes::each([&](int place, int tap) {
-    for (int axis = 0; axis < 3; ++axis) to[Base::slopes + 3 * tap + axis] = weight(1 + axis, place + axis);
-  });
-  for (int output = 0; output < Base::outputs; ++output) {
-    Base::Threes::each_other(
-        [&](int feature, int n) { to[Base::weights + output * Base::Threes::others + n] = weight(output, feature); });
-    to[Base::intercepts + output] = static_cast<float>(map.intercept.at(static_cast<std::size_t>(output)));
-  }
+  std::vector<int> accelerations;
+  Base::Threes::each([&](int place, int) { accelerations.push_back(place); });
+  const std::vector<float> parameters = base_parameters(accelerations, map);
+  std::copy_n(parameters.begin(), base.parameters.size(), base.parameters.begin());
   return base;
 }
 

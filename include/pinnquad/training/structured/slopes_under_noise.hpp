@@ -5,13 +5,12 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
-#include "pinnquad/features/windowed.hpp"
 #include "pinnquad/regression/block_regression.hpp"
 #include "pinnquad/regression/instrumental_variables.hpp"
 #include "pinnquad/training/structured/closed_form.hpp"
@@ -39,67 +38,70 @@ namespace detail {
 /// Time from a row to its instruments, s: past a sensor's filter, within the motion.
 inline constexpr double instrument_lag_s = 0.1;
 
-/// Calls `visit(flight, row, x, before, after)` for each row whose neighbours are in the same piece, without a gap
-/// between: features in physical units. They are instrument_lag_s away, two rows at least.
-template <class Features, class Visit>
-void each_with_neighbours(const RowSet& rows, const Visit& visit) {
-  using Vector = std::array<double, static_cast<std::size_t>(Features::size)>;
-  for (const FlightRows& piece : rows.pieces()) {
-    const RowSet one(*piece.flight, piece.rows);
-    const double period_s = sample_period_s(one);
-    if (!(period_s > 0)) continue;
-    const auto lag = static_cast<std::size_t>(std::max(2.0, std::ceil(instrument_lag_s / period_s - 0.01)));
-    const double longest_s = 1.1 * static_cast<double>(lag) * period_s;
-    const auto near = [&](std::size_t first, std::size_t last) {
-      return last - first == lag && (*piece.flight)[last].time_s - (*piece.flight)[first].time_s <= longest_s;
-    };
-    std::vector<std::size_t> at;
-    std::vector<Vector> x;
-    each_features<Features, double>(one, [&](const Flight&, std::size_t row, const Vector& features) {
-      at.push_back(row);
-      x.push_back(features);
-    });
-    for (std::size_t i = lag; i + lag < x.size(); ++i) {
-      if (near(at[i - lag], at[i]) && near(at[i], at[i + lag])) {
-        visit(*piece.flight, at[i], x[i], x[i - lag], x[i + lag]);
-      }
-    }
+/// Features of a row and of its neighbours, and the row's outputs: in physical units.
+using NeighboursVisit =
+    std::function<void(std::size_t row, const double* x, const double* y, const double* before, const double* after)>;
+
+/// Calls `visit` for each row of a piece whose neighbours are in the same piece, without a gap between. They are
+/// instrument_lag_s away, two rows at least.
+inline void each_with_neighbours(const FitContext& context, const FlightRows& piece, const NeighboursVisit& visit) {
+  const RowSet one(*piece.flight, piece.rows);
+  const double period_s = sample_period_s(one);
+  if (!(period_s > 0)) return;
+  const auto lag = static_cast<std::size_t>(std::max(2.0, std::ceil(instrument_lag_s / period_s - 0.01)));
+  const double longest_s = 1.1 * static_cast<double>(lag) * period_s;
+  const auto near = [&](std::size_t first, std::size_t last) {
+    return last - first == lag && (*piece.flight)[last].time_s - (*piece.flight)[first].time_s <= longest_s;
+  };
+  const auto inputs = static_cast<std::size_t>(context.inputs()), outputs = std::size_t(context.outputs());
+  std::vector<std::size_t> at;
+  std::vector<double> x, y;
+  context.each_row(one, [&](const Flight&, std::size_t row, const double* features, const double* answers) {
+    at.push_back(row);
+    x.insert(x.end(), features, features + inputs);
+    y.insert(y.end(), answers, answers + outputs);
+  });
+  for (std::size_t i = lag; i + lag < at.size(); ++i) {
+    if (!near(at[i - lag], at[i]) || !near(at[i], at[i + lag])) continue;
+    const auto of = [&](std::size_t row) { return x.data() + row * inputs; };
+    visit(at[i], of(i), y.data() + i * outputs, of(i - lag), of(i + lag));
   }
 }
 
 /// Standardised features, then the noisy ones before and after.
-template <class Scales, class Vector>
-std::vector<double> with_instruments(const Scales& scales, const std::vector<int>& noisy, const Vector& x,
-                                     const Vector& before, const Vector& after) {
+inline std::vector<double> with_instruments(const FitContext& context, const std::vector<int>& noisy, const double* x,
+                                            const double* before, const double* after) {
   std::vector<double> all;
-  const auto add = [&](const Vector& from, std::size_t i) {
-    all.push_back((from[i] - static_cast<double>(scales.mean[i])) / static_cast<double>(scales.standard_deviation[i]));
+  const auto add = [&](const double* from, int feature) {
+    const auto i = static_cast<std::size_t>(feature);
+    all.push_back((from[i] - context.input_mean[i]) / context.input_deviation[i]);
   };
-  for (std::size_t i = 0; i < x.size(); ++i) add(x, i);
-  for (const Vector* from : {&before, &after}) {
-    for (const int i : noisy) add(*from, static_cast<std::size_t>(i));
+  for (int i = 0; i < context.inputs(); ++i) add(x, i);
+  for (const double* from : {before, after}) {
+    for (const int i : noisy) add(from, i);
   }
   return all;
 }
 
 /// Sums of these over blocks of consecutive rows: fifty, of two seconds at least.
-template <class ContextType>
-std::vector<RegressionSums> instrumented_blocks(const ContextType& context, const RowSet& rows,
-                                                const std::vector<int>& noisy) {
+inline std::vector<RegressionSums> instrumented_blocks(const FitContext& context, const RowSet& rows,
+                                                       const std::vector<int>& noisy) {
   constexpr double most = 50, least_s = 2;
-  using Features = typename ContextType::Features;
-  const auto setting = context.template output_setting<typename ContextType::Outputs, double>();
-  const RegressionSums none(Features::size + 2 * static_cast<int>(noisy.size()), ContextType::output_count);
+  const RegressionSums none(context.inputs() + 2 * static_cast<int>(noisy.size()), context.outputs());
   const double period_s = sample_period_s(rows);
   const double length = std::max(static_cast<double>(rows.size()) / most, period_s > 0 ? least_s / period_s : 0.0);
   std::vector<RegressionSums> blocks;
-  each_with_neighbours<Features>(
-      rows, [&](const Flight& flight, std::size_t row, const auto& x, const auto& before, const auto& after) {
-        auto y = sample_outputs<ContextType>(x, flight[row], setting);
-        context.output.standardise(y.data(), y.data());
-        if (blocks.empty() || blocks.back().rows() >= length) blocks.push_back(none);
-        blocks.back().add(with_instruments(context.input, noisy, x, before, after).data(), y.data());
-      });
+  std::vector<double> z(context.output_mean.size());
+  for (const FlightRows& piece : rows.pieces()) {
+    each_with_neighbours(context, piece,
+                         [&](std::size_t, const double* x, const double* y, const double* before, const double* after) {
+                           for (std::size_t k = 0; k < z.size(); ++k) {
+                             z[k] = (y[k] - context.output_mean[k]) / context.output_deviation[k];
+                           }
+                           if (blocks.empty() || blocks.back().rows() >= length) blocks.push_back(none);
+                           blocks.back().add(with_instruments(context, noisy, x, before, after).data(), z.data());
+                         });
+  }
   return blocks;
 }
 
@@ -134,20 +136,19 @@ inline AffineMap by_neighbours(const MonotoneShape& shape, const std::vector<int
 
 /// The specific force along the thrust axis at each tap of a window, as what the neighbours' windows have
 /// instrument_lag_s off this tap tells it. `all`: of instrumented_blocks(), MonotoneShape::thrusts the noisy ones.
-template <class Features>
-std::vector<DenoisedFeature> denoised_taps(const MonotoneShape& shape, const RegressionSums& all) {
-  using Window = typename Features::Window;
-  const int taps = static_cast<int>(shape.thrusts.size());
-  const auto time_s = [](int tap) { return tap == 0 ? 0.0 : Window::offset_s(tap - 1); };
+inline std::vector<DenoisedFeature> denoised_taps(const FitContext& context, const MonotoneShape& shape,
+                                                  const RegressionSums& all) {
+  const std::size_t taps = shape.thrusts.size();
   std::vector<DenoisedFeature> denoised;
-  for (int tap = 0; tap < taps; ++tap) {
+  for (std::size_t tap = 0; tap < taps; ++tap) {
     std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
-    for (int i = 0; i < 2 * taps; ++i) {
+    for (std::size_t i = 0; i < 2 * taps; ++i) {
       const double lag_s = i < taps ? -instrument_lag_s : instrument_lag_s;
-      told[static_cast<std::size_t>(shape.inputs + i)] =
-          std::abs(time_s(i % taps) + lag_s - time_s(tap)) > instrument_lag_s - Window::tolerance_s;
+      told[static_cast<std::size_t>(shape.inputs) + i] =
+          std::abs(context.tap_times_s[i % taps] + lag_s - context.tap_times_s[tap]) >
+          instrument_lag_s - context.tap_tolerance_s;
     }
-    const int place = shape.thrusts[static_cast<std::size_t>(tap)];
+    const int place = shape.thrusts[tap];
     denoised.push_back({place, by_neighbours(shape, shape.thrusts, all, place, told)});
   }
   return denoised;
@@ -157,20 +158,20 @@ std::vector<DenoisedFeature> denoised_taps(const MonotoneShape& shape, const Reg
 
 /// Calls `visit(row, x)` for each row whose neighbours are at hand, counted through the set: features in physical
 /// units, those that bend a slope as the neighbours tell them. Rows to judge a model by whose slopes are by
-/// instruments: on the noisy ones the worse model errs less. `scales`: of a trained model's features.
-template <class Features, class Scales, class Visit>
-void each_denoised(const Scales& scales, const MeasuredSlopes& slopes, const RowSet& rows, const Visit& visit) {
+/// instruments: on the noisy ones the worse model errs less.
+inline void each_denoised(const FitContext& context, const MeasuredSlopes& slopes, const RowSet& rows,
+                          const std::function<void(std::size_t row, const std::vector<double>& x)>& visit) {
   std::size_t first = 0;
   for (const FlightRows& piece : rows.pieces()) {
-    detail::each_with_neighbours<Features>(
-        RowSet(*piece.flight, piece.rows),
-        [&](const Flight&, std::size_t row, const auto& x, const auto& before, const auto& after) {
-          const std::vector<double> told = detail::with_instruments(scales, slopes.noisy, x, before, after);
-          std::vector<double> denoised(x.begin(), x.end());
+    detail::each_with_neighbours(
+        context, piece,
+        [&](std::size_t row, const double* x, const double*, const double* before, const double* after) {
+          const std::vector<double> told = detail::with_instruments(context, slopes.noisy, x, before, after);
+          std::vector<double> denoised(x, x + context.inputs());
           for (const DenoisedFeature& feature : slopes.denoised) {
             const auto at = static_cast<std::size_t>(feature.place);
-            denoised[at] = static_cast<double>(scales.mean[at]) + static_cast<double>(scales.standard_deviation[at]) *
-                                                                      feature.by_neighbours(told.data()).front();
+            denoised[at] =
+                context.input_mean[at] + context.input_deviation[at] * feature.by_neighbours(told.data()).front();
           }
           visit(first + row - piece.rows.begin, denoised);
         });

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "pinnquad/regression/ridge.hpp"
-#include "pinnquad/training/trained_model.hpp"
+#include "pinnquad/training/asked_model.hpp"
 #include "pinnquad/training/training_data.hpp"
 
 namespace pinnquad {
@@ -35,16 +35,14 @@ struct TrustSettings {
 namespace detail {
 
 /// Mean and covariance of features: the whitening W has W covariance W' = 1.
-template <int Size>
 struct JointDistribution {
-  static constexpr std::size_t factor_size = std::size_t(Size) * (std::size_t(Size) + 1) / 2;
-  std::array<double, std::size_t(Size)> mean{};  ///< physical units
-  std::array<double, factor_size> whitening{};   ///< of x - mean; lower triangular, column after column
+  std::vector<double> mean;       ///< physical units
+  std::vector<double> whitening;  ///< of x - mean; lower triangular, column after column
 
   /// Squared length of the sums of `term(weight, j)` over the columns j of the whitening.
   template <class Term>
-  double squared_length(const Term& term) const noexcept {
-    std::array<double, std::size_t(Size)> white{};
+  double squared_length(const Term& term) const {
+    std::vector<double> white(mean.size());
     std::size_t at = 0;
     for (std::size_t j = 0; j < white.size(); ++j) {
       for (std::size_t i = j; i < white.size(); ++i) white[i] += term(whitening[at++], j);
@@ -53,38 +51,35 @@ struct JointDistribution {
     for (const double w : white) squared += w * w;
     return squared;
   }
-  /// As the flight side works it out; of its training rows the mean is about Size.
-  template <class Scalar>
-  double squared_distance(const std::array<Scalar, std::size_t(Size)>& x) const noexcept {
-    return squared_length([&](double w, std::size_t j) { return w * (static_cast<double>(x[j]) - mean[j]); });
+  /// As the flight side works it out; of its training rows the mean is about the number of features.
+  double squared_distance(const double* x) const {
+    return squared_length([&](double w, std::size_t j) { return w * (x[j] - mean[j]); });
   }
   /// No features within the envelope have a greater squared distance: each row of |W| times the envelope's half-widths
   /// about the mean. A limit above it never triggers beside TrainingEnvelope.
-  template <class Bounds>
-  double greatest_squared_distance(const Bounds& lower, const Bounds& upper) const {
-    return squared_length([&](double w, std::size_t j) {
-      return std::abs(w) * std::max(static_cast<double>(upper[j]) - mean[j], mean[j] - static_cast<double>(lower[j]));
-    });
+  double greatest_squared_distance(const std::vector<double>& lower, const std::vector<double>& upper) const {
+    return squared_length(
+        [&](double w, std::size_t j) { return std::abs(w) * std::max(upper[j] - mean[j], mean[j] - lower[j]); });
   }
 };
 
 /// Of the rows that have features. A feature that stands still is independent of the others, with the standard
 /// deviation 1 that the scalers give it. Throws std::invalid_argument for a share outside (0, 1] or too small, and for
 /// no more rows than features.
-template <class Features>
-JointDistribution<Features::size> fit_joint_distribution(const RowSet& training,
-                                                         double shrinkage = TrustSettings{}.shrinkage) {
-  constexpr auto size = static_cast<std::size_t>(Features::size);
+inline JointDistribution fit_joint_distribution(const AskedModel& model, const RowSet& training,
+                                                double shrinkage = TrustSettings{}.shrinkage) {
+  const std::size_t size = model.units.size();
   if (!(shrinkage > 0 && shrinkage <= 1)) {
     throw std::invalid_argument("joint distribution: expected a shrinkage above 0 and up to 1, found " +
                                 std::to_string(shrinkage));
   }
-  const auto columns = feature_statistics<Features>(training);
-  Eigen::MatrixXd correlation = Eigen::MatrixXd::Zero(Features::size, Features::size);  // its lower triangle
+  const auto columns = feature_statistics(model, training);
+  const auto count = static_cast<Eigen::Index>(size);
+  Eigen::MatrixXd correlation = Eigen::MatrixXd::Zero(count, count);  // its lower triangle
   std::size_t rows = 0;
-  each_features<Features, double>(training, [&](const Flight&, std::size_t, const auto& x) {
+  model.each_exact_row(training, [&](const Flight&, std::size_t, const double* x) {
     ++rows;
-    Matrix<double, Features::size> z;
+    Eigen::VectorXd z(count);
     for (std::size_t i = 0; i < size; ++i) z[Eigen::Index(i)] = (x[i] - columns[i].mean) / columns[i].scale();
     correlation.selfadjointView<Eigen::Lower>().rankUpdate(z);
   });
@@ -101,12 +96,12 @@ JointDistribution<Features::size> fit_joint_distribution(const RowSet& training,
   if (!factor) {
     throw std::invalid_argument("joint distribution: expected a larger shrinkage, the correlations have no inverse");
   }
-  JointDistribution<Features::size> result;
-  std::size_t at = 0;
+  JointDistribution result;
   for (std::size_t j = 0; j < size; ++j) {
-    result.mean[j] = columns[j].mean;
-    for (std::size_t i = j; i < size; ++i)
-      result.whitening[at++] = (*factor)(Eigen::Index(i), Eigen::Index(j)) / columns[j].scale();
+    result.mean.push_back(columns[j].mean);
+    for (std::size_t i = j; i < size; ++i) {
+      result.whitening.push_back((*factor)(Eigen::Index(i), Eigen::Index(j)) / columns[j].scale());
+    }
   }
   return result;
 }
@@ -170,9 +165,8 @@ inline double greatest_command_residual(const RowSet& rows) {
 }  // namespace detail
 
 /// Limits and what they are limits of; values in double.
-template <int Size>
 struct FittedTrust {
-  detail::JointDistribution<Size> distribution{};
+  detail::JointDistribution distribution{};
   double squared_distance_limit = 0;  ///< of the squared distance
   double command_residual_factor = 0;
   double command_residual_limit = 0;
@@ -199,32 +193,27 @@ inline std::vector<double> command_residual_means(const std::vector<double>& err
 }
 
 /// The figures of the rows that have features: `squared_distances`, and `errors`.
-template <class Model>
-detail::TrustSeries trust_series(const Model& model,
-                                 const detail::JointDistribution<Model::Features::size>& distribution,
-                                 const RowSet& rows) {
+inline detail::TrustSeries trust_series(const AskedModel& model, const detail::JointDistribution& distribution,
+                                        const RowSet& rows) {
   detail::TrustSeries series;
-  each_features<typename Model::Features, typename Model::Scalar>(
-      rows, [&](const Flight& flight, std::size_t row, const auto& x) {
-        series.squared_distances.push_back(distribution.squared_distance(x));
-        const auto predicted = model.predict(x);
-        double error = 0;
-        for (std::size_t i = 0; i < rotor_count; ++i) {
-          error += std::abs(static_cast<double>(predicted[i]) - flight[row].commands[i]) / rotor_count;
-        }
-        series.errors.push_back(error);
-      });
+  model.each_row(rows, [&](const Flight& flight, std::size_t row, const double* x) {
+    series.squared_distances.push_back(distribution.squared_distance(x));
+    const Commands<double> predicted = model.predict(x);
+    double error = 0;
+    for (std::size_t i = 0; i < rotor_count; ++i)
+      error += std::abs(predicted[i] - flight[row].commands[i]) / rotor_count;
+    series.errors.push_back(error);
+  });
   return series;
 }
 
 /// The distribution of the training rows, and limits by validation rows that the model was not trained on; each piece
 /// of a flight is a flight of its own to the command residual. Throws std::invalid_argument for rows that are too few,
 /// and for a limit that could never trigger: the tail of few blocks, continued too far.
-template <class Model>
-FittedTrust<Model::Features::size> fit_trust(const Model& model, const RowSet& training, const RowSet& validation,
-                                             const TrustSettings& settings = {}) {
-  FittedTrust<Model::Features::size> trust;
-  trust.distribution = detail::fit_joint_distribution<typename Model::Features>(training, settings.shrinkage);
+inline FittedTrust fit_trust(const AskedModel& model, const RowSet& training, const RowSet& validation,
+                             const TrustSettings& settings = {}) {
+  FittedTrust trust;
+  trust.distribution = detail::fit_joint_distribution(model, training, settings.shrinkage);
   trust.command_residual_factor = settings.command_residual_factor;
   trust.update_period_s = detail::mean_period_s(validation);
   const auto rows = trust.update_period_s > 0
@@ -272,6 +261,13 @@ FittedTrust<Model::Features::size> fit_trust(const Model& model, const RowSet& t
   for (const double mean : usual) sum += mean;
   trust.command_residual_cleared = (sum / static_cast<double>(usual.size()) + trust.command_residual_limit) / 2;
   return trust;
+}
+
+/// The same of a model of types.
+template <class Model, class = typename Model::Features::template Inputs<double>>
+FittedTrust fit_trust(const Model& model, const RowSet& training, const RowSet& validation,
+                      const TrustSettings& settings = {}) {
+  return fit_trust(asked_model(model), training, validation, settings);
 }
 
 }  // namespace pinnquad

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// A trained model as a value: what exports, golden vectors and limits of trust ask of it. Code that takes one is
+// compiled once for all types of models.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/training/trained_model.hpp"
+
+namespace pinnquad {
+
+/// Numbers are doubles that hold the model's own scalar.
+struct AskedModel {
+  using Features = std::function<void(const Flight& flight, std::size_t row, const double* x)>;
+
+  std::vector<std::string> units;  ///< of the features
+  std::vector<double> envelope_lower, envelope_upper;
+  bool is_double = false;
+  /// Calls `visit` for each row that has features, as the model's scalar has them.
+  std::function<void(const RowSet& rows, const Features& visit)> each_row;
+  /// The same, worked out in double.
+  std::function<void(const RowSet& rows, const Features& visit)> each_exact_row;
+  std::function<Commands<double>(const double* x)> predict;  ///< as TrainedModel::predict()
+  /// Of a model with a bounded residual: its standardised outputs, before they are bounded; else empty.
+  std::function<void(const double* x, double* y)> residual;
+  std::vector<double> residual_lower, residual_upper;  ///< standardised
+
+  std::size_t size() const { return envelope_lower.size(); }
+};
+
+namespace detail {
+
+template <class Features, class Scalar>
+std::function<void(const RowSet&, const AskedModel::Features&)> rows_of_features() {
+  return [](const RowSet& rows, const AskedModel::Features& visit) {
+    each_features<Features, Scalar>(rows, [&visit](const Flight& flight, std::size_t row, const auto& x) {
+      if constexpr (std::is_same_v<Scalar, double>) {
+        visit(flight, row, x.data());
+      } else {
+        const std::vector<double> own(x.begin(), x.end());
+        visit(flight, row, own.data());
+      }
+    });
+  };
+}
+
+template <class FeatureVector>
+FeatureVector as_features(const double* x) {
+  FeatureVector own{};
+  for (std::size_t i = 0; i < own.size(); ++i) own[i] = static_cast<typename FeatureVector::value_type>(x[i]);
+  return own;
+}
+
+template <class Scalar>
+Commands<double> in_double(const Commands<Scalar>& commands) {
+  Commands<double> result{};
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = static_cast<double>(commands[i]);
+  return result;
+}
+
+/// Statistics of every feature, physical units.
+inline std::vector<ColumnStatistics> feature_statistics(const AskedModel& model, const RowSet& rows) {
+  return column_statistics({model.units.begin(), model.units.end()}, [&](const RowVisit& visit) {
+    model.each_exact_row(rows, [&](const Flight&, std::size_t, const double* x) { visit(x); });
+  });
+}
+
+/// Without rows: of a model whose Inputs no row has.
+template <class Model>
+AskedModel asked_without_rows(const Model& model) {
+  using FeatureVector = std::decay_t<decltype(model.envelope_lower)>;
+  AskedModel asked;
+  asked.units.assign(Model::Features::units.begin(), Model::Features::units.end());
+  asked.envelope_lower.assign(model.envelope_lower.begin(), model.envelope_lower.end());
+  asked.envelope_upper.assign(model.envelope_upper.begin(), model.envelope_upper.end());
+  asked.is_double = std::is_same_v<typename Model::Scalar, double>;
+  asked.predict = [model](const double* x) { return in_double(model.predict(as_features<FeatureVector>(x))); };
+  return asked;
+}
+
+}  // namespace detail
+
+/// A model of types (training/trained_model.hpp) as a value, but for its residual.
+template <class Model>
+AskedModel asked_model(const Model& model) {
+  AskedModel asked = detail::asked_without_rows(model);
+  asked.each_row = detail::rows_of_features<typename Model::Features, typename Model::Scalar>();
+  asked.each_exact_row = detail::rows_of_features<typename Model::Features, double>();
+  return asked;
+}
+
+/// The whole of it, for golden_features().
+template <class Model>
+AskedModel asked_with_residual(const Model& model) {
+  AskedModel asked = asked_model(model);
+  if constexpr (detail::has_bounded_residual<typename Model::Network>) {
+    using Structure = detail::StatedStructure<typename Model::Network>;
+    using Scalar = typename Model::Scalar;
+    constexpr int outputs = Model::Network::outputs;
+    const auto* const bounds = model.network.parameters.data() + Structure::at;
+    asked.residual_lower.assign(bounds, bounds + outputs);
+    asked.residual_upper.assign(bounds + outputs, bounds + 2 * outputs);
+    asked.residual = [model](const double* x, double* y) {
+      const auto own = detail::as_features<typename Model::FeatureVector>(x);
+      typename Model::FeatureVector z{};
+      Scalar made[outputs] = {};
+      model.input.standardise(own.data(), z.data());
+      Structure::Inner::forward(model.network.parameters.data() + Structure::at + 2 * outputs, z.data(),
+                                static_cast<Scalar*>(made));
+      for (int k = 0; k < outputs; ++k) y[k] = static_cast<double>(made[k]);
+    };
+  }
+  return asked;
+}
+
+}  // namespace pinnquad

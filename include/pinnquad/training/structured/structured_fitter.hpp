@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+// The structured models of one feature set, a value: base, residual, slopes, and the choice whether the residual is
+// kept. fit_structured.hpp chooses between sets, and gives the models their types.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "pinnquad/data/split.hpp"
+#include "pinnquad/training/structured/agreement.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
+#include "pinnquad/training/structured/slopes_under_noise.hpp"
+
+namespace pinnquad {
+
+/// The settings of fit_structured().
+struct StructuredSettings {
+  /// Whether the model is shown the altitude above ground. A model that is shown it must be given it in flight.
+  enum class Altitude {
+    by_validation,  ///< shown where it lowers the error on the validation rows much
+    yes,
+    no
+  };
+
+  ResidualTraining residual{};
+  bool pinned_slopes = false;  ///< the base's slopes are the airframe's in hover; false: learnt
+  Altitude altitude = Altitude::by_validation;
+  /// The validation rows are fitted too. Then whole flights, each left out in turn, choose alone, and no rows are left
+  /// that limits of trust could be found by.
+  bool fit_validation = false;
+  double least_altitude_gain = 0.2;  ///< by_validation: least share of the error that the altitude must take away
+  std::uint64_t first_seed = 1;
+  int seeds = 5;
+};
+
+/// A feature set as fit_structured() takes it.
+struct StructuredSet {
+  std::function<FitContext(const RowSet& training)> context;
+  ResidualKind residual;
+};
+
+/// The model of one seed: parameters of a MonotoneBase, or of a MonotonePredictor with its residual.
+struct StructuredFit {
+  std::vector<float> parameters;
+  bool has_residual = false;
+  bool with_altitude = false;
+  std::uint64_t seed = 0;
+  double validation_error = 0;  ///< mean absolute error of the commands on the validation rows, by least squares
+  double training_s = 0;        ///< wall-clock time of the residual's training
+  MeasuredSlopes slopes{};      ///< the same of all seeds
+};
+
+namespace detail {
+
+/// All rows of some groups.
+inline RowSet rows_of(const std::vector<RowSet>& groups) {
+  RowSet rows;
+  for (const RowSet& group : groups) {
+    for (const FlightRows& piece : group.pieces()) rows.add(*piece.flight, piece.rows);
+  }
+  return rows;
+}
+
+/// The rows that a model is fitted to.
+inline RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings) {
+  return settings.fit_validation ? rows_of({split.train, split.validation}) : split.train;
+}
+
+/// The fits of one feature set. The base is the same of all seeds, the residual is not.
+class StructuredFitter {
+ public:
+  StructuredFitter(const StructuredSet& set, const RowSplit& split, const StructuredSettings& settings)
+      : split_(split),
+        settings_(settings),
+        kind_(set.residual),
+        fitted_(fitted_rows(split, settings)),
+        context_(set.context(fitted_)),
+        shape_(monotone_shape(context_)) {
+    if (settings.pinned_slopes) pinned_ = hover_slopes(context_.airframe);
+    for (const RowSet& group : left_out_groups(fitted_)) {
+      RegressionSums sums = regression_sums(context_, group);
+      if (!(sums.rows() > 0)) continue;  // no window is complete there
+      groups_.push_back(group);
+      sums_.push_back(std::move(sums));
+    }
+    if (context_.is_windowed()) hold_thrust();
+    measured_ = map_ = fit_monotone_base(shape_, sums_, pinned_);
+    if (!shape_.noisy.empty()) {
+      slopes_ = measure_slopes(shape_, instrumented_blocks(context_, fitted_, shape_.noisy), pinned_, measured_);
+    }
+    whole_flights_ = whole_flight_groups(fitted_).size() > 1 && groups_.size() > 1;
+  }
+
+  /// None where `goes_on` stopped it.
+  std::optional<StructuredFit> operator()(std::uint64_t seed, const GoesOn& goes_on) const {
+    const auto start = std::chrono::steady_clock::now();
+    const auto done = [&](std::vector<float> parameters, bool has_residual, double error) {
+      StructuredFit made{with_measured_slopes(std::move(parameters)), has_residual, false, seed, error, 0, slopes_};
+      made.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      return made;
+    };
+    if (settings_.fit_validation) return fit_by_groups(seed, goes_on, done);
+    const FittedResidual fit = fitted(split_.train, map_, seed, goes_on);
+    if (!fit.finished) return {};
+    bool kept = fit.residual_kept;
+    if (kept && whole_flights_) {
+      const std::optional<bool> gains = gains_on_flights_left_out(seed, goes_on);
+      if (!gains) return {};
+      kept = *gains;
+    }
+    return kept ? done(fit.parameters, true, fit.error) : done(fit.base, false, fit.base_error);
+  }
+
+ private:
+  /// A window's taps would be their own instruments. What a held force takes is the same without a window: where noise
+  /// bends it there, the sum over all taps is held at what instruments say there.
+  void hold_thrust() {
+    const FitContext present = context_.present(fitted_);
+    const MonotoneShape shape = monotone_shape(present);
+    if (shape.thrusts.size() != 1) return;
+    AffineMap map = fit_monotone_base(shape, regression_sums(present, left_out_groups(fitted_)));
+    const MeasuredSlope thrust =
+        measure_slopes(shape, instrumented_blocks(present, fitted_, shape.noisy), {}, map).of[0];
+    if (!thrust.by_instruments) return;
+    slopes_.of[0] = thrust;
+    shape_.held_thrust = thrust.slope;
+    slopes_.noisy = shape_.thrusts;
+    slopes_.denoised = denoised_taps(context_, shape_, total(instrumented_blocks(context_, fitted_, slopes_.noisy)));
+  }
+
+  FittedResidual fitted(const RowSet& training, const AffineMap& map, std::uint64_t seed, const GoesOn& goes_on) const {
+    std::mt19937_64 engine(seed);
+    return fit_residual(context_, kind_, training, split_.validation, map, settings_.residual, engine, goes_on);
+  }
+
+  /// The base with its measured slopes. A sum that has them by instruments has no residual: what a network is shown, it
+  /// would use to take them back.
+  std::vector<float> with_measured_slopes(std::vector<float> parameters) const {
+    if (!slopes_.by_instruments()) return parameters;
+    const std::vector<float> base = base_parameters(context_.accelerations, measured_);
+    std::copy(base.begin(), base.end(), parameters.begin());
+    for (std::size_t k = 0; k < slopes_.of.size() && parameters.size() > base.size(); ++k) {
+      if (slopes_.of[k].by_instruments) parameters[base.size() + k] = parameters[base.size() + 4 + k] = 0;
+    }
+    return parameters;
+  }
+
+  /// Calls `use(others, base without the group, the group)`, each group left out in turn.
+  template <class Use>
+  void each_left_out(const Use& use) const {
+    for (std::size_t out = 0; out < groups_.size(); ++out) {
+      std::vector<RowSet> others = groups_;
+      std::vector<RegressionSums> sums = sums_;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
+      sums.erase(sums.begin() + static_cast<std::ptrdiff_t>(out));
+      use(rows_of(others), fit_monotone_base(shape_, sums, pinned_), groups_[out]);
+    }
+  }
+
+  /// Does the residual lower the error on whole flights, each left out in turn of the rows that it is fitted to? None
+  /// where `goes_on` stopped it.
+  std::optional<bool> gains_on_flights_left_out(std::uint64_t seed, const GoesOn& goes_on) const {
+    double base_error = 0, error = 0;
+    bool finished = true;
+    each_left_out([&](const RowSet& others, const AffineMap& map, const RowSet& group) {
+      if (!finished) return;
+      const FittedResidual fit = fitted(others, map, seed, goes_on);
+      finished = fit.finished;
+      if (!finished) return;
+      const FitRows unseen = fit_rows(context_, group);
+      base_error += unseen.size() * command_error(context_, {kind_.base, fit.base}, unseen);
+      const bool has_residual = !fit.parameters.empty();
+      error += unseen.size() * (has_residual ? command_error(context_, {kind_.predictor, fit.parameters}, unseen)
+                                             : command_error(context_, {kind_.base, fit.base}, unseen));
+    });
+    if (!finished) return {};
+    return error < (1 - settings_.residual.least_gain) * base_error;
+  }
+
+  FitRows left(const AffineMap& map, const RowSet& rows) const {
+    return left_by(context_, kind_, map, fit_rows(context_, rows));
+  }
+
+  /// Groups left out in turn say how long the residual is trained and what share of each output counts; then base and
+  /// residual are fitted to all rows.
+  template <class Done>
+  std::optional<StructuredFit> fit_by_groups(std::uint64_t seed, const GoesOn& goes_on, const Done& done) const {
+    const std::vector<float> base = base_parameters(context_.accelerations, map_);
+    if (groups_.size() < 2) {  // nothing to choose by
+      return done(base, false, std::numeric_limits<double>::quiet_NaN());
+    }
+    const int epochs = settings_.residual.epochs;
+    std::vector<Agreement> by_epoch(static_cast<std::size_t>(epochs));
+    bool finished = true;
+    const auto train = [&](const FitRows& training, const FitRows& unseen, int until, const auto& visit) {
+      std::mt19937_64 engine(seed);
+      return train_residual(context_, kind_, training, unseen, settings_.residual, until, engine, goes_on, visit);
+    };
+    each_left_out([&](const RowSet& others, const AffineMap& map, const RowSet& group) {
+      if (!finished) return;
+      const FitRows unseen = left(map, group);
+      finished = train(left(map, others), unseen, epochs, [&](ResidualTrainer& trainer, int epoch) {
+        agree(by_epoch[static_cast<std::size_t>(epoch)], trainer, unseen);
+      });
+    });
+    if (!finished) return {};
+    std::size_t best = 0;
+    for (std::size_t epoch = 1; epoch < by_epoch.size(); ++epoch) {
+      if (by_epoch[epoch].gain() > by_epoch[best].gain()) best = epoch;
+    }
+    const Agreement& chosen = by_epoch[best];
+    const double error = chosen.error();
+    if (!(chosen.gain() > 0)) return done(base, false, error);
+    std::vector<float> residual;
+    const FitRows all = left(map_, fitted_);
+    if (!train(all, FitRows{all.inputs, {}, {}}, static_cast<int>(best) + 1,
+               [&](ResidualTrainer& trainer, int) { residual = trainer.parameters(); })) {
+      return {};
+    }
+    take_shares(residual, chosen);
+    return done(base_and_residual(kind_, base, residual, all), true, error);
+  }
+
+  void agree(Agreement& agreement, ResidualTrainer& trainer, const FitRows& unseen) const {
+    agreement.begin_group();
+    trainer.each_prediction([&](int row, int k, double said) {
+      const double unit = context_.output_deviation[static_cast<std::size_t>(k)];
+      agreement.add(k, unit * said, unit * static_cast<double>(unseen.outputs_of(row)[k]));
+    });
+  }
+
+  /// In the last layer, which is affine: weights by output, then biases.
+  void take_shares(std::vector<float>& residual, const Agreement& agreement) const {
+    const int width = DescribedPredictor(kind_.network, residual).last_width();
+    auto weight = residual.end() - AxisCommandOutputs::size * (width + 1);
+    for (int k = 0; k < AxisCommandOutputs::size; ++k) {
+      const auto share = static_cast<float>(agreement.share(k));
+      for (int i = 0; i < width; ++i) *weight++ *= share;
+      *(residual.end() - AxisCommandOutputs::size + k) *= share;
+    }
+  }
+
+  const RowSplit& split_;
+  const StructuredSettings& settings_;
+  const ResidualKind& kind_;
+  RowSet fitted_;
+  FitContext context_;
+  MonotoneShape shape_;
+  std::optional<AxisSlopes> pinned_;
+  std::vector<RowSet> groups_;
+  std::vector<RegressionSums> sums_;  ///< of the groups
+  AffineMap map_;                     ///< by least squares
+  AffineMap measured_;                ///< by instruments where noise bends it
+  MeasuredSlopes slopes_;
+  bool whole_flights_ = false;
+};
+
+}  // namespace detail
+}  // namespace pinnquad

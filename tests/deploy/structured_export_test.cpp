@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// A structured model that is exported as a value is that of its types to the byte: header, block, what trust asks.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+#include <sstream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/deploy/export_model.hpp"
+#include "pinnquad/deploy/structured_model.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/features/extra_columns.hpp"
+#include "pinnquad/features/windowed.hpp"
+
+using namespace pinnquad;
+
+namespace {
+
+/// Commands that curve with the velocity: the residual finds something.
+Dataset curved_flights() {
+  std::mt19937_64 engine(3);
+  Flight flight(1200);
+  flight.name = "curved";
+  ExtraColumn battery{{BatteryVoltage::name, BatteryVoltage::unit}, {}};
+  const auto airframe = PaperQuadrotor::value<double>();
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    Sample& sample = flight[row];
+    sample.time_s = 0.05 * static_cast<double>(row);
+    sample.altitude_m = uniform(engine, 1, 4);
+    for (int i = 0; i < 3; ++i) {
+      sample.linear_acceleration_m_s2[i] = uniform(engine, -3, 3);
+      sample.angular_acceleration_rad_s2[i] = uniform(engine, -20, 20);
+      sample.velocity_m_s[i] = uniform(engine, -2, 2);
+      sample.body_rates_rad_s[i] = uniform(engine, -2, 2);
+    }
+    battery.values.push_back(uniform(engine, 14, 16));
+    for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+      double u = 0.5 + 0.1 * std::cos(1.5 * sample.velocity_m_s[0]) - 0.02 * (battery.values.back() - 15);
+      for (int axis = 0; axis < 3; ++axis) {
+        u += allocation_signs(airframe, axis)[rotor] * 0.004 * sample.angular_acceleration_rad_s2[axis];
+      }
+      sample.commands[rotor] = u;
+    }
+  }
+  flight.add_column(battery);
+  return Dataset(flight);
+}
+
+template <class Scalar>
+std::string text_of(const GroundModel<Scalar>& model, const RowSet& rows) {
+  std::ostringstream out;
+  write_model(out, "Same", model, golden_features(model.asked, rows), {});
+  return out.str();
+}
+
+template <class Features>
+bool compare(bool with_residual) {
+  const Dataset flights = curved_flights();
+  const RowSplit split = split_for_training(flights);
+  const GivenAirframe airframe(PaperQuadrotor::name, airframe_value<PaperQuadrotor, double>());
+  StructuredSettings settings;
+  settings.seeds = 1;
+  settings.residual.epochs = 8;
+  if (!with_residual) settings.residual.least_gain = 1;
+  const StructuredExport set = structured_export<Features>(airframe);
+  const auto values = fit_structured(set.set, nullptr, split, settings);
+  const StructuredFit& fit = values.best();
+  const GroundModel<float> value = ground_model(set, fit, set.set.context(split.train), split.train);
+  const auto typed = fit_structured<StructuredFitsOf<Features, Features>>(split, airframe, settings);
+  std::visit(
+      [&](const auto& model) {
+        const GroundModel<float> of_types = ground_model(model);
+        CHECK(text_of(value, split.train) == text_of(of_types, split.train));
+        const auto golden = golden_features(value.asked, split.train);
+        CHECK(model_block(value, golden, {}) == model_block(of_types, golden, {}));
+        const auto joint = detail::fit_joint_distribution(value.asked, split.train);
+        CHECK(joint.whitening == detail::fit_joint_distribution(of_types.asked, split.train).whitening);
+        CHECK(trust_series(value.asked, joint, split.validation).errors ==
+              trust_series(of_types.asked, joint, split.validation).errors);
+      },
+      typed.best().model);
+  return fit.has_residual;
+}
+
+}  // namespace
+
+TEST_CASE("with a residual, with the altitude and a column, of a window") {
+  CHECK(compare<InverseFeatures>(true));
+  CHECK(compare<WithColumns<InverseFeaturesWithAltitude, BatteryVoltage>>(true));
+  CHECK_FALSE(compare<InverseFeatures>(false));
+  compare<PartlyWindowed<InverseFeatures, InverseAccelerations, 3, PeriodMicroseconds<50000>, Centred>>(true);
+}

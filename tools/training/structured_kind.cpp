@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "training/structured_kind.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "command_line/interrupt.hpp"
+#include "training/network_kinds.hpp"
+
+namespace programs {
+
+namespace {
+
+/// A structured model, how it was chosen whether it is shown the altitude, and what is known of its slopes. Where they
+/// are by instruments, it is judged by features without their noise.
+class StructuredNetwork : public ExportedNetwork {
+ public:
+  /// Limits of trust are of models without a window, and found by rows that they were not fitted to.
+  StructuredNetwork(pinnquad::GroundModel<float> model, pinnquad::FitContext context, const pinnquad::RowSet& training,
+                    const AltitudeChoice& altitude, const pinnquad::MeasuredSlopes& slopes, bool fits_validation)
+      : ExportedNetwork(std::move(model), training, !context.is_windowed() && !fits_validation),
+        altitude_(altitude),
+        slopes_(slopes),
+        context_(std::move(context)) {}
+  Predictions predictions(const pinnquad::RowSet& rows) const override {
+    if (!slopes_.by_instruments()) return ExportedNetwork::predictions(rows);
+    Predictions result = without_answer(rows);
+    pinnquad::each_denoised(context_, slopes_, rows, [&](std::size_t row, const std::vector<double>& x) {
+      result[row] = this->block()->commands(x);
+    });
+    return result;
+  }
+  Answers answers(const pinnquad::RowSet& rows) const override {
+    Answers result = ExportedNetwork::answers(rows);
+    if (slopes_.by_instruments()) result.predictions = predictions(rows);
+    return result;
+  }
+  AltitudeChoice altitude() const override { return altitude_; }
+  pinnquad::SlopesOfSums slopes() const override { return slopes_.of; }
+
+ private:
+  AltitudeChoice altitude_;
+  pinnquad::MeasuredSlopes slopes_;
+  pinnquad::FitContext context_;
+};
+
+/// Work of fit_structured(): one fit after the other, with progress; Ctrl-C stops it.
+class StructuredWork {
+ public:
+  StructuredWork(const FitTask& task, int epochs) : task_(task), epochs_(epochs) {}
+
+  template <class Job>
+  void run(std::size_t count, const Job& job) {
+    fits_ = static_cast<double>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!job(i)) throw Interrupted{};
+      done_ += 1;
+    }
+  }
+  bool goes_on(int epoch) const {
+    task_.share_done((done_ + static_cast<double>(epoch) / epochs_) / fits_);
+    return !interrupted();
+  }
+  void chose(const pinnquad::StructuredAltitude&) const {}
+
+ private:
+  const FitTask& task_;
+  int epochs_;
+  double fits_ = 1, done_ = 0;
+};
+
+/// As many steps as a recipe takes on the 9,000 training rows of a flight of the paper, over all groups left out.
+int structured_epochs(const FitTask& task) {
+  if (task.epochs > 0) return task.epochs;
+  const double groups = static_cast<double>(pinnquad::left_out_groups(task.training).size());
+  const double rows = static_cast<double>(task.training.size()) * (task.settings.fit_validation ? groups : 1);
+  return std::clamp(static_cast<int>(recipe_epochs * 9000.0 / std::max(rows, 1.0)), 12, recipe_epochs);
+}
+
+}  // namespace
+
+std::shared_ptr<const TrainedNetwork> fit_structured_on(const FitTask& task, const StructuredSets& sets) {
+  using Rule = pinnquad::StructuredSettings::Altitude;
+  pinnquad::StructuredSettings settings;
+  settings.residual.epochs = structured_epochs(task);
+  settings.pinned_slopes = task.settings.pinned_slopes;
+  settings.fit_validation = task.settings.fit_validation;
+  settings.altitude = task.lacks("altitude")    ? Rule::no
+                      : !task.settings.altitude ? Rule::by_validation
+                      : *task.settings.altitude ? Rule::yes
+                                                : Rule::no;
+  settings.first_seed = task.seed;
+  settings.seeds = 1;
+  const pinnquad::RowSplit split{task.training, task.validation, {}};
+  const auto fits = pinnquad::fit_structured(sets.lower.set, sets.higher ? &sets.higher->set : nullptr, split, settings,
+                                             StructuredWork(task, settings.residual.epochs));
+  AltitudeChoice altitude;
+  altitude.applies = sets.higher.has_value();
+  altitude.taken = fits.altitude.taken;
+  altitude.error_with = fits.altitude.error_with.value_or(pinnquad::not_a_number);
+  altitude.error_without = fits.altitude.error_without.value_or(pinnquad::not_a_number);
+  const pinnquad::StructuredFit& best = fits.best();
+  const pinnquad::StructuredExport& set = best.with_altitude ? *sets.higher : sets.lower;
+  const pinnquad::RowSet fitted = pinnquad::detail::fitted_rows(split, settings);
+  pinnquad::FitContext context = set.set.context(fitted);
+  auto model = pinnquad::ground_model(set, best, context, fitted);
+  return std::make_shared<StructuredNetwork>(std::move(model), std::move(context), task.training, altitude, best.slopes,
+                                             settings.fit_validation);
+}
+
+}  // namespace programs
