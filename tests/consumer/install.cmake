@@ -58,6 +58,8 @@ foreach(program IN ITEMS pinnquad pinnquad-study)
   endif()
 endforeach()
 list(REMOVE_ITEM installed_with_tests ${of_programs})
+# the report of a study, in Python: a link to it, and what it reads
+list(FILTER installed_with_tests EXCLUDE REGEX "^(bin/pinnquad-study-report|share/pinnquad/(study|page)/[a-z0-9_]+[.](py|html|css))$")
 # pinnquad::logs, where what it needs is there and it was built
 list(FILTER installed_with_tests EXCLUDE REGEX
   "^(include/pinnquad/logs/|lib[^/]*/(.*/)?libpinnquad_logs[.]a$|share/cmake/pinnquad/pinnquadLogsTargets)")

@@ -169,11 +169,6 @@ def study(program):
 
 
 @pytest.fixture(scope="session")
-def report(study):
-    return Program(study, "report")
-
-
-@pytest.fixture(scope="session")
 def commands(pinnquad):
     """Every command of the program, and its help: the program itself first, then what its help names, and what theirs
     does."""

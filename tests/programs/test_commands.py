@@ -35,7 +35,7 @@ def check_help(commands):
 
 def test_help_and_version_of_the_study(study):
     of_study = commands_of(study)
-    assert names_below(of_study, study) == ["paper", "ablation", "beyond", "merge", "report"]
+    assert names_below(of_study, study) == ["paper", "ablation", "beyond", "merge"]
     assert len(check_help(of_study)) <= 3
 
 
@@ -113,7 +113,7 @@ def test_refused(pinnquad, commands, words, keyword):
 
 @pytest.mark.parametrize("words, keyword", [
     ("", "expected a command"), ("news", "'news'"), ("paper --out o ablation", "ablation"),
-    ("report", "dir is required")])
+    ("merge", "parts is required")])
 def test_refused_by_the_study(study, words, keyword):
     check_refused(study, commands_of(study), words, keyword)
 

@@ -4,6 +4,7 @@ import fcntl
 import itertools
 import os
 import shutil
+import sys
 
 import pytest
 from conftest import SOURCE, Program
@@ -220,7 +221,8 @@ def test_hostile(cases, pinnquad, given, work):
     assert try_all(cases(), programs, given, work) >= 60
 
 
-def test_hostile_study(study, report, given, work):
+def test_hostile_study(study, given, work):
+    report = Program(sys.executable, SOURCE / "tools/study/report.py")
     assert try_all(study_cases(), {"study": study, "report": report}, given, work) >= 60
 
 

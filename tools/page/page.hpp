@@ -12,7 +12,6 @@ namespace programs {
 extern const char* const page_template;           ///< page/page.html, in the language of mustache
 extern const char* const page_palette;            ///< page/palette.css
 extern const char* const text_style;              ///< page/text.css: a page of text, tables and charts
-extern const char* const report_template;         ///< report/report.html
 extern const char* const training_page_template;  ///< training/training_page.html
 extern const char* const beyond_page_template;    ///< study/beyond_page.html
 extern const char* const loop_page_template;      ///< loop/loop_page.html

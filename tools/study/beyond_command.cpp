@@ -24,7 +24,7 @@ namespace {
 struct BeyondOptions {
   std::string out, shard = "1/1", airframe = study::Airframe::name;
   std::vector<std::string> conditions, models, flights;
-  int seeds = 10, epochs = programs::paper_epochs, flight_count = 3;
+  int seeds = 10, epochs = study::paper_epochs, flight_count = 3;
   std::uint64_t flight_seed = study::first_flight_seed;
   unsigned threads = 0;
 };

@@ -8,7 +8,7 @@
 
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "report/columns.hpp"
+#include "study/columns.hpp"
 
 namespace study {
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The program pinnquad-study: the paper's campaign (the 14 models of Table 2 on three flights, 20 seeds each, as rows
-// for Table 3), the ablation, what goes beyond the paper, and the report.
+// for Table 3), the ablation, and what goes beyond the paper. report.py writes the report.
 //   pinnquad-study paper --seeds 20 --out DIR
 //   pinnquad-study merge DIR... --out DIR
-//   pinnquad-study report DIR
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -18,9 +17,6 @@
 #include "command_line/interrupt.hpp"
 #include "command_line/options.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
-#include "report/paper.hpp"
-#include "report/report.hpp"
-#include "report/report_command.hpp"
 #include "study/ablation.hpp"
 #include "study/beyond_command.hpp"
 #include "study/campaign.hpp"
@@ -38,8 +34,8 @@ struct StudyOptions {
   std::string weights = "final";
   std::vector<std::string> parts;
   std::vector<std::string> variants;
-  int seeds = programs::paper_seeds;
-  int epochs = programs::paper_epochs;
+  int seeds = study::paper_seeds;
+  int epochs = study::paper_epochs;
   int flights = 4;
   std::uint64_t flight_seed = study::first_flight_seed;
   int patience = 0;
@@ -84,11 +80,11 @@ int run_campaign(const StudyOptions& options, const char* kind, std::vector<stud
   study::print_summary(plan, campaign.rows());
   // a shard's rows are for merge; an ablation is no Table 3
   if (plan.kind != "table 2" || options.shard != "1/1") return 0;
-  programs::keeping(
-      "all trainings are in " + options.out + "/rows.csv, the report is missing; the same command goes on", [&] {
-        study::draw_flights(options.out, options.flight_seed);
-        programs::report_study(options.out);
-      });
+  programs::keeping("all trainings are in " + options.out +
+                        "/rows.csv, pictures of its flights are missing; the same "
+                        "command goes on",
+                    [&] { study::draw_flights(options.out, options.flight_seed); });
+  std::printf("its report  pinnquad-study-report %s\n", options.out.c_str());
   return 0;
 }
 
@@ -144,11 +140,11 @@ int run(int argument_count, char** arguments, std::string& name) {
   CLI::App program("The paper's campaign: its models trained and judged, seed by seed", name);
   program.fallthrough();  // --config may stand anywhere
   const std::vector<programs::Command> commands = {paper_command(program), ablation_command(program),
-                                                   programs::beyond_command(program), merge_command(program),
-                                                   programs::report_command(program)};
+                                                   programs::beyond_command(program), merge_command(program)};
   program.footer(
       std::string("Examples:\n"
-                  "  pinnquad-study paper --seeds 20 --out study       the study and its report\n"
+                  "  pinnquad-study paper --seeds 20 --out study       the study; then its report:\n"
+                  "  pinnquad-study-report study\n"
                   "  pinnquad-study beyond --seeds 10 --out beyond     structured models beside its network\n"
                   "pinnquad-study COMMAND --help says more.\n") +
       study::exit_codes + " 70 is a fault of the program, to be reported.");

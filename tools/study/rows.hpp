@@ -21,7 +21,7 @@
 
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/csv_table.hpp"
-#include "report/columns.hpp"
+#include "study/columns.hpp"
 #include "study/contender.hpp"
 
 namespace study {

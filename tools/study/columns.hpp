@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// rows.csv of a study: its columns, for the program that writes it and the report that reads it.
+// rows.csv of a study: its columns, and what names a flight in them. report_rows.py reads them.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,6 @@
 #include "training/judgement.hpp"
 
 namespace programs {
-
-constexpr int study_models = 14;  ///< of Table 2
 
 /// One recorded flight: what kind it is of (D1, D2, D3), and the seed it was flown from.
 struct StudyFlight {
