@@ -109,11 +109,11 @@ def planted(tmp_path_factory):
 
 @pytest.fixture
 def study(planted, work):
-    """study(change): a study with other rows, in edited/."""
+    """study(change): a study with other rows, in edited/; without series, whose drawings take seconds."""
 
-    def write(change=lambda line, cells: None):
+    def write(change=lambda line, cells: None, series=False):
         shutil.rmtree("edited", ignore_errors=True)
-        shutil.copytree(planted / "plain", "edited")
+        shutil.copytree(planted / "plain", "edited", ignore=None if series else shutil.ignore_patterns("series"))
         edited(planted / "plain/rows.csv", "edited/rows.csv", change)
 
     return write
@@ -277,6 +277,7 @@ def test_planted(planted):
 def test_few_seeds_decide_nothing(study):
     """Whichever way five lean; six do. A study of the default size has no banner."""
     make("five", 5)
+    shutil.rmtree("five/series")
     report("five")
     assert set(verdicts("five").values()) == {"undecided"} and 'class="badge not"' not in shown("five")
     look("five")
@@ -315,7 +316,6 @@ def test_incomplete(study):
     assert "model 14: no rows" in shown("edited") and "model 6: 7 of 8 seeds, without seed 3" in shown("edited")
     look("edited")
     study(lambda line, c: None if line == 1 or (c[0], c[2], c[3]) == ("4", "1", "2") else False)
-    shutil.rmtree("edited/series")
     report("edited")
     assert verdicts("edited")["2.1"] == "not judged" and "no series/model2.csv" in shown("edited")
     assert re.search("hold what they show: .*Fig. 5, Fig. 6", shown("edited"))
@@ -413,7 +413,7 @@ def test_refused_files(study, refused):
     study()
     replaced("edited/study.json", "edited/study.json", ('"seeds"', '"models": [2, 4], "seeds"'))
     refused("rows.csv:10:1", '"3"')
-    study()
+    study(series=True)
     edited("edited/series/model4.csv", "series.csv", cell(5, 1, "soon"))
     shutil.move("series.csv", "edited/series/model4.csv")
     refused("model4.csv:5:1", '"soon"')

@@ -170,7 +170,8 @@ def correlation(series):
     def draw(width):
         wide = width == WIDE
         figure = Figure((width, 6.2 if wide else 11))
-        grid = figure.subplots(3 if wide else 6, 2 if wide else 1, width_ratios=[2, 1] if wide else None)
+        columns = [2, 1] if wide else [1]
+        grid = figure.subplots(6 // len(columns), len(columns), gridspec_kw={"width_ratios": columns})
         pairs = np.reshape(grid, (3, 2))
         for axis, (motion, flown, _), (over_time, cloud) in zip(range(3), signed_sums(series), pairs):
             lines = over_time.plot(time[first], motion[first], color=BLUE, linewidth=2.4, alpha=0.75)
