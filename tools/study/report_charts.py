@@ -57,8 +57,8 @@ def svg(title, description, draw):
             text = text.replace(colour, f"var(--{word})")
         box = re.search(r'viewBox="[^"]*"', text)[0]
         both += (f'<svg class="{name}" role="img" {box} font-family="Inter,Helvetica Neue,Helvetica,Arial,Liberation '
-                 f'Sans,DejaVu Sans,sans-serif"><title>{html.escape(title)}</title><desc>{html.escape(description)}</desc>' +
-                 re.sub(r"\n\s*", "\n", text.partition(">")[2]))
+                 f'Sans,DejaVu Sans,sans-serif"><title>{html.escape(title)}</title>'
+                 f"<desc>{html.escape(description)}</desc>" + re.sub(r"\n\s*", "\n", text.partition(">")[2]))
     return both
 
 
@@ -122,7 +122,8 @@ def errors(study, models, title):
             if reference <= most:
                 axes.errorbar(reference, row + 0.24, xerr=spread, fmt="D", color=ORANGE, markersize=4, linewidth=1)
         rows_of(axes, names)
-        axes.set(xlim=(0, most), xlabel=f"{ERROR.label} of the commands, 10⁻³")
+        axes.set_xlim(0, most)
+        axes.set_xlabel(f"{ERROR.label} of the commands, 10⁻³", loc="right")
         return figure
     return svg(title, f"{ERROR.label} of the commands, 10⁻³: {', '.join(names)}.", draw)
 
@@ -145,7 +146,7 @@ def changes(comparisons):
             if (paper := paper_change(c.pair, ERROR)) is not None:
                 axes.plot(100 * paper, row, "D", color=ORANGE, markersize=5, label="the paper")
         rows_of(axes, [f"{name}, {TABLE_2[c.pair[1]].data}" for name, c in zip(names, shown)])
-        axes.set_xlabel("change of the mean absolute error, %")
+        axes.set_xlabel("change of the mean absolute error, %", loc="right")
         labels = dict(zip(*axes.get_legend_handles_labels()[::-1]))
         axes.legend(labels.values(), labels, loc="lower right", bbox_to_anchor=(1, 1), ncol=3)
         return figure
@@ -170,7 +171,8 @@ def correlation(series):
     def draw(width):
         wide = width == WIDE
         figure = Figure((width, 6.2 if wide else 11))
-        grid = figure.subplots(3 if wide else 6, 2 if wide else 1, width_ratios=[2, 1] if wide else None)
+        columns = [2, 1] if wide else [1]
+        grid = figure.subplots(6 // len(columns), len(columns), gridspec_kw={"width_ratios": columns})
         pairs = np.reshape(grid, (3, 2))
         for axis, (motion, flown, _), (over_time, cloud) in zip(range(3), signed_sums(series), pairs):
             lines = over_time.plot(time[first], motion[first], color=BLUE, linewidth=2.4, alpha=0.75)

@@ -330,7 +330,8 @@ def _means(condition, *pairs):
                 continue
             judged.count(condition(baseline, candidate), f"{pair_text(pair)}, {ERROR.label}",
                          mean_text(ERROR, baseline), mean_text(ERROR, candidate),
-                         percent(_ratio(candidate, baseline) - 1), paper=percent(_paper_ratio(pair[1], pair[0], ERROR) - 1))
+                         percent(_ratio(candidate, baseline) - 1),
+                         paper=percent(_paper_ratio(pair[1], pair[0], ERROR) - 1))
         return judged.done()
     return judge
 
@@ -367,8 +368,9 @@ CLAIMS = [
           "some, or every network is better by less. Else not reproduced", _magnitude,
           ("network", "linearized", "factor")),
     Claim("1.2", "The linearized model's ellipses lie closer to the target's than those of the networks: poor in "
-          "error, good in slope.", "conditions: the angle difference of model 1 is below the mean of each of models 2, 3, 4 "
-          "about each axis. " + ALL_HOLD, _linearized_angles, ("network", "linearized", "change")),
+          "error, good in slope.",
+          "conditions: the angle difference of model 1 is below the mean of each of models 2, 3, "
+          "4 about each axis. " + ALL_HOLD, _linearized_angles, ("network", "linearized", "change")),
     Claim("2.1", "The physics-informed networks (3: constant weight, 4: annealed) have a lower error than the vanilla "
           "network (2).", COMPARED, _errors((2, 3), (2, 4))),
     Claim("2.2", "Cyclical annealing (4) lowers the error further than a constant weight (3).", COMPARED,
