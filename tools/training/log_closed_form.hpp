@@ -37,8 +37,8 @@ Context log_context(const FitTask& fit, const pinnquad::RowSet& rows) {
 template <class Answer, class Context>
 std::shared_ptr<const TrainedNetwork> log_model_of(const Answer& answer, const Context& context,
                                                    const pinnquad::RowSet& rows) {
-  return std::make_shared<ExportedNetwork>(pinnquad::ground_model(pinnquad::make_trained_model(answer, context, rows)),
-                                           rows);
+  return std::make_shared<ExportableNetwork>(
+      pinnquad::ground_model(pinnquad::make_trained_model(answer, context, rows)), rows);
 }
 
 /// `solve(context, rows)` gives the map of standardised features to standardised outputs.

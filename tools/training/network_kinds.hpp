@@ -71,7 +71,7 @@ std::shared_ptr<const TrainedNetwork> fit_by_parts(const FitTask& task, const Ma
   const auto model = pinnquad::make_trained_model(*network, context, task.training);
   auto ground = pinnquad::ground_model(model);
   if (task.settings.library_airframe) ground = of_library_airframe(std::move(ground));
-  return std::make_shared<ExportedNetwork>(std::move(ground), task.training);
+  return std::make_shared<ExportableNetwork>(std::move(ground), task.training);
 }
 
 }  // namespace detail

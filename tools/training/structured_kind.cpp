@@ -14,17 +14,17 @@ namespace {
 
 /// A structured model, how it was chosen whether it is shown the altitude, and what is known of its slopes. Where they
 /// are by instruments, it is judged by features without their noise.
-class StructuredNetwork : public ExportedNetwork {
+class StructuredNetwork : public ExportableNetwork {
  public:
   /// Limits of trust are of models without a window, and found by rows that they were not fitted to.
   StructuredNetwork(pinnquad::GroundModel<float> model, pinnquad::FitContext context, const pinnquad::RowSet& training,
                     const AltitudeChoice& altitude, const pinnquad::MeasuredSlopes& slopes, bool fits_validation)
-      : ExportedNetwork(std::move(model), training, !context.is_windowed() && !fits_validation),
+      : ExportableNetwork(std::move(model), training, !context.is_windowed() && !fits_validation),
         altitude_(altitude),
         slopes_(slopes),
         context_(std::move(context)) {}
   Predictions predictions(const pinnquad::RowSet& rows) const override {
-    if (!slopes_.by_instruments()) return ExportedNetwork::predictions(rows);
+    if (!slopes_.by_instruments()) return ExportableNetwork::predictions(rows);
     Predictions result = without_answer(rows);
     pinnquad::each_denoised(context_, slopes_, rows, [&](std::size_t row, const std::vector<double>& x) {
       result[row] = this->block()->commands(x);
@@ -32,7 +32,7 @@ class StructuredNetwork : public ExportedNetwork {
     return result;
   }
   Answers answers(const pinnquad::RowSet& rows) const override {
-    Answers result = ExportedNetwork::answers(rows);
+    Answers result = ExportableNetwork::answers(rows);
     if (slopes_.by_instruments()) result.predictions = predictions(rows);
     return result;
   }

@@ -69,12 +69,13 @@ BlockNetwork::BlockNetwork(const std::vector<unsigned char>& block) : block_("a 
 BlockNetwork::BlockNetwork(const pinnquad::GroundModel<float>& model, const pinnquad::RowSet& training)
     : BlockNetwork(pinnquad::model_block(model, pinnquad::golden_features(model.asked, training), {})) {}
 
-ExportedNetwork::ExportedNetwork(pinnquad::GroundModel<float> model, const pinnquad::RowSet& training, bool with_trust)
+ExportableNetwork::ExportableNetwork(pinnquad::GroundModel<float> model, const pinnquad::RowSet& training,
+                                     bool with_trust)
     : BlockNetwork(model, training), model_(std::move(model)), with_trust_(with_trust) {}
 
-pinnquad::Exported ExportedNetwork::export_to(const pinnquad::Exported::Files& files, const std::string& name,
-                                              const pinnquad::RowSplit& split,
-                                              const pinnquad::Provenance& provenance) const {
+pinnquad::Exported ExportableNetwork::export_to(const pinnquad::Exported::Files& files, const std::string& name,
+                                                const pinnquad::RowSplit& split,
+                                                const pinnquad::Provenance& provenance) const {
   return pinnquad::export_model(files, name, model_, split, provenance);
 }
 

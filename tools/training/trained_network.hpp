@@ -138,9 +138,9 @@ class BlockNetwork : public TrainedNetwork {
 };
 
 /// A model that is exported. `with_trust`: with limits of trust, where they are asked for.
-class ExportedNetwork : public BlockNetwork {
+class ExportableNetwork : public BlockNetwork {
  public:
-  ExportedNetwork(pinnquad::GroundModel<float> model, const pinnquad::RowSet& training, bool with_trust = false);
+  ExportableNetwork(pinnquad::GroundModel<float> model, const pinnquad::RowSet& training, bool with_trust = false);
 
   bool has_trust() const override { return with_trust_; }
   pinnquad::Exported export_to(const pinnquad::Exported::Files& files, const std::string& name,
