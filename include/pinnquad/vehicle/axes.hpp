@@ -2,8 +2,8 @@
 // The axes of a vehicle: a rotation as the nine numbers that turn a vector.
 #pragma once
 
-#include "pinnquad/core/types.hpp"
 #include "pinnquad/core/rotation.hpp"
+#include "pinnquad/core/types.hpp"
 
 namespace pinnquad::detail {
 
