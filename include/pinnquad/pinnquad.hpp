@@ -47,7 +47,7 @@
 #include "pinnquad/simulation/recorded_sticks.hpp"
 #include "pinnquad/simulation/recorder.hpp"
 #include "pinnquad/simulation/simulator.hpp"
-#include "pinnquad/simulation/switchable_quadrotor.hpp"
+#include "pinnquad/simulation/switched_quadrotor.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/checkpoint.hpp"

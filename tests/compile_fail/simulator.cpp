@@ -2,11 +2,11 @@
 // CASE NOT_A_PILOT: pinnquad: this type is no pilot
 // CASE RECORDER_WITHOUT_HOLD: pinnquad: this type is no recorder
 // CASE RECORDER_WITHOUT_ROWS: pinnquad: this type is no recorder
-// CASE GROUND_EFFECT_BY_TYPE: pinnquad: this vehicle.s effects are its type
+// CASE EFFECT_NOT_SWITCHED: pinnquad: this effect is none of those that are switched
 #include "pinnquad/simulation/simulator.hpp"
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/simulation/switchable_quadrotor.hpp"
+#include "pinnquad/simulation/switched_quadrotor.hpp"
 
 namespace {
 
@@ -29,17 +29,16 @@ struct Recorder {
 #endif
 };
 
-#if defined(GROUND_EFFECT_BY_TYPE)
-using Vehicle = pinnquad::Quadrotor<double, pinnquad::ConyersGroundEffect>;
-#else
-using Vehicle = pinnquad::SwitchableQuadrotor<>;
-#endif
+using Vehicle = pinnquad::Quadrotor<double>;
 
 }  // namespace
 
 int main() {
   const Vehicle quadrotor(pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>());
   pinnquad::Simulator<Vehicle, Pilot, Recorder> simulator(quadrotor, Pilot{}, {}, Recorder{});
-  simulator.set_ground_effect(pinnquad::GroundEffectModel::conyers);
+#if defined(EFFECT_NOT_SWITCHED)
+  pinnquad::SwitchedEffects effects;
+  pinnquad::switch_effect(effects, pinnquad::RotorGroundEffect<pinnquad::Conyers>{});
+#endif
   return simulator.tick() ? 0 : 1;
 }

@@ -18,10 +18,6 @@ namespace {
 
 using namespace pinnquad;
 
-using Distant = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
-using InGroundEffect = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
-using InOtherGroundEffect = Quadrotor<double, StandardAtmosphere, QuadraticDrag, CheesemanBennettGroundEffect>;
-
 AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const ModelRange& range, LoopFlights& flights) {
   constexpr const char* none = "the model's envelope holds no trajectory of this kind, however slow: --no-envelope";
   const auto take = [&](const auto& trajectory, double half_length_m, double half_height_m) {
@@ -41,36 +37,6 @@ AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const Model
   if (!held) throw std::invalid_argument(none);
   const FigureEight<double> eight = plan.trajectory == "yaw_eight" ? with_yaw(*held) : *held;
   return take(eight, eight.half_length_m, eight.half_height_m);
-}
-
-template <class Vehicle>
-LoopFlights fly_with(const BlockModel& model, const LoopPlan& plan) {
-  const Vehicle vehicle(plan.airframe, paper_site<double>());
-  const double ground_z_m = vehicle.site().ground_z_m;
-  LoopFlights flights;
-  flights.near_ground = model.features().asks_for_altitude();
-  const ModelRange range = plan.keeps_envelope ? range_of(model) : range_of(model).of_altitude();
-  const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, range, flights);
-  HoverTrim<double> trim;
-  Status status = vehicle.status();
-  if (status == Status::ok) status = hover_trim(vehicle, trajectory.sample(0).position_m, trim);
-  if (status != Status::ok) {
-    throw std::invalid_argument(std::string("this airframe can't be flown ") +
-                                (flights.near_ground ? "near the ground" : "here") + ": " + to_string(status));
-  }
-  const FlightController<double> controller(
-      {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
-  const AnalyticInverse<Vehicle> analytic(vehicle);
-  const auto fly = [&](const auto& feed_forward) { return track(vehicle, trajectory, controller, feed_forward); };
-  using FallsBack = Fallback<AnalyticInverse<Vehicle>>;
-  const auto fly_model = [&](const auto& guard) {
-    return with_feed_forward(model, guard, ground_z_m, plan.columns, fly);
-  };
-  flights.model = plan.keeps_envelope ? fly_model(Extend<TrainingGuard, FallsBack>(analytic))
-                                      : fly_model(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic));
-  flights.analytic_inverse = fly(analytic);
-  flights.hover_trim = fly(trim);
-  return flights;
 }
 
 }  // namespace
@@ -96,9 +62,34 @@ ModelRange range_of(const BlockModel& model) {
 }
 
 LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
-  if (!model.features().asks_for_altitude()) return fly_with<Distant>(model, plan);
-  const bool has_fit = NearGroundFlight::ground_effect_of(plan.airframe) == GroundEffectModel::conyers;
-  return has_fit ? fly_with<InGroundEffect>(model, plan) : fly_with<InOtherGroundEffect>(model, plan);
+  const bool near_ground = model.features().asks_for_altitude();
+  const SwitchedQuadrotor vehicle = flight_vehicle<AgileFlight>(
+      plan.airframe, near_ground ? NearGroundFlight::ground_effect_of(plan.airframe) : GroundEffectModel::none);
+  const double ground_z_m = vehicle.site().ground_z_m;
+  LoopFlights flights;
+  flights.near_ground = near_ground;
+  const ModelRange range = plan.keeps_envelope ? range_of(model) : range_of(model).of_altitude();
+  const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, range, flights);
+  HoverTrim<double> trim;
+  Status status = vehicle.status();
+  if (status == Status::ok) status = hover_trim(vehicle, trajectory.sample(0).position_m, trim);
+  if (status != Status::ok) {
+    throw std::invalid_argument(std::string("this airframe can't be flown ") +
+                                (flights.near_ground ? "near the ground" : "here") + ": " + to_string(status));
+  }
+  const FlightController<double> controller(
+      {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
+  const AnalyticInverse<SwitchedQuadrotor> analytic(vehicle);
+  const auto fly = [&](const auto& feed_forward) { return track(vehicle, trajectory, controller, feed_forward); };
+  using FallsBack = Fallback<AnalyticInverse<SwitchedQuadrotor>>;
+  const auto fly_model = [&](const auto& guard) {
+    return with_feed_forward(model, guard, ground_z_m, plan.columns, fly);
+  };
+  flights.model = plan.keeps_envelope ? fly_model(Extend<TrainingGuard, FallsBack>(analytic))
+                                      : fly_model(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic));
+  flights.analytic_inverse = fly(analytic);
+  flights.hover_trim = fly(trim);
+  return flights;
 }
 
 }  // namespace programs

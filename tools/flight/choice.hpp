@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A program's edge: from the names of flights and ground effects on the command line to types and values.
+// A program's edge: from the names of flights and ground effects on the command line to values.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <random>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -12,38 +16,63 @@
 
 namespace programs {
 
-/// Stands for a flight type in an argument list: `[](auto tag) { using PaperFlight = typename decltype(tag)::type; }`
-template <class PaperFlight>
-struct FlightTag {
-  using type = PaperFlight;
+/// Any pilot behind one type: a program then compiles one simulator, not one per pilot.
+using AnyPilot = std::function<pinnquad::SetPoint<double>(const pinnquad::State<double>&, double)>;
+static_assert(pinnquad::is_pilot<AnyPilot>);
+
+/// A flight of the library as a value: one vehicle and one simulator fly them all.
+struct NamedFlight {
+  const char* name;
+  const char* summary;
+  pinnquad::GroundEffectModel ground_effect;  ///< the paper's
+  pinnquad::FlightPlan plan;
+  /// The flight's own for an airframe.
+  pinnquad::GroundEffectModel (*ground_effect_of)(const pinnquad::Airframe<double>& airframe);
+  pinnquad::SwitchedQuadrotor (*vehicle)(const pinnquad::Airframe<double>& airframe,
+                                         pinnquad::GroundEffectModel ground_effect);
+  AnyPilot (*pilot)(const pinnquad::SwitchedQuadrotor& vehicle, std::uint64_t seed,
+                    std::optional<double> max_speed_m_s);
 };
 
-/// Calls `function(FlightTag<PaperFlight>{})` for each flight.
-template <class Function>
-void each_flight(const Function& function) {
-  function(FlightTag<pinnquad::AgileFlight>{});
-  function(FlightTag<pinnquad::NearGroundFlight>{});
-  function(FlightTag<pinnquad::WindyFlight>{});
-  function(FlightTag<pinnquad::HarderFlight>{});
+namespace detail {
+template <class PaperFlight>
+NamedFlight named_flight() {
+  using namespace pinnquad;
+  return {PaperFlight::name,
+          PaperFlight::summary,
+          PaperFlight::ground_effect,
+          PaperFlight::plan(),
+          [](const Airframe<double>& airframe) {
+            if constexpr (PaperFlight::ground_effect == GroundEffectModel::conyers) {
+              return PaperFlight::ground_effect_of(airframe);
+            }
+            return PaperFlight::ground_effect;
+          },
+          flight_vehicle<PaperFlight>,
+          [](const SwitchedQuadrotor& vehicle, std::uint64_t seed, std::optional<double> max_speed_m_s) -> AnyPilot {
+            const std::mt19937_64 engine(seed);
+            if (max_speed_m_s) return PaperFlight::pilot(vehicle, engine, *max_speed_m_s);
+            return PaperFlight::pilot(vehicle, engine);
+          }};
+}
+}  // namespace detail
+
+/// All of them: the paper's three, and the harder one.
+inline const std::array<NamedFlight, 4>& flights() {
+  static const std::array<NamedFlight, 4> all = {
+      detail::named_flight<pinnquad::AgileFlight>(), detail::named_flight<pinnquad::NearGroundFlight>(),
+      detail::named_flight<pinnquad::WindyFlight>(), detail::named_flight<pinnquad::HarderFlight>()};
+  return all;
 }
 
-/// Calls `function(FlightTag<PaperFlight>{})` for the flight of that name. False if there is none.
-template <class Function>
-bool with_flight(const std::string& name, const Function& function) {
-  bool found = false;
-  each_flight([&](auto tag) {
-    if (name != decltype(tag)::type::name) return;
-    found = true;
-    function(tag);
-  });
-  return found;
-}
-
-/// "d1, d2, d3"
-inline std::string flight_names() {
-  std::string names;
-  each_flight([&names](auto tag) { add_to_list(names, decltype(tag)::type::name); });
-  return names;
+/// Throws std::invalid_argument, one line, for a name that none has.
+inline const NamedFlight& flight_named(const std::string& name) {
+  std::string known;
+  for (const NamedFlight& flight : flights()) {
+    if (name == flight.name) return flight;
+    add_to_list(known, flight.name);
+  }
+  throw std::invalid_argument("no flight named '" + name + "'; known: " + known);
 }
 
 inline constexpr std::array<std::pair<const char*, pinnquad::GroundEffectModel>, 3> ground_effects = {{
@@ -68,9 +97,5 @@ inline const char* name_of(pinnquad::GroundEffectModel model) {
   }
   return "?";
 }
-
-/// Any pilot behind one type: a program then compiles one simulator per vehicle, not one per pilot.
-using AnyPilot = std::function<pinnquad::SetPoint<double>(const pinnquad::State<double>&, double)>;
-static_assert(pinnquad::is_pilot<AnyPilot>);
 
 }  // namespace programs

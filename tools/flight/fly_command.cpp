@@ -80,18 +80,19 @@ void make_folder(const std::string& path) {
   if (error) throw OutputError(path, error.message());
 }
 
-/// A flight with all choices made, whatever its vehicle.
-template <class PaperFlight>
+/// A flight with all choices made.
 class ChosenFlight {
  public:
-  ChosenFlight(const FlyOptions& options, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect)
+  ChosenFlight(const FlyOptions& options, const programs::NamedFlight& flight, const programs::NamedAirframe& airframe,
+               GroundEffectModel ground_effect)
       : options_(options),
+        flight_(flight),
         name_(airframe.name),
         ground_effect_(ground_effect),
-        vehicle_(flight_vehicle<PaperFlight>(airframe.value, ground_effect)),
-        without_(flight_vehicle<PaperFlight>(airframe.value, GroundEffectModel::none)),
+        vehicle_(flight.vehicle(airframe.value, ground_effect)),
+        without_(flight.vehicle(airframe.value, GroundEffectModel::none)),
         airframe_(airframe.value),
-        plan_(PaperFlight::plan()) {
+        plan_(flight.plan) {
     if (options.interval_ms) {
       plan_.controls_per_sample = static_cast<int>(std::lround(1e-3 * *options.interval_ms / plan_.control_period_s()));
     }
@@ -134,7 +135,7 @@ class ChosenFlight {
     print_summary(recorded);
     if (!options_.pictures.empty()) {
       programs::draw_flight(options_.pictures, recorded.flight, trace, airframe_, ground_effect_,
-                            std::is_same_v<PaperFlight, WindyFlight>);
+                            flight_.name == std::string(WindyFlight::name));
     }
     return 0;
   }
@@ -151,9 +152,9 @@ class ChosenFlight {
 
   /// An airframe that the controller can't hold up here is refused before it flies.
   void require_thrust() const {
-    const Status status = with_quadrotor(vehicle_, [](const auto& quadrotor) { return quadrotor.status(); });
+    const Status status = vehicle_.status();
     if (status == Status::out_of_range && ground_effect_ == GroundEffectModel::conyers) {
-      throw std::invalid_argument(name_ + " cannot fly " + PaperFlight::name +
+      throw std::invalid_argument(name_ + " cannot fly " + flight_.name +
                                   " so: the ground effect conyers has no fit for a frame and propellers of this size; "
                                   "--ground-effect cheeseman-bennett has");
     }
@@ -161,26 +162,24 @@ class ChosenFlight {
     constexpr double most = 0.97;  // of its thrust: flight_limits
     if (hover < most) return;
     if (!is_finite(hover)) {
-      throw std::invalid_argument(name_ + " cannot fly " + PaperFlight::name + ": no commands hold it in hover there");
+      throw std::invalid_argument(name_ + " cannot fly " + flight_.name + ": no commands hold it in hover there");
     }
     char text[200];
     std::snprintf(text, sizeof text,
                   " cannot fly %s: its hover takes %.0f %% of its thrust, %.0f %% is what the controller uses",
-                  PaperFlight::name, 100 * hover, 100 * most);
+                  flight_.name, 100 * hover, 100 * most);
     throw std::invalid_argument(name_ + text);
   }
 
   programs::AnyPilot pilot_of(std::uint64_t seed) const {
     if (sticks_) return *sticks_;
-    const std::mt19937_64 engine(seed);
-    return options_.max_speed_m_s ? PaperFlight::pilot(vehicle_, engine, *options_.max_speed_m_s)
-                                  : PaperFlight::pilot(vehicle_, engine);
+    return flight_.pilot(vehicle_, seed, options_.max_speed_m_s);
   }
 
   /// "paper_quadrotor, d1, seed 1"
   std::string title() const {
     const std::string flown = sticks_ ? "sticks " + options_.sticks : "seed " + std::to_string(options_.seed);
-    return name_ + ", " + PaperFlight::name + ", " + flown;
+    return name_ + ", " + flight_.name + ", " + flown;
   }
 
   bool exact() const { return options_.gyro_noise_rad_s == 0 && options_.latency_ms == 0 && options_.jitter_ms == 0; }
@@ -218,7 +217,7 @@ class ChosenFlight {
       return programs::FlightFigures{seed, recorded.report, programs::axis_correlations(recorded.flight, airframe_)};
     };
     const std::vector<programs::FlightFigures> figures =
-        programs::fly_seeds(PaperFlight::name, options_.seed, options_.statistics, plan_.samples, one);
+        programs::fly_seeds(flight_.name, options_.seed, options_.statistics, plan_.samples, one);
     programs::stop_if_interrupted();
     if (!options_.out.empty()) programs::write_flight_table(options_.out, figures);
     programs::print_flight_table(figures);
@@ -234,7 +233,7 @@ class ChosenFlight {
     const FlightReport& report = recorded.report;
     std::printf("airframe    %s: %.3f kg, rotor speed limit %.0f rpm, thrust-to-weight %.3f\n", name_.c_str(),
                 airframe_.mass_kg, 60 * airframe_.max_rotor_speed_rev_s, airframe_.thrust_to_weight());
-    std::printf("flight      %s, ground effect %s, ", PaperFlight::name, programs::name_of(ground_effect_));
+    std::printf("flight      %s, ground effect %s, ", flight_.name, programs::name_of(ground_effect_));
     if (sticks_) {
       std::printf("sticks %s", options_.sticks.c_str());
     } else {
@@ -247,26 +246,25 @@ class ChosenFlight {
     std::printf("altitude    %.*f to %.*f m above ground\n", report.max_altitude_m < 5 ? 2 : 1, report.min_altitude_m,
                 report.max_altitude_m < 5 ? 2 : 1, report.max_altitude_m);
     std::printf("saturation  a rotor at its limit in %.2f %% of the rows\n", 100 * report.saturated_share);
-    if (options_.ground_effect.empty() && ground_effect_ != PaperFlight::ground_effect) {
+    if (options_.ground_effect.empty() && ground_effect_ != flight_.ground_effect) {
       std::printf("note        the flight's own ground effect, %s, has no fit for a frame and propellers so large\n",
-                  programs::name_of(PaperFlight::ground_effect));
+                  programs::name_of(flight_.ground_effect));
     }
     const std::array<double, 3> pcc = programs::axis_correlations(recorded.flight, airframe_);
     std::printf("correlation of angular acceleration and command sum: roll %.3f, pitch %.3f, yaw %.3f\n", pcc[0],
                 pcc[1], pcc[2]);
     if (sticks_) return;
-    const double climb_m_s = with_quadrotor(
-        vehicle_, [&](const auto& quadrotor) { return pilot_style(quadrotor, plan_.start_m).max_climb_m_s; });
+    const double climb_m_s = pilot_style(vehicle_, plan_.start_m).max_climb_m_s;
     if (climb_m_s < PilotStyle{}.max_climb_m_s) {
       std::printf("note        this airframe's thrust allows the pilot %.1f m/s of climb at most\n", climb_m_s);
     }
   }
 
   const FlyOptions& options_;
+  const programs::NamedFlight& flight_;
   std::string name_;  ///< the airframe's
   GroundEffectModel ground_effect_;
-  typename PaperFlight::SwitchableVehicle vehicle_;
-  typename PaperFlight::SwitchableVehicle without_;
+  SwitchedQuadrotor vehicle_, without_;  ///< and the same without ground effect
   Airframe<double> airframe_;
   FlightPlan plan_;
   std::optional<RecordedSticks> sticks_;
@@ -282,50 +280,33 @@ std::string contradiction(const FlyOptions& o) {
   return {};
 }
 
-template <class Function>
-void with_all_choices(const FlyOptions& options, const Function& function) {
-  GroundEffectModel model = GroundEffectModel::none;
-  if (!options.ground_effect.empty() && !programs::ground_effect_of(options.ground_effect, model)) {
-    throw std::invalid_argument("no ground effect named '" + options.ground_effect +
-                                "'; known: none, cheeseman-bennett, conyers");
-  }
-  const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
-  const bool known = programs::with_flight(options.flight, [&](auto tag) {
-    using PaperFlight = typename decltype(tag)::type;
-    GroundEffectModel own = PaperFlight::ground_effect;
-    if constexpr (PaperFlight::ground_effect == GroundEffectModel::conyers) {
-      own = PaperFlight::ground_effect_of(airframe.value);
-    }
-    function(tag, airframe, options.ground_effect.empty() ? own : model);
-  });
-  if (!known) {
-    throw std::invalid_argument("no flight named '" + options.flight + "'; known: " + programs::flight_names());
-  }
-}
-
 /// Flies what the options ask for: the exit code.
 int fly_chosen(const FlyOptions& options) {
   const std::string fault = contradiction(options);
   if (!fault.empty()) throw std::invalid_argument(fault);
   require_separate_files(options);
-  int code = programs::exit_bad_input;
-  with_all_choices(options, [&](auto tag, const programs::NamedAirframe& airframe, GroundEffectModel ground_effect) {
-    ChosenFlight<typename decltype(tag)::type> chosen(options, airframe, ground_effect);
-    for (const std::string& file : {options.out, options.record_sticks, options.watch}) require_writable(file);
-    if (!options.watch.empty()) programs::WatchPage::require_available(options.watch);
-    if (!options.pictures.empty()) make_folder(options.pictures);
-    code = chosen.run();
-  });
-  return code;
+  GroundEffectModel ground_effect = GroundEffectModel::none;
+  if (!options.ground_effect.empty() && !programs::ground_effect_of(options.ground_effect, ground_effect)) {
+    throw std::invalid_argument("no ground effect named '" + options.ground_effect +
+                                "'; known: none, cheeseman-bennett, conyers");
+  }
+  const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
+  const programs::NamedFlight& flight = programs::flight_named(options.flight);
+  if (options.ground_effect.empty()) ground_effect = flight.ground_effect_of(airframe.value);
+  ChosenFlight chosen(options, flight, airframe, ground_effect);
+  for (const std::string& file : {options.out, options.record_sticks, options.watch}) require_writable(file);
+  if (!options.watch.empty()) programs::WatchPage::require_available(options.watch);
+  if (!options.pictures.empty()) make_folder(options.pictures);
+  return chosen.run();
 }
 
 void add_options(CLI::App& app, FlyOptions& options) {
   using programs::add_number;
   using programs::add_path;
   std::string flights = "the flight";
-  programs::each_flight([&flights](auto tag) {
-    flights += std::string("\n") + decltype(tag)::type::name + ": " + decltype(tag)::type::summary;
-  });
+  for (const programs::NamedFlight& flight : programs::flights()) {
+    flights += std::string("\n") + flight.name + ": " + flight.summary;
+  }
   app.footer(
       "Examples:\n"
       "  pinnquad fly d1 --seed 1 --out d1.csv\n"

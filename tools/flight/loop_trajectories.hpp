@@ -17,11 +17,12 @@
 #include "pinnquad/control/trajectory.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
+#include "pinnquad/features/features.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace programs {
 
-/// Any trajectory behind one type: one loop per vehicle is compiled.
+/// Any trajectory behind one type: one loop is compiled.
 struct AnyTrajectory {
   std::function<pinnquad::TrajectoryPoint<double>(double)> point;
   pinnquad::TrajectoryPoint<double> sample(double time_s) const noexcept { return point(time_s); }

@@ -11,7 +11,7 @@
 #include "flight/trace.hpp"
 #include "page/chart.hpp"
 #include "pinnquad/data/dataset.hpp"
-#include "pinnquad/simulation/switchable_quadrotor.hpp"
+#include "pinnquad/simulation/switched_quadrotor.hpp"
 
 namespace programs {
 

@@ -29,11 +29,11 @@ struct TraceForces {
 }  // namespace detail
 
 /// The forces on a vehicle in a true state. `without` is the same vehicle without ground effect.
-template <class Vehicle, class Without>
-TraceRow trace_row(const Vehicle& vehicle, const Without& without, const pinnquad::VehicleState<double>& state) {
+template <class Vehicle>
+TraceRow trace_row(const Vehicle& vehicle, const Vehicle& without, const pinnquad::VehicleState<double>& state) {
   using namespace pinnquad;
   const State<double>& body = state.body;
-  const auto forces = [&](const auto& quadrotor) {
+  const auto forces = [&](const Vehicle& quadrotor) {
     const auto e = quadrotor.evaluate(body, state.rotors, state.time_s);
     Surroundings<double> still = e.surroundings;
     still.wind_m_s = Vector3<double>::Zero();
@@ -41,16 +41,13 @@ TraceRow trace_row(const Vehicle& vehicle, const Without& without, const pinnqua
         e.rotors.force_N, e.aerodynamic.force_N,
         quadrotor.aerodynamic_wrench(body, still, quadrotor.rotors().fractions(clipped(state.rotors))).force_N};
   };
-  const auto with = with_quadrotor(vehicle, forces);
-  const auto out_of = with_quadrotor(without, forces);
+  const auto with = forces(vehicle), out_of = forces(without);
   TraceRow row;
   row.time_s = state.time_s;
   row.position_m = body.position_m;
   row.speed_m_s = body.velocity_m_s.norm();
-  with_quadrotor(vehicle, [&](const auto& quadrotor) {
-    row.height_m = quadrotor.site().ground_z_m - body.position_m[2];
-    row.wind_m_s = quadrotor.surroundings(body, state.time_s).wind_m_s[0];
-  });
+  row.height_m = vehicle.site().ground_z_m - body.position_m[2];
+  row.wind_m_s = vehicle.surroundings(body, state.time_s).wind_m_s[0];
   row.drag_N = out_of.still;
   row.wind_N = out_of.all - out_of.still;
   row.ground_effect_N = out_of.all[2] - with.all[2];

@@ -13,8 +13,6 @@
 #include <random>
 #include <stdexcept>
 #include <system_error>
-#include <tuple>
-#include <type_traits>
 
 #include "command_line/folder_lock.hpp"
 #include "command_line/folders.hpp"
@@ -25,12 +23,10 @@
 #include "flight/loop_trajectories.hpp"
 #include "loop/controllers.hpp"
 #include "loop/loop_page.hpp"
-#include "pinnquad/aero/air_density.hpp"
-#include "pinnquad/aero/drag.hpp"
-#include "pinnquad/aero/ground_effect.hpp"
+#include "loop/world.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/decimal.hpp"
-#include "pinnquad/simulation/harder_quadrotor.hpp"
+#include "pinnquad/simulation/flights.hpp"
 
 namespace programs {
 
@@ -115,22 +111,19 @@ const LoopController& controller_of(const std::string& name) {
   throw std::out_of_range(name);
 }
 
-/// The effects of a vehicle as they are by default.
-template <class Vehicle>
-struct EffectsOf;
-template <class Scalar, class... Effect>
-struct EffectsOf<Quadrotor<Scalar, Effect...>> {
-  using type = std::tuple<Effect...>;
-};
-template <class Vehicle>
-using Effects = typename EffectsOf<Vehicle>::type;
+/// The vehicle of "harder", of which controllers know nothing.
+using HarderInLoop = Quadrotor<double, StandardAtmosphere, BatterySag, QuadraticDrag, RotorDrag, Inflow, BladeFlapping,
+                               Wake, RotorGroundEffect<CheesemanBennett>, GroundContact>;
 
 /// Airframe, trajectories and worlds of one campaign; near the ground or far from it.
-template <class Told, class Flown>
 class Loop {
  public:
   explicit Loop(const LoopCampaign& plan)
-      : plan_(plan), told_(plan.airframe, paper_site<double>()), range_(range_of(plan.model)) {
+      : plan_(plan),
+        told_(flight_vehicle<AgileFlight>(plan.airframe, ground_effect_of(plan))),
+        flown_(plan.vehicle == "harder" ? switched_effects<HarderInLoop>() : switched_effects<AgileFlight::Vehicle>()),
+        range_(range_of(plan.model)) {
+    if (plan.vehicle != "harder") set_ground_effect(flown_, ground_effect_of(plan));
     const double ground_z_m = told_.site().ground_z_m;
     const auto eight = eight_for(plan.airframe, ground_z_m, range_);
     at_once_["eight"] = any(eight);
@@ -167,9 +160,7 @@ class Loop {
     const double half_s = 0.5 * how.duration_s;
     const double period_s = how.physics_step_s * how.steps_per_control;
     const Site<double> site = told_.site();
-    LoopWorld<Flown> world(plan_.airframe, condition, plan_.sensors, period_s, half_s, seed,
-                           [&site](const Airframe<double>& airframe, const ConstantWind& wind,
-                                   const MaybeGusts& gusts) { return with_air<Flown>(airframe, site, wind, gusts); });
+    LoopWorld world(plan_.airframe, flown_, site, condition, plan_.sensors, period_s, half_s, seed);
     const FlightGains<double> feedback = flight_gains(gains);
     FlightLimits<double> limits = flight_limits(plan_.airframe, told_.rotor_scale(told_.surroundings({}, 0)), feedback);
     limits.max_horizontal_speed_m_s = 12;
@@ -181,8 +172,8 @@ class Loop {
     const double speed_m_s =
         std::min({limits.max_horizontal_speed_m_s, range_.speed_m_s(0).value_or(limits.max_horizontal_speed_m_s),
                   range_.speed_m_s(1).value_or(limits.max_horizontal_speed_m_s)});
-    const LoopKnowledge<Told> known{plan_.model,           plan_.columns, told_, bias,
-                                    plan_.sensors.delay_s, plan_.wrench,  &path, speed_m_s};
+    const LoopKnowledge known{plan_.model,           plan_.columns, told_, bias,
+                              plan_.sensors.delay_s, plan_.wrench,  &path, speed_m_s};
     const AnyPolicy policy = loop_policy(cell.controller, known, gains);
     Errors errors;
     errors.period_s = period_s;
@@ -284,23 +275,13 @@ class Loop {
     if (!held) throw std::invalid_argument("the model's envelope holds no trajectory of this kind, however slow");
     return {[path = *held](double time_s) { return path.sample(time_s); }};
   }
-  template <class Vehicle>
-  static Vehicle with_air(const Airframe<double>& airframe, const Site<double>& site, const ConstantWind& wind,
-                          const MaybeGusts& gusts) {
-    return std::apply(
-        [&](auto... effect) {
-          ((take(effect, wind), take(effect, gusts)), ...);
-          return Vehicle(airframe, site, effect...);
-        },
-        Effects<Vehicle>());
-  }
-  template <class Effect, class Value>
-  static void take(Effect& effect, const Value& value) {
-    if constexpr (std::is_same_v<Effect, Value>) effect = value;
+  static GroundEffectModel ground_effect_of(const LoopCampaign& plan) {
+    return plan.model.features().asks_for_altitude() ? GroundEffectModel::conyers : GroundEffectModel::none;
   }
 
   const LoopCampaign& plan_;
-  Told told_;
+  SwitchedQuadrotor told_;
+  SwitchedEffects flown_;  ///< but for the wind
   ModelRange range_;
   std::map<std::string, AnyTrajectory> at_once_;  ///< that are the same for every seed
 };
@@ -397,9 +378,10 @@ std::vector<Cell> cells_of(const LoopCampaign& plan) {
   return cells;
 }
 
-template <class Told, class Flown>
-nlohmann::json run(const LoopCampaign& plan) {
-  const Loop<Told, Flown> loop(plan);
+}  // namespace
+
+nlohmann::json run_campaign(const LoopCampaign& plan) {
+  const Loop loop(plan);
   for (const std::string& name : plan.trajectories) static_cast<void>(loop.trajectory(name, 1));
   make_folders(plan.out);
   const FolderLock lock(plan.out);
@@ -469,20 +451,6 @@ nlohmann::json run(const LoopCampaign& plan) {
   json.commit();
   page.commit();
   return result;
-}
-
-}  // namespace
-
-nlohmann::json run_campaign(const LoopCampaign& plan) {
-  using Far = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
-  using FarInAir = Quadrotor<double, StandardAtmosphere, ConstantWind, MaybeGusts, QuadraticDrag>;
-  using Near = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
-  using NearInAir = Quadrotor<double, StandardAtmosphere, ConstantWind, MaybeGusts, QuadraticDrag, ConyersGroundEffect>;
-  using Harder = Quadrotor<double, StandardAtmosphere, ConstantWind, MaybeGusts, BatterySag, QuadraticDrag, RotorDrag,
-                           Inflow, BladeFlapping, Wake, RotorGroundEffect<CheesemanBennett>, GroundContact>;
-  const bool near = plan.model.features().asks_for_altitude();
-  if (plan.vehicle == "harder") return near ? run<Near, Harder>(plan) : run<Far, Harder>(plan);
-  return near ? run<Near, NearInAir>(plan) : run<Far, FarInAir>(plan);
 }
 
 }  // namespace programs

@@ -28,6 +28,7 @@
 #include "loop/campaign.hpp"
 #include "loop/controllers.hpp"
 #include "loop/summary.hpp"
+#include "loop/wrench_block.hpp"
 #include "model/given_model.hpp"
 #include "pinnquad/exported/model.hpp"
 

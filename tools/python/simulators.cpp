@@ -39,7 +39,7 @@ using Running = Simulator<SwitchedQuadrotor, ChosenPilot, NoisyRecorder<Engine>>
 struct Choices {
   NamedAirframe airframe;
   std::uint64_t seed;
-  Effects effects;
+  SwitchedEffects effects;
   py::object effects_of_python;
   std::string pilot;
   Triple start_m;
@@ -61,18 +61,15 @@ ChosenPilot pilot_of(const Choices& choices, const SwitchedQuadrotor& vehicle) {
   checked("max_speed_m_s", choices.max_speed_m_s, 0.5);
   if (choices.pilot == "hover") return {SteadyPilot{}};
   const Vector3<double> start = plan_of(choices).start_m;
-  return with_quadrotor(vehicle, [&](const auto& quadrotor) -> ChosenPilot {
-    const double ground_z_m = quadrotor.site().ground_z_m;
-    if (choices.pilot == "random") {
-      return {
-          RandomPilot<Engine>(Engine(choices.seed), pilot_style(quadrotor, start, choices.max_speed_m_s), ground_z_m)};
-    }
-    if (choices.pilot == "near_ground") {
-      return {NearGroundPilot<Engine>(Engine(choices.seed), near_ground_style(quadrotor, start, choices.max_speed_m_s),
-                                      ground_z_m)};
-    }
-    refuse_name("pilot", choices.pilot, pilots);
-  });
+  const double ground_z_m = vehicle.site().ground_z_m;
+  if (choices.pilot == "random") {
+    return {RandomPilot<Engine>(Engine(choices.seed), pilot_style(vehicle, start, choices.max_speed_m_s), ground_z_m)};
+  }
+  if (choices.pilot == "near_ground") {
+    return {NearGroundPilot<Engine>(Engine(choices.seed), near_ground_style(vehicle, start, choices.max_speed_m_s),
+                                    ground_z_m)};
+  }
+  refuse_name("pilot", choices.pilot, pilots);
 }
 
 /// The noise has an engine of its own: with and without noise the same seed flies the same flight.
@@ -143,14 +140,12 @@ class PythonSimulator {
     d["altitude_m"] = running_.altitude_m();
     d["commands"] = array_of(running_.commands());
     d["rotor_commands"] = array_of(vehicle.rotors);
-    with_quadrotor(running_.quadrotor(), [&](const auto& quadrotor) {
-      const auto loads = quadrotor.evaluate(body, vehicle.rotors, vehicle.time_s);
-      d["rotor_thrust_N"] = -loads.rotors.force_N[2];
-      d["aerodynamic_force_N"] = array_of(loads.aerodynamic.force_N);
-      d["wind_m_s"] = array_of(loads.surroundings.wind_m_s);
-      d["air_density_kg_m3"] = loads.surroundings.air_density_kg_m3;
-      d["thrust_scale"] = loads.surroundings.thrust_scale;
-    });
+    const auto loads = running_.quadrotor().evaluate(body, vehicle.rotors, vehicle.time_s);
+    d["rotor_thrust_N"] = -loads.rotors.force_N[2];
+    d["aerodynamic_force_N"] = array_of(loads.aerodynamic.force_N);
+    d["wind_m_s"] = array_of(loads.surroundings.wind_m_s);
+    d["air_density_kg_m3"] = loads.surroundings.air_density_kg_m3;
+    d["thrust_scale"] = loads.surroundings.thrust_scale;
     return d;
   }
 
@@ -310,54 +305,84 @@ void take(py::handle effects, const char* name, Value& value) {
 
 }  // namespace
 
-Effects effects_of(py::handle given) {
+SwitchedEffects effects_of(py::handle given) {
   if (!py::isinstance(given, py::module_::import("pinnquad.effects").attr("Effects"))) {
     throw py::type_error("effects must be pinnquad.Effects, found " +
                          py::repr(py::type::of(given)).cast<std::string>());
   }
-  Effects e;
-  take(given, "wind_m_s", e.wind_m_s);
-  take(given, "gust_m_s", e.gust_m_s);
-  checked("wind_m_s", e.wind_m_s);
-  checked("gust_m_s", e.gust_m_s);
-  const auto number = [given](const char* name, double& value, double least) {
+  const auto number = [given](const char* name, double least) {
+    double value = 0;
     take(given, name, value);
-    checked(name, value, least);
+    return checked(name, value, least);
   };
-  number("gust_period_s", e.gust_period_s, 0.01);
-  number("turbulence_m_s", e.turbulence_m_s, 0);
-  number("turbulence_height_m", e.turbulence_height_m, 0);
-  take(given, "turbulence_seed", e.turbulence_seed);
-  take(given, "standard_atmosphere", e.standard_atmosphere);
-  take(given, "drag", e.drag);
-  number("linear_drag_N_s_m", e.linear_drag_N_s_m, 0);
-  number("rate_damping_N_m_s", e.rate_damping_N_m_s, 0);
-  take(given, "ground_effect", e.ground_effect);
-  if (std::find(ground_effects.begin(), ground_effects.end(), e.ground_effect) == ground_effects.end()) {
-    refuse_name("ground effect", e.ground_effect, ground_effects);
+  const auto vector = [given](const char* name) {
+    Triple value{};
+    take(given, name, value);
+    return checked(name, value);
+  };
+  const auto is_on = [given](const char* name) {
+    bool on = false;
+    take(given, name, on);
+    return on;
+  };
+  const Triple wind = vector("wind_m_s"), gust_m_s = vector("gust_m_s");
+  PeriodicWind gust;
+  gust.mean_m_s = 0;
+  gust.amplitude_m_s = std::hypot(gust_m_s[0], gust_m_s[1], gust_m_s[2]);
+  gust.period_s = number("gust_period_s", 0.01);
+  const bool gusty = gust.amplitude_m_s > 0;
+  for (std::size_t i = 0; i < 3 && gusty; ++i) gust.direction[i] = gust_m_s[i] / gust.amplitude_m_s;
+  const double turbulence_m_s = number("turbulence_m_s", 0), height_m = number("turbulence_height_m", 0);
+  std::uint64_t seed = 1;
+  take(given, "turbulence_seed", seed);
+  std::string ground_effect;
+  take(given, "ground_effect", ground_effect);
+  if (std::find(ground_effects.begin(), ground_effects.end(), ground_effect) == ground_effects.end()) {
+    refuse_name("ground effect", ground_effect, ground_effects);
   }
-  take(given, "rotor_drag", e.rotor_drag);
-  take(given, "inflow", e.inflow);
-  take(given, "flapping", e.flapping);
-  take(given, "wake", e.wake);
-  number("battery_endurance_s", e.battery_endurance_s, 0);
-  number("battery_full_V", e.battery_full_V, 0);
-  number("battery_empty_V", e.battery_empty_V, 0);
-  take(given, "fault_rotor", e.fault_rotor);
-  number("fault_share", e.fault_share, 0);
-  number("fault_from_s", e.fault_from_s, 0);
-  number("payload_kg", e.payload_kg, 0);
-  number("payload_from_s", e.payload_from_s, 0);
-  take(given, "ground_contact", e.ground_contact);
-  number("leg_length_m", e.leg_length_m, 0);
-  return e;
+  const LinearDamping damping{number("linear_drag_N_s_m", 0), number("rate_damping_N_m_s", 0)};
+  const double endurance_s = number("battery_endurance_s", 0);
+  RotorFault fault;
+  take(given, "fault_rotor", fault.rotor);
+  fault.share = number("fault_share", 0);
+  fault.from_s = number("fault_from_s", 0);
+  const Payload payload{number("payload_kg", 0), number("payload_from_s", 0)};
+  GroundContact legs;
+  legs.leg_length_m = number("leg_length_m", 0);
+
+  SwitchedEffects effects;
+  switch_effect(effects, StandardAtmosphere{}, is_on("standard_atmosphere"));
+  switch_effect(effects, ConstantWind{wind}, wind != Triple{});
+  switch_effect(effects, gust, gusty);
+  if (turbulence_m_s > 0) {
+    std::mt19937_64 engine(seed);
+    const double along_m_s = std::hypot(wind[0], wind[1]);
+    const std::array<double, 2> direction = {along_m_s > 0 ? wind[0] / along_m_s : 1.0,
+                                             along_m_s > 0 ? wind[1] / along_m_s : 0.0};
+    switch_effect(effects, DrydenTurbulence<>(engine, DrydenParameters::low_altitude(turbulence_m_s, height_m),
+                                              along_m_s, direction));
+  }
+  switch_effect(effects, BatterySag{number("battery_full_V", 0), number("battery_empty_V", 0), endurance_s},
+                endurance_s > 0);
+  switch_effect(effects, QuadraticDrag{}, is_on("drag"));
+  switch_effect(effects, damping, damping.drag_N_s_m > 0 || damping.rate_damping_N_m_s > 0);
+  switch_effect(effects, RotorDrag{}, is_on("rotor_drag"));
+  switch_effect(effects, Inflow{}, is_on("inflow"));
+  switch_effect(effects, BladeFlapping{}, is_on("flapping"));
+  switch_effect(effects, Wake{}, is_on("wake"));
+  switch_effect(effects, RotorGroundEffect<CheesemanBennett>{}, ground_effect == "rotors");
+  switch_effect(effects, CheesemanBennettGroundEffect{}, ground_effect == "cheeseman_bennett");
+  switch_effect(effects, ConyersGroundEffect{}, ground_effect == "conyers");
+  switch_effect(effects, fault, fault.share < 1);
+  switch_effect(effects, legs, is_on("ground_contact"));
+  switch_effect(effects, payload, payload.mass_kg > 0);
+  return effects;
 }
 
-SwitchedQuadrotor vehicle_of(const NamedAirframe& airframe, const Effects& effects) {
-  const SwitchedQuadrotor vehicle(airframe.value, paper_site<double>(), effects);
-  const Status status = with_quadrotor(vehicle, [](const auto& quadrotor) { return quadrotor.status(); });
-  if (status != Status::ok) {
-    refuse("airframe " + printable(airframe.name) + " with these effects: " + to_string(status));
+SwitchedQuadrotor vehicle_of(const NamedAirframe& airframe, const SwitchedEffects& effects) {
+  const SwitchedQuadrotor vehicle = quadrotor_with(effects, airframe.value, paper_site<double>());
+  if (vehicle.status() != Status::ok) {
+    refuse("airframe " + printable(airframe.name) + " with these effects: " + to_string(vehicle.status()));
   }
   return vehicle;
 }

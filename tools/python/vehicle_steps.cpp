@@ -2,10 +2,9 @@
 #include "python/vehicle_steps.hpp"
 
 #include <cstring>
-#include <tuple>
+#include <utility>
 #include <vector>
 
-#include "pinnquad/aero/ground_effect.hpp"
 #include "pinnquad/vehicle/lanes_of_vehicles.hpp"
 
 namespace python {
@@ -36,13 +35,12 @@ void from_lanes(const void* lanes, std::size_t count, double* rows) noexcept {
   }
 }
 
-template <class... Effects>
-class StepsOf final : public VehicleSteps {
+class StepsInLanes final : public VehicleSteps {
  public:
-  StepsOf(const Site<double>& site, double step_s, const Effects&... effects)
+  StepsInLanes(const Site<double>& site, double step_s, const SwitchedEffects& effects)
       : site_{Wide(site.elevation_m), Wide(site.ground_z_m), Wide(site.gravity_m_s2)},
         step_s_(step_s),
-        effects_(effects...) {}
+        effects_(effects) {}
 
   std::size_t lanes() const noexcept override { return lane_count; }
 
@@ -84,46 +82,30 @@ class StepsOf final : public VehicleSteps {
   }
 
  private:
+  using Vehicles =
+      decltype(quadrotor_with(SwitchedEffects(), std::declval<Airframe<Wide>>(), std::declval<Site<Wide>>()));
   struct Group {
-    Quadrotor<Wide, Effects...> vehicles;
-    typename Quadrotor<Wide, Effects...>::TimeStep step;
+    Vehicles vehicles;
+    Vehicles::TimeStep step;
   };
 
   Group group_of(const Airframe<Wide>& airframes) const {
-    const auto vehicles = std::apply(
-        [&](const Effects&... effects) { return Quadrotor<Wide, Effects...>(airframes, site_, effects...); }, effects_);
+    const Vehicles vehicles = quadrotor_with(effects_, airframes, site_);
     return {vehicles, vehicles.time_step(Wide(step_s_))};
   }
 
   Site<Wide> site_;
   double step_s_;
-  std::tuple<Effects...> effects_;
+  SwitchedEffects effects_;
   std::vector<Group> groups_;
 };
-
-template <class... Effects>
-std::unique_ptr<VehicleSteps> steps_of(const Site<double>& site, double step_s, const Effects&... effects) {
-  return std::unique_ptr<VehicleSteps>(new StepsOf<Effects...>(site, step_s, effects...));
-}
 
 }  // namespace
 
 VehicleSteps::~VehicleSteps() = default;
 
-std::unique_ptr<VehicleSteps> steps_in_lanes(const Site<double>& site, double step_s, const PaperEffects& effects,
-                                             GroundEffectModel ground_effect) {
-  const auto& [air, wind, gust, drag] = effects;
-  switch (ground_effect) {
-    case GroundEffectModel::cheeseman_bennett:
-      return steps_of(site, step_s, air, wind, gust, drag, CheesemanBennettGroundEffect{});
-    case GroundEffectModel::conyers: return steps_of(site, step_s, air, wind, gust, drag, ConyersGroundEffect{});
-    case GroundEffectModel::none: break;
-  }
-  return steps_of(site, step_s, air, wind, gust, drag);
-}
-
-std::unique_ptr<VehicleSteps> steps_in_lanes(const Site<double>& site, double step_s, const AllEffects& effects) {
-  return std::apply([&](const auto&... each) { return steps_of(site, step_s, each...); }, effects);
+std::unique_ptr<VehicleSteps> steps_in_lanes(const Site<double>& site, double step_s, const SwitchedEffects& effects) {
+  return std::make_unique<StepsInLanes>(site, step_s, effects);
 }
 
 }  // namespace python

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "python/switched_vehicle.hpp"
+#include "pinnquad/simulation/switched_quadrotor.hpp"
 
 namespace python {
 
@@ -33,10 +33,8 @@ class VehicleSteps {
   virtual std::size_t lanes() const noexcept = 0;
 };
 
-/// Under the effects of the paper's flights, and under all. Airframes are set before the first step.
+/// Under these effects. Airframes are set before the first step.
 std::unique_ptr<VehicleSteps> steps_in_lanes(const pinnquad::Site<double>& site, double step_s,
-                                             const PaperEffects& effects, pinnquad::GroundEffectModel ground_effect);
-std::unique_ptr<VehicleSteps> steps_in_lanes(const pinnquad::Site<double>& site, double step_s,
-                                             const AllEffects& effects);
+                                             const pinnquad::SwitchedEffects& effects);
 
 }  // namespace python

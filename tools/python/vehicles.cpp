@@ -56,10 +56,11 @@ class Vehicles {
       : airframes_(airframes),
         effects_(effects),
         physics_step_s_(checked("physics_step_s", physics_step_s, 1e-6)),
-        vehicle_(vehicle_of(airframes.at(0), effects_of(effects))),
+        switched_(effects_of(effects)),
+        vehicle_(vehicle_of(airframes.at(0), switched_)),
         states_(count) {
     for (std::size_t i = 1; i < airframes_.size(); ++i) {
-      require_flying(vehicle_.with(airframes_[i].value), airframes_[i], i);
+      require_flying(with(airframes_[i].value), airframes_[i], i);
     }
     put_in_lanes();
     reset(py::none(), triple(FlightPlan{}.start_m));
@@ -76,7 +77,7 @@ class Vehicles {
     if (airframes_.size() == 1) return array_of(hover_of(vehicle_, place_m));
     py::array_t<double> rows({static_cast<py::ssize_t>(size()), static_cast<py::ssize_t>(rotor_count)});
     for (std::size_t i = 0; i < size(); ++i) {
-      const Commands<double> commands = hover_of(vehicle_.with(airframes_[i].value), place_m);
+      const Commands<double> commands = hover_of(with(airframes_[i].value), place_m);
       std::copy_n(commands.begin(), rotor_count, rows.mutable_data() + rotor_count * i);
     }
     return rows;
@@ -95,7 +96,7 @@ class Vehicles {
       return;
     }
     std::vector<Commands<double>> rotors;
-    for (const std::size_t i : vehicles) rotors.push_back(hover_of(vehicle_.with(airframes_[i].value), place));
+    for (const std::size_t i : vehicles) rotors.push_back(hover_of(with(airframes_[i].value), place));
     for (std::size_t k = 0; k < vehicles.size(); ++k) {
       hover.rotors = rotors[k];
       states_[vehicles[k]] = hover;
@@ -108,11 +109,11 @@ class Vehicles {
     const std::vector<std::size_t> vehicles = chosen(which);
     const std::vector<NamedAirframe> given = airframes_of(airframe, vehicles.size());
     for (std::size_t k = 0; k < given.size(); ++k) {
-      require_flying(vehicle_.with(given[k].value), given[k], given.size() > 1 ? vehicles[k] : no_vehicle);
+      require_flying(with(given[k].value), given[k], given.size() > 1 ? vehicles[k] : no_vehicle);
     }
     if (given.size() == 1 && vehicles.size() == size()) {
       airframes_ = given;
-      vehicle_ = vehicle_.with(given[0].value);
+      vehicle_ = with(given[0].value);
       put_in_lanes();
       return;
     }
@@ -186,8 +187,13 @@ class Vehicles {
  private:
   static constexpr auto no_vehicle = static_cast<std::size_t>(-1);
 
+  /// The vehicle of another airframe.
+  SwitchedQuadrotor with(const Airframe<double>& airframe) const {
+    return quadrotor_with(switched_, airframe, vehicle_.site());
+  }
+
   static void require_flying(const SwitchedQuadrotor& vehicle, const NamedAirframe& airframe, std::size_t index) {
-    const Status status = with_quadrotor(vehicle, [](const auto& quadrotor) { return quadrotor.status(); });
+    const Status status = vehicle.status();
     if (status == Status::ok) return;
     refuse((index == no_vehicle ? "" : "vehicle " + std::to_string(index) + ": ") + "airframe " +
            printable(airframe.name) + " with these effects: " + to_string(status));
@@ -195,9 +201,7 @@ class Vehicles {
 
   static Commands<double> hover_of(const SwitchedQuadrotor& vehicle, const Triple& place_m) {
     HoverTrim<double> hover;
-    const Status status = with_quadrotor(vehicle, [&](const auto& quadrotor) {
-      return hover_trim(quadrotor, Vector3<double>(place_m[0], place_m[1], place_m[2]), hover);
-    });
+    const Status status = hover_trim(vehicle, Vector3<double>(place_m[0], place_m[1], place_m[2]), hover);
     if (status != Status::ok) refuse(std::string("no hover here: ") + to_string(status));
     return hover.commands;
   }
@@ -222,9 +226,7 @@ class Vehicles {
 
   /// All of them, where their rotors allow it.
   void put_in_lanes() {
-    lanes_ = vehicle_.with_effects([&](const auto& effects, auto... ground_effect) {
-      return steps_in_lanes(vehicle_.site(), physics_step_s_, effects, ground_effect...);
-    });
+    lanes_ = steps_in_lanes(vehicle_.site(), physics_step_s_, switched_);
     if (airframes_.size() == 1) {
       lanes_->set_airframe(airframes_[0].value);
       return;
@@ -242,20 +244,14 @@ class Vehicles {
   void run(const double* u, double steps, std::uint8_t* said, SignalWatch& watch) {
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const Commands<double> commands = {u[4 * i], u[4 * i + 1], u[4 * i + 2], u[4 * i + 3]};
-      const auto fly = [&](const auto& quadrotor) {
-        const auto step = quadrotor.time_step(physics_step_s_);
-        Status status = Status::ok;
-        for (double done = 0; done < steps && status == Status::ok; ++done) {
-          status = quadrotor.step(states_[i], commands, step);
-          if (std::fmod(done, 64) == 63) watch.look();
-        }
-        said[i] = static_cast<std::uint8_t>(status);
-      };
-      if (airframes_.size() == 1) {
-        with_quadrotor(vehicle_, fly);
-      } else {
-        with_quadrotor(vehicle_.with(airframes_[i].value), fly);
+      const SwitchedQuadrotor vehicle = airframes_.size() == 1 ? vehicle_ : with(airframes_[i].value);
+      const auto step = vehicle.time_step(physics_step_s_);
+      Status status = Status::ok;
+      for (double done = 0; done < steps && status == Status::ok; ++done) {
+        status = vehicle.step(states_[i], commands, step);
+        if (std::fmod(done, 64) == 63) watch.look();
       }
+      said[i] = static_cast<std::uint8_t>(status);
       if (i % 64 == 63) watch.look();
     }
   }
@@ -282,7 +278,8 @@ class Vehicles {
   std::vector<NamedAirframe> airframes_;  ///< one for all, or one for each
   py::object effects_;
   double physics_step_s_;
-  SwitchedQuadrotor vehicle_;  ///< whose effects all have
+  SwitchedEffects switched_;   ///< the same, of all
+  SwitchedQuadrotor vehicle_;  ///< the first
   std::vector<OneState> states_;
   std::unique_ptr<VehicleSteps> lanes_;  ///< null where rotors are not those of lanes
   bool busy_ = false;

@@ -178,17 +178,13 @@ Flight fly_for_beyond(const programs::StudyFlight& id) {
   if (ends_with(id.name, "_noisy", base)) errors = pinnquad::noisy_gyro_errors();
   if (ends_with(id.name, "_payload", base)) airframe = with_payload();
   if (base == id.name) return flown(id);
-  pinnquad::RecordedFlight recorded;
-  programs::with_flight(base, [&](auto tag) {
-    using PaperFlight = typename decltype(tag)::type;
-    const auto vehicle = pinnquad::flight_vehicle<PaperFlight>(airframe);
-    const std::mt19937_64 engine(id.seed);
-    // the noise is drawn from a stream of its own: the flight is that of the same seed
-    constexpr std::uint64_t noise_stream = 0x9e3779b97f4a7c15u;
-    const pinnquad::NoisyRecorder<std::mt19937_64> recorder(std::mt19937_64(id.seed ^ noise_stream), errors);
-    recorded = pinnquad::fly(
-        vehicle, PaperFlight::pilot(vehicle, engine), PaperFlight::plan(), [](const auto&) {}, recorder);
-  });
+  const programs::NamedFlight& flight = programs::flight_named(base);
+  const auto vehicle = flight.vehicle(airframe, flight.ground_effect);
+  // the noise is drawn from a stream of its own: the flight is that of the same seed
+  constexpr std::uint64_t noise_stream = 0x9e3779b97f4a7c15u;
+  const pinnquad::NoisyRecorder<std::mt19937_64> recorder(std::mt19937_64(id.seed ^ noise_stream), errors);
+  pinnquad::RecordedFlight recorded = pinnquad::fly(
+      vehicle, flight.pilot(vehicle, id.seed, {}), flight.plan, [](const auto&) {}, recorder);
   require_completed(id, recorded.report);
   return std::move(recorded.flight);
 }

@@ -2,9 +2,8 @@
 // The study's flights, flown; and drawn, forces taken apart (Figs. 2, 4 (d), 5 and 6), for the report to embed.
 #include "study/flights.hpp"
 
-#include <random>
 #include <stdexcept>
-#include <type_traits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,11 +15,9 @@
 #include "pinnquad/dynamics/airframe_value.hpp"
 
 pinnquad::Flight study::flown(const programs::StudyFlight& id) {
-  pinnquad::RecordedFlight recorded;
-  programs::with_flight(id.name, [&](auto tag) {
-    using PaperFlight = typename decltype(tag)::type;
-    recorded = pinnquad::fly<PaperFlight>(pinnquad::airframe_value<Airframe, double>(), std::mt19937_64(id.seed));
-  });
+  const programs::NamedFlight& flight = programs::flight_named(id.name);
+  const auto vehicle = flight.vehicle(pinnquad::airframe_value<Airframe, double>(), flight.ground_effect);
+  pinnquad::RecordedFlight recorded = pinnquad::fly(vehicle, flight.pilot(vehicle, id.seed, {}), flight.plan);
   if (recorded.report.end != pinnquad::FlightEnd::completed) {
     throw std::invalid_argument("flight " + id.name + " of seed " + std::to_string(id.seed) + " ended after " +
                                 std::to_string(recorded.report.rows) + " rows: choose another --flight-seed");
@@ -33,19 +30,18 @@ void study::draw_flights(const std::string& folder, std::uint64_t seed) {
   const pinnquad::Airframe<double> airframe = airframe_value<study::Airframe, double>();
   programs::ProgressLine progress("drawing the flights");
   double done = 0;
-  programs::each_flight([&](auto tag) {
-    using PaperFlight = typename decltype(tag)::type;
-    if constexpr (std::is_same_v<PaperFlight, HarderFlight>) return;  // none of the paper's
-    const auto vehicle = flight_vehicle<PaperFlight>(airframe, PaperFlight::ground_effect);
-    const auto without = flight_vehicle<PaperFlight>(airframe, GroundEffectModel::none);
+  for (const programs::NamedFlight& flight : programs::flights()) {
+    if (flight.name == std::string(HarderFlight::name)) continue;  // none of the paper's
+    const SwitchedQuadrotor vehicle = flight.vehicle(airframe, flight.ground_effect);
+    const SwitchedQuadrotor without = flight.vehicle(airframe, GroundEffectModel::none);
     std::vector<programs::TraceRow> trace;
-    const RecordedFlight recorded =
-        fly(vehicle, PaperFlight::pilot(vehicle, std::mt19937_64(seed)), PaperFlight::plan(),
-            [&](const auto& flies) { trace.push_back(programs::trace_row(vehicle, without, flies.vehicle())); });
-    const std::string into = folder + "/flights/" + PaperFlight::name;
+    const RecordedFlight recorded = fly(vehicle, flight.pilot(vehicle, seed, {}), flight.plan, [&](const auto& flies) {
+      trace.push_back(programs::trace_row(vehicle, without, flies.vehicle()));
+    });
+    const std::string into = folder + "/flights/" + flight.name;
     programs::make_folders(into);
-    programs::draw_flight(into, recorded.flight, trace, airframe, PaperFlight::ground_effect,
-                          std::is_same_v<PaperFlight, WindyFlight>);
+    programs::draw_flight(into, recorded.flight, trace, airframe, flight.ground_effect,
+                          flight.name == std::string(WindyFlight::name));
     progress.update(++done / 3);
-  });
+  }
 }

@@ -40,6 +40,7 @@ class DrydenTurbulence {
   static_assert(Waves >= 1, "pinnquad: Dryden turbulence needs at least one wave per component (aero/dryden.hpp)");
 
  public:
+  DrydenTurbulence() = default;  ///< no gusts
   /// `direction`: where the mean wind blows to, NED, horizontal, unit length. The engine draws wave numbers and phases.
   template <class Engine>
   DrydenTurbulence(Engine& engine, const DrydenParameters& parameters, double mean_wind_m_s,
@@ -111,9 +112,9 @@ class DrydenTurbulence {
     return std::tan(low);
   }
 
-  std::array<double, 2> direction_;
-  double mean_wind_m_s_;
-  bool holds_;
+  std::array<double, 2> direction_{1.0, 0.0};
+  double mean_wind_m_s_ = 0;
+  bool holds_ = true;
   std::array<std::array<double, waves>, 3> wave_number_1_m_{};
   std::array<std::array<double, waves>, 3> phase_turns_{};
   std::array<double, 3> amplitude_m_s_{};

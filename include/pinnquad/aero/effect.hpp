@@ -22,6 +22,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/select.hpp"
 #include "pinnquad/core/status.hpp"
@@ -95,9 +96,33 @@ enum class VariesWith : std::uint8_t {
   place_and_time,  ///< anything
 };
 
+/// How a Switched effect stands in most flights. Where all stand so, a step flies that was compiled without questions
+/// to those that are usually on or off.
+enum class Usually : std::uint8_t { either, on, off };
+
+/// An effect and its switch: one type for vehicles that differ in their effects. A vehicle passes over an effect that
+/// is off, with the bits of a vehicle without it.
+template <class Effect, Usually usually = Usually::either>
+struct Switched {
+  Effect effect{};
+  bool on = false;
+};
+
 namespace detail {
 template <class T>
 const T& some() noexcept;  // never defined
+
+template <class Effect>
+struct Unswitched {
+  using type = Effect;
+};
+template <class Effect, Usually usually>
+struct Unswitched<Switched<Effect, usually>> {
+  using type = Effect;
+};
+/// The effect itself.
+template <class Effect>
+using UnswitchedEffect = typename Unswitched<Effect>::type;
 
 /// A call of the contract: whether it is noexcept; no type where it can't be made or returns something else.
 template <class Effect>
@@ -152,9 +177,9 @@ using NoStatus = decltype(&WithNames<Effect>::status);
 }  // namespace detail
 
 template <class Effect>
-inline constexpr bool changes_surroundings = is_detected<detail::SurroundingsCall, Effect>;
+inline constexpr bool changes_surroundings = is_detected<detail::SurroundingsCall, detail::UnswitchedEffect<Effect>>;
 template <class Effect>
-inline constexpr bool makes_wrench = is_detected<detail::WrenchCall, Effect>;
+inline constexpr bool makes_wrench = is_detected<detail::WrenchCall, detail::UnswitchedEffect<Effect>>;
 
 /// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Effect>
@@ -162,12 +187,12 @@ inline constexpr bool is_effect = changes_surroundings<Effect> || makes_wrench<E
 
 /// True for an effect with `wrench_on`.
 template <class Effect>
-inline constexpr bool has_thrust_branches = is_detected<detail::WrenchOnCall, Effect>;
+inline constexpr bool has_thrust_branches = is_detected<detail::WrenchOnCall, detail::UnswitchedEffect<Effect>>;
 
 /// True for an effect whose `wrench` takes a RotorCondition.
 template <class Effect>
 inline constexpr bool uses_rotor_wrench =
-    makes_wrench<Effect> && !is_detected<detail::WrenchCall, Effect, AeroCondition<double>>;
+    makes_wrench<Effect> && !is_detected<detail::WrenchCall, detail::UnswitchedEffect<Effect>, AeroCondition<double>>;
 
 /// False where the effect has a function of the contract's name that can't be called as the contract says, or returns
 /// something else: it would be passed over in silence. A `final` class is not looked into: C++ does not list its names.
@@ -198,6 +223,8 @@ namespace detail {
 template <class Effect, class Scalar>
 inline constexpr bool flies =
     is_effect<Effect>&& is_whole_effect<Effect, Scalar>() && is_noexcept_effect<Effect, Scalar>();
+template <class Effect, Usually usually, class Scalar>
+inline constexpr bool flies<Switched<Effect, usually>, Scalar> = flies<Effect, Scalar>;
 
 /// The effect as a vehicle keeps it.
 template <class Effect, class Scalar>
@@ -207,6 +234,11 @@ auto bound_effect(const Effect& effect, const Airframe<Scalar>& airframe) noexce
   } else {
     return effect;
   }
+}
+template <class Effect, Usually usually, class Scalar>
+auto bound_effect(const Switched<Effect, usually>& effect, const Airframe<Scalar>& airframe) noexcept {
+  using Bound = decltype(bound_effect(effect.effect, airframe));
+  return Switched<Bound, usually>{bound_effect(effect.effect, airframe), effect.on};
 }
 
 /// Its type: an effect too.
@@ -225,12 +257,77 @@ constexpr Outcome<Scalar> effect_status(const Effect& effect, const Airframe<Sca
     return Status::ok;
   }
 }
+template <class Effect, Usually usually, class Scalar>
+constexpr Outcome<Scalar> effect_status(const Switched<Effect, usually>& effect,
+                                        const Airframe<Scalar>& airframe) noexcept {
+  return effect.on ? effect_status(effect.effect, airframe) : Outcome<Scalar>(Status::ok);
+}
+
+namespace detail {
+template <class Effect, class Vehicle>
+using StatusWhenCompiled = std::integral_constant<Status, Effect{}.status(Vehicle::template value<double>())>;
+
+/// The status that an effect as it is by default gives an airframe known when compiled; ok for one that can be asked in
+/// flight only.
+template <class Effect, class Vehicle>
+constexpr Status default_status() noexcept {
+  if constexpr (is_detected<StatusWhenCompiled, Effect, Vehicle>) {
+    return StatusWhenCompiled<Effect, Vehicle>::value;
+  } else {
+    return Status::ok;
+  }
+}
+
+/// Calls `function` with an effect, unless it is switched off; `usual`: effects stand as usual.
+template <bool usual, class Effect, class Function>
+PINNQUAD_ALWAYS_INLINE void with_effect(const Effect& effect, const Function& function) noexcept {
+  function(effect);
+}
+template <bool usual, class Effect, Usually usually, class Function>
+PINNQUAD_ALWAYS_INLINE void with_effect(const Switched<Effect, usually>& effect, const Function& function) noexcept {
+  if constexpr (!usual || usually == Usually::either) {
+    if (effect.on) function(effect.effect);
+  } else if constexpr (usually == Usually::on) {
+    function(effect.effect);
+  }
+}
+
+template <class Effect>
+constexpr bool is_on(const Effect& /*effect*/) noexcept {
+  return true;
+}
+template <class Effect, Usually usually>
+constexpr bool is_on(const Switched<Effect, usually>& effect) noexcept {
+  return effect.on;
+}
+
+template <class Effect>
+constexpr bool stands_as_usual(const Effect& /*effect*/) noexcept {
+  return true;
+}
+template <class Effect, Usually usually>
+constexpr bool stands_as_usual(const Switched<Effect, usually>& effect) noexcept {
+  return usually == Usually::either || effect.on == (usually == Usually::on);
+}
+
+template <class Effect>
+inline constexpr bool is_switched = false;
+template <class Effect, Usually usually>
+inline constexpr bool is_switched<Switched<Effect, usually>> = true;
+/// Whether a step is compiled without the questions.
+template <class Effect>
+inline constexpr bool has_usual_state = false;
+template <class Effect, Usually usually>
+inline constexpr bool has_usual_state<Switched<Effect, usually>> = usually != Usually::either;
+}  // namespace detail
 
 /// The effect's own `varies_with`. One that does not say is taken to depend on place and time.
 template <class Effect, class = void>
 inline constexpr VariesWith varies_with = VariesWith::place_and_time;
 template <class Effect>
 inline constexpr VariesWith varies_with<Effect, std::void_t<decltype(Effect::varies_with)>> = Effect::varies_with;
+template <class Effect, Usually usually>
+inline constexpr VariesWith varies_with<Switched<Effect, usually>, void> = varies_with<Effect>;
 
 /// The most that any of these effects depends on.
 template <class... Effects>

@@ -26,7 +26,9 @@ struct ConstantWind {
 
   template <class Scalar>
   PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
-    for (int i = 0; i < 3; ++i) air.wind_m_s[i] += Scalar(velocity_m_s[static_cast<std::size_t>(i)]);
+    air.wind_m_s[0] += Scalar(velocity_m_s[0]);  // no loop: an index keeps the air in memory
+    air.wind_m_s[1] += Scalar(velocity_m_s[1]);
+    air.wind_m_s[2] += Scalar(velocity_m_s[2]);
   }
 
   /// `out_of_range` for a velocity that is no number.
@@ -48,7 +50,9 @@ struct PeriodicWind {
   PINNQUAD_ALWAYS_INLINE void surroundings(Surroundings<Scalar>& air) const noexcept {
     const Scalar turns = air.time_s * Scalar(1 / period_s);
     const Scalar speed = Scalar(amplitude_m_s) * sine_of_turns(turns) + Scalar(mean_m_s);
-    for (int i = 0; i < 3; ++i) air.wind_m_s[i] += speed * Scalar(direction[static_cast<std::size_t>(i)]);
+    air.wind_m_s[0] += speed * Scalar(direction[0]);
+    air.wind_m_s[1] += speed * Scalar(direction[1]);
+    air.wind_m_s[2] += speed * Scalar(direction[2]);
   }
 
   /// `out_of_range` for a period that isn't positive, a direction that isn't a unit vector, or speeds that are no

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The paper's three flights (Sec. 5.2) and a harder one as types: effects, pilot, duration. The pilots' styles are
 // fitted to what a vehicle can do at a place, found through its own inverse. Contract of a flight: `name`, `summary`,
-// `Vehicle` and `SwitchableVehicle` (the same effects, and a ground effect that a program may choose), `ground_effect`
-// (the paper's), `plan()` and `pilot(vehicle, engine, max_speed_m_s)`.
+// `Vehicle`, `ground_effect` (the paper's), `plan()` and `pilot(vehicle, engine, max_speed_m_s)`.
 #pragma once
 
 #include <limits>
@@ -18,7 +17,7 @@
 #include "pinnquad/simulation/near_ground_pilot.hpp"
 #include "pinnquad/simulation/random_pilot.hpp"
 #include "pinnquad/simulation/simulator.hpp"
-#include "pinnquad/simulation/switchable_quadrotor.hpp"
+#include "pinnquad/simulation/switched_quadrotor.hpp"
 
 namespace pinnquad {
 
@@ -37,14 +36,12 @@ inline double largest_fraction(const Rotors<double>& rotors, const Commands<doub
 
 /// Share of its thrust that the rotor with most to do gives in hover at a place; NaN if the inverse gives no answer.
 /// Above the share that the controller asks for at most (0.97, flight_limits) the airframe cannot stay up.
-template <class AnyVehicle>
-double hover_command(const AnyVehicle& vehicle, const Vector3<double>& place_m) {
-  return with_quadrotor(vehicle, [&](const auto& quadrotor) {
-    HoverTrim<double> hover;
-    const Status status = hover_trim(quadrotor, place_m, hover);
-    return status == Status::ok ? detail::largest_fraction(quadrotor.rotors(), hover.commands)
-                                : std::numeric_limits<double>::quiet_NaN();
-  });
+template <class... Effects>
+double hover_command(const Quadrotor<double, Effects...>& quadrotor, const Vector3<double>& place_m) {
+  HoverTrim<double> hover;
+  const Status status = hover_trim(quadrotor, place_m, hover);
+  return status == Status::ok ? detail::largest_fraction(quadrotor.rotors(), hover.commands)
+                              : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// The default style, fitted to what the vehicle can do at a place, drag included. No climb takes more than 60 % of the
@@ -117,7 +114,6 @@ struct AgileFlight {
   static constexpr const char* name = "d1";
   static constexpr const char* summary = "agile, up to 8 m/s, with drag";
   using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
-  using SwitchableVehicle = SwitchableQuadrotor<StandardAtmosphere, QuadraticDrag>;
   static constexpr GroundEffectModel ground_effect = GroundEffectModel::none;
 
   static FlightPlan plan() { return {}; }
@@ -126,10 +122,7 @@ struct AgileFlight {
   template <class AnyVehicle, class Engine>
   static RandomPilot<Engine> pilot(const AnyVehicle& vehicle, const Engine& engine,
                                    double max_speed_m_s = PilotStyle{}.max_speed_m_s) {
-    return with_quadrotor(vehicle, [&](const auto& quadrotor) {
-      return RandomPilot<Engine>(engine, pilot_style(quadrotor, plan().start_m, max_speed_m_s),
-                                 quadrotor.site().ground_z_m);
-    });
+    return RandomPilot<Engine>(engine, pilot_style(vehicle, plan().start_m, max_speed_m_s), vehicle.site().ground_z_m);
   }
 };
 
@@ -140,7 +133,6 @@ struct NearGroundFlight {
   static constexpr const char* name = "d2";
   static constexpr const char* summary = "near the ground, 0.1 to 2 m, with drag and ground effect";
   using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
-  using SwitchableVehicle = SwitchableQuadrotor<StandardAtmosphere, QuadraticDrag>;
   static constexpr GroundEffectModel ground_effect = GroundEffectModel::conyers;
 
   /// Conyers' where his fit holds for the airframe, else Cheeseman and Bennett's, which hold for every one.
@@ -160,10 +152,8 @@ struct NearGroundFlight {
   template <class AnyVehicle, class Engine>
   static NearGroundPilot<Engine> pilot(const AnyVehicle& vehicle, const Engine& engine,
                                        double max_speed_m_s = NearGroundStyle{}.max_speed_m_s) {
-    return with_quadrotor(vehicle, [&](const auto& quadrotor) {
-      return NearGroundPilot<Engine>(engine, near_ground_style(quadrotor, plan().start_m, max_speed_m_s),
-                                     quadrotor.site().ground_z_m);
-    });
+    return NearGroundPilot<Engine>(engine, near_ground_style(vehicle, plan().start_m, max_speed_m_s),
+                                   vehicle.site().ground_z_m);
   }
 };
 
@@ -173,7 +163,6 @@ struct WindyFlight : AgileFlight {
   static constexpr const char* name = "d3";
   static constexpr const char* summary = "agile, up to 8 m/s, with drag and periodic wind";
   using Vehicle = Quadrotor<double, StandardAtmosphere, PeriodicWind, QuadraticDrag>;
-  using SwitchableVehicle = SwitchableQuadrotor<StandardAtmosphere, PeriodicWind, QuadraticDrag>;
 
   static FlightPlan plan() {
     FlightPlan plan = AgileFlight::plan();
@@ -188,8 +177,6 @@ struct HarderFlight : AgileFlight {
   static constexpr const char* name = "harder";
   static constexpr const char* summary = "as d1, with drag, inflow, flapping and wake of the rotors (light_quadrotor)";
   using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag, RotorDrag, Inflow, BladeFlapping, Wake>;
-  using SwitchableVehicle =
-      SwitchableQuadrotor<StandardAtmosphere, QuadraticDrag, RotorDrag, Inflow, BladeFlapping, Wake>;
 };
 
 /// A flight's vehicle at the paper's site, with the effects as the paper has them.
@@ -198,12 +185,12 @@ typename PaperFlight::Vehicle flight_vehicle(const Airframe<double>& airframe) {
   return typename PaperFlight::Vehicle(airframe, paper_site<double>());
 }
 
-/// The same with a ground effect of one's choice.
+/// The same with a ground effect of one's choice, as one type for all flights.
 template <class PaperFlight>
-typename PaperFlight::SwitchableVehicle flight_vehicle(const Airframe<double>& airframe, GroundEffectModel model) {
-  typename PaperFlight::SwitchableVehicle vehicle(airframe, paper_site<double>());
-  vehicle.set_ground_effect(model);
-  return vehicle;
+SwitchedQuadrotor flight_vehicle(const Airframe<double>& airframe, GroundEffectModel model) {
+  SwitchedEffects effects = switched_effects<typename PaperFlight::Vehicle>();
+  set_ground_effect(effects, model);
+  return quadrotor_with(effects, airframe, paper_site<double>());
 }
 
 /// One of the paper's flights, flown by its own pilot; `engine` is the pilot's.

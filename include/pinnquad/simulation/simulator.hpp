@@ -12,7 +12,6 @@
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
-#include "pinnquad/core/detected.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/simulation/pilot.hpp"
 #include "pinnquad/simulation/recorder.hpp"
@@ -40,20 +39,8 @@ enum class FlightEnd {
   ground,      ///< the vehicle's centre came down to the ground; on its legs (aero/ground_contact.hpp) it lands
 };
 
-/// Calls `function` with the Quadrotor that a simulated vehicle is; simulation/switchable_quadrotor.hpp has another
-/// overload. A vehicle is what this can be called with.
-template <class Function, class... Effects>
-decltype(auto) with_quadrotor(const Quadrotor<double, Effects...>& quadrotor, Function&& function) {
-  return std::forward<Function>(function)(quadrotor);
-}
-
-namespace detail {
-template <class Vehicle, class Model>
-using GroundEffectSwitchOf = decltype(std::declval<Vehicle&>().set_ground_effect(std::declval<Model>()));
-}  // namespace detail
-
-/// Flies `Vehicle` (a Quadrotor<double, Effects...> or a SwitchableQuadrotor) as `Pilot` asks and records it by
-/// `Recorder`; all are copies, and so is a copy of a simulator, which flies on like its original. A tick: the pilot's
+/// Flies `Vehicle` (a Quadrotor<double, Effects...>) as `Pilot` asks and records it by `Recorder`;
+/// all are copies, and so is a copy of a simulator, which flies on like its original. A tick: the pilot's
 /// set point, the controller's demand, the inverse's commands, desaturated, and physics steps under them. After every
 /// `controls_per_sample` ticks a row is recorded, at exact multiples of the sample period. The flight ends by itself
 /// when a row finds the vehicle at the ground, or where a Status isn't ok: at the start the airframe's, the hover
@@ -69,26 +56,30 @@ class Simulator {
  public:
   explicit Simulator(const Vehicle& quadrotor, Pilot pilot, const FlightPlan& settings = {},
                      Recorder recorder = Recorder{})
-      : quadrotor_(quadrotor), pilot_(std::move(pilot)), recorder_(std::move(recorder)), settings_(settings) {
+      : quadrotor_(quadrotor),
+        pilot_(std::move(pilot)),
+        recorder_(std::move(recorder)),
+        settings_(settings),
+        step_(quadrotor.time_step(settings.physics_step_s)) {
     vehicle_.body.position_m = settings.start_m;
     begin_recording();
     const bool clocks_run =
         settings.physics_step_s > 0 && settings.steps_per_control > 0 && settings.controls_per_sample > 0;
     Status status = Status::out_of_range;
-    if (clocks_run) status = with_quadrotor(quadrotor_, [this](const auto& actual) { return this->start(actual); });
+    if (clocks_run) status = start();
     if (status == Status::ok) status = detail::recorder_status(recorder_);
     if (status != Status::ok) decline(status);
   }
 
   /// One control tick. True while the vehicle flies on; false, and nothing is done, once the flight has ended.
   bool tick() {
-    return tick_with([this](const auto& actual) { return this->ask_pilot(actual); });
+    return tick_with([this] { return ask_pilot(); });
   }
 
   /// One control tick with these motor commands, not clipped, instead of the pilot's; else as tick(). NaN among them
   /// ends the flight.
   bool tick(const Commands<double>& commands) {
-    return tick_with([&](const auto& /*actual*/) {
+    return tick_with([&] {
       commands_ = commands;
       return Status::ok;
     });
@@ -115,9 +106,7 @@ class Simulator {
 
   const VehicleState<double>& vehicle() const noexcept { return vehicle_; }
   double time_s() const noexcept { return vehicle_.time_s; }
-  double altitude_m() const {  ///< above ground
-    return with_quadrotor(quadrotor_, [this](const auto& actual) { return this->above_ground(actual); });
-  }
+  double altitude_m() const { return quadrotor_.site().ground_z_m - vehicle_.body.position_m[2]; }  ///< above ground
   /// The last motor commands, not clipped.
   const Commands<double>& commands() const noexcept { return commands_; }
   /// Motor commands for a hover at the present place and time in level attitude, not clipped; through the
@@ -125,9 +114,7 @@ class Simulator {
   Status hover_commands(Commands<double>& commands) const {
     State<double> hover;
     hover.position_m = vehicle_.body.position_m;
-    return with_quadrotor(quadrotor_, [&](const auto& actual) {
-      return inverse_commands(actual, hover, Accelerations<double>{}, vehicle_.time_s, commands);
-    });
+    return inverse_commands(quadrotor_, hover, Accelerations<double>{}, vehicle_.time_s, commands);
   }
 
   const Vehicle& quadrotor() const noexcept { return quadrotor_; }
@@ -143,82 +130,70 @@ class Simulator {
   }
   void reserve(std::size_t rows) { recording_.reserve(rows); }
 
-  /// From the next tick on the vehicle flies with this ground effect; its state, the pilot and the clocks go on. Of a
-  /// SwitchableQuadrotor only.
-  template <class Model>
-  void set_ground_effect(Model model) {
-    static_assert(is_detected<detail::GroundEffectSwitchOf, Vehicle, Model>,
-                  "pinnquad: this vehicle's effects are its type; a ground effect that is set in flight needs a "
-                  "SwitchableQuadrotor (simulation/switchable_quadrotor.hpp)");
-    quadrotor_.set_ground_effect(model);
+  /// From the next tick on this vehicle flies: another airframe, site or effects, such as those of a SwitchedQuadrotor
+  /// (simulation/switched_quadrotor.hpp). State, pilot and clocks go on.
+  void set_quadrotor(const Vehicle& quadrotor) {
+    quadrotor_ = quadrotor;
+    step_ = quadrotor.time_step(settings_.physics_step_s);
   }
-  /// The same for all of the vehicle: another airframe, site or values of the effects.
-  void set_quadrotor(const Vehicle& quadrotor) { quadrotor_ = quadrotor; }
 
  private:
-  template <class Actual>
-  Status start(const Actual& quadrotor) {
+  Status start() {
     HoverTrim<double> hover;
-    Status status = quadrotor.status();
-    if (status == Status::ok) status = hover_trim(quadrotor, settings_.start_m, hover);
+    Status status = quadrotor_.status();
+    if (status == Status::ok) status = hover_trim(quadrotor_, settings_.start_m, hover);
     if (status != Status::ok) return status;
     vehicle_.rotors = commands_ = hover.commands;
-    const double rotor_scale = quadrotor.rotor_scale(quadrotor.surroundings(vehicle_.body, 0.0));
+    const double rotor_scale = quadrotor_.rotor_scale(quadrotor_.surroundings(vehicle_.body, 0.0));
     controller_ =
-        FlightController<double>(settings_.gains, flight_limits(quadrotor.airframe(), rotor_scale, settings_.gains),
-                                 quadrotor.site().gravity_m_s2);
+        FlightController<double>(settings_.gains, flight_limits(quadrotor_.airframe(), rotor_scale, settings_.gains),
+                                 quadrotor_.site().gravity_m_s2);
     return Status::ok;
   }
 
-  /// `choose(quadrotor)` sets the commands of this tick.
+  /// `choose()` sets the commands of this tick.
   template <class Choose>
   bool tick_with(const Choose& choose) {
     if (!flying()) return false;
-    with_quadrotor(quadrotor_, [&](const auto& actual) {
-      Status status = choose(actual);
-      if (status == Status::ok) status = hold_and_step(actual);
-      if (status != Status::ok) {
-        decline(status);
-        return;
-      }
-      ++ticks_;
-      if (row_is_due()) record_row(actual);
-    });
+    Status status = choose();
+    if (status == Status::ok) status = hold_and_step();
+    if (status != Status::ok) {
+      decline(status);
+      return false;
+    }
+    ++ticks_;
+    if (row_is_due()) record_row();
     return flying();
   }
 
-  template <class Actual>
-  Status ask_pilot(const Actual& quadrotor) {
+  Status ask_pilot() {
     Accelerations<double> demand;
     Status status = controller_(vehicle_.body, pilot_(vehicle_.body, vehicle_.time_s), demand);
-    if (status == Status::ok) status = inverse_commands(quadrotor, vehicle_.body, demand, vehicle_.time_s, commands_);
-    if (status == Status::ok) commands_ = desaturate(quadrotor.rotors(), commands_);
+    if (status == Status::ok) status = inverse_commands(quadrotor_, vehicle_.body, demand, vehicle_.time_s, commands_);
+    if (status == Status::ok) commands_ = desaturate(quadrotor_.rotors(), commands_);
     return status;
   }
 
-  template <class Actual>
-  Status hold_and_step(const Actual& quadrotor) {
+  Status hold_and_step() {
     recorder_.hold(commands_, vehicle_.time_s);
-    const auto step = quadrotor.time_step(settings_.physics_step_s);
     Status status = Status::ok;
     for (int i = 0; i < settings_.steps_per_control && status == Status::ok; ++i) {
-      status = quadrotor.step(vehicle_, commands_, step);
+      status = quadrotor_.step(vehicle_, commands_, step_);
     }
     return status;
   }
 
   bool row_is_due() const noexcept { return ticks_ % static_cast<std::size_t>(settings_.controls_per_sample) == 0; }
 
-  template <class Actual>
-  void record_row(const Actual& quadrotor) {
+  void record_row() {
     const std::size_t row = ticks_ / static_cast<std::size_t>(settings_.controls_per_sample);
     vehicle_.time_s = static_cast<double>(row) * settings_.sample_period_s();  // sums of steps drift, products do not
-    if (above_ground(quadrotor) <= 0) {
+    if (altitude_m() <= 0) {
       end_ = FlightEnd::ground;
       return;
     }
-    const Sample sample = recorder_(quadrotor, vehicle_, commands_);
-    if constexpr (detail::has_columns<Recorder>) recorder_.measure(quadrotor, vehicle_, extra_.data());
+    const Sample sample = recorder_(quadrotor_, vehicle_, commands_);
+    if constexpr (detail::has_columns<Recorder>) recorder_.measure(quadrotor_, vehicle_, extra_.data());
     if (!all_finite(to_values(sample)) || !all_finite(extra_)) {
       decline(Status::output_not_finite);
       return;
@@ -233,11 +208,6 @@ class Simulator {
     extra_.resize(recording_.columns().size());
   }
 
-  template <class Actual>
-  double above_ground(const Actual& quadrotor) const noexcept {
-    return quadrotor.site().ground_z_m - vehicle_.body.position_m[2];
-  }
-
   void decline(Status status) noexcept {
     end_ = FlightEnd::bad_status;
     status_ = status;
@@ -247,6 +217,7 @@ class Simulator {
   Pilot pilot_;
   Recorder recorder_;
   FlightPlan settings_;
+  typename Vehicle::TimeStep step_;
   FlightController<double> controller_;
   VehicleState<double> vehicle_{};
   Commands<double> commands_{};

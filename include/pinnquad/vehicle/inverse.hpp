@@ -109,27 +109,27 @@ Status commands_for_wrench(const Quadrotor<Scalar, Effects...>& quadrotor, const
                            Commands<Scalar>& commands) noexcept {
   if (air.status != Status::ok) return air.status;
   if (!(air.air_density_kg_m3 > Scalar(0) && air.thrust_scale > Scalar(0))) return Status::out_of_range;
-  if constexpr (!(uses_rotor_wrench<Effects> || ...)) {
-    const Wrench<Scalar> effects = quadrotor.aerodynamic_wrench(state, air, {});
-    commands = quadrotor.rotors().commands(required - effects, quadrotor.rotor_scale(air));
-    return Status::ok;
-  } else {
-    const detail::RotorEquation<Scalar, Effects...> equation(quadrotor, state, air);
-    const std::array<Scalar, 4> wanted = detail::commanded_part(required);
-    auto best = equation.solve(ThrustBranch::upper, wanted);
-    if constexpr ((has_thrust_branches<Effects> || ...)) {
+  if constexpr ((uses_rotor_wrench<Effects> || ...)) {
+    if (quadrotor.has_rotor_effect()) {
+      const detail::RotorEquation<Scalar, Effects...> equation(quadrotor, state, air);
+      const std::array<Scalar, 4> wanted = detail::commanded_part(required);
+      auto best = equation.solve(ThrustBranch::upper, wanted);
       // where the branches meet, rounding may call both right: the better one is
-      if (best.status != Status::ok || !(best.mismatch <= detail::certainly_met<Scalar> * best.size)) {
+      const bool met = best.status == Status::ok && best.mismatch <= detail::certainly_met<Scalar> * best.size;
+      if (!met && quadrotor.has_branched_effect()) {
         const auto lower = equation.solve(ThrustBranch::lower, wanted);
         const bool better = best.status != Status::ok || lower.mismatch < best.mismatch;
         if (lower.status == Status::ok && better) best = lower;
       }
+      if (best.status != Status::ok) return best.status;
+      if (!(best.mismatch <= detail::settled<Scalar> * best.size)) return Status::no_solution;
+      commands = quadrotor.rotors().commands_of(best.thrusts);
+      return Status::ok;
     }
-    if (best.status != Status::ok) return best.status;
-    if (!(best.mismatch <= detail::settled<Scalar> * best.size)) return Status::no_solution;
-    commands = quadrotor.rotors().commands_of(best.thrusts);
-    return Status::ok;
   }
+  const Wrench<Scalar> effects = quadrotor.aerodynamic_wrench(state, air, {});
+  commands = quadrotor.rotors().commands(required - effects, quadrotor.rotor_scale(air));
+  return Status::ok;
 }
 
 /// Commands (not clipped) that make the motion in this state at this time.

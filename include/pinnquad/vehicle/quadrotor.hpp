@@ -13,6 +13,7 @@
 #include "pinnquad/dynamics/integrator.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
+#include "pinnquad/vehicle/axes.hpp"
 #include "pinnquad/vehicle/site.hpp"
 
 namespace pinnquad {
@@ -25,32 +26,16 @@ struct VehicleState {
   Wide<Scalar> time_s{0.0};   ///< double also for a float vehicle
 };
 
-namespace detail {
-template <class Effect, class Vehicle>
-using StatusWhenCompiled = std::integral_constant<Status, Effect{}.status(Vehicle::template value<double>())>;
-
-/// The status that an effect as it is by default gives an airframe known when compiled; ok for one that can be asked in
-/// flight only.
-template <class Effect, class Vehicle>
-constexpr Status default_status() noexcept {
-  if constexpr (is_detected<StatusWhenCompiled, Effect, Vehicle>) {
-    return StatusWhenCompiled<Effect, Vehicle>::value;
-  } else {
-    return Status::ok;
-  }
-}
-}  // namespace detail
-
 /// Eqs. (1) and (2) with effects, in their order (aero/effect.hpp). World NED, body FRD, SI units.
 template <class Scalar, class... Effects>
 class Quadrotor {
   static_assert(
       (is_effect<Effects> && ...),
       "pinnquad: this type is not an aerodynamic effect; it needs surroundings() or wrench() (aero/effect.hpp)");
-  static_assert((is_whole_effect<Effects, Scalar>() && ...),
+  static_assert((is_whole_effect<detail::UnswitchedEffect<Effects>, Scalar>() && ...),
                 "pinnquad: an effect's surroundings(), wrench(), wrench_on(), bound() or status() can't be called as "
                 "the contract says, or returns something else: it would be passed over (aero/effect.hpp)");
-  static_assert((is_noexcept_effect<Effects, Scalar>() && ...),
+  static_assert((is_noexcept_effect<detail::UnswitchedEffect<Effects>, Scalar>() && ...),
                 "pinnquad: an effect flies: its surroundings(), wrench(), wrench_on(), bound() and status() must be "
                 "noexcept (aero/effect.hpp)");
   static_assert(
@@ -97,6 +82,9 @@ class Quadrotor {
         effects_(detail::bound_effect(effects, airframe)...),
         rotors_(airframe),
         plain_(is_plain(airframe)),
+        usual_((detail::stands_as_usual(effects) && ...)),
+        rotor_effect_(((uses_rotor_wrench<Effects> && detail::is_on(effects)) || ...)),
+        branched_effect_(((has_thrust_branches<Effects> && detail::is_on(effects)) || ...)),
         status_(first_fault(effects...)) {}
 
   const Airframe<Scalar>& airframe() const noexcept { return airframe_; }
@@ -109,37 +97,46 @@ class Quadrotor {
   /// be inverted, `out_of_range` for a site that is no place, or what an effect's status() says of the airframe.
   Outcome<Scalar> status() const noexcept { return status_; }
 
+  /// Whether an effect that is not switched off takes a RotorCondition; whether one has branches.
+  bool has_rotor_effect() const noexcept { return rotor_effect_; }
+  bool has_branched_effect() const noexcept { return branched_effect_; }
+
   /// The air at a place and time: density, wind, thrust scale and status as the effects set them.
+  template <bool usual = false>
   PINNQUAD_ALWAYS_INLINE Surroundings<Scalar> surroundings(const State<Scalar>& state, Scalar time_s) const noexcept {
     Surroundings<Scalar> air;
     air.time_s = time_s;
     air.position_m = state.position_m;
     air.altitude_m = site_.elevation_m - state.position_m[2];
-    each_effect([&air](const auto& effect) PINNQUAD_INLINE_LAMBDA {
+    each_effect<usual>([&air](const auto& effect) PINNQUAD_INLINE_LAMBDA {
       if constexpr (changes_surroundings<std::decay_t<decltype(effect)>>) effect.surroundings(air);
     });
     return air;
   }
 
   /// Body wrench of all effects at thrust fractions of the rotors (not clipped), in which an effect should be affine.
-  template <bool plain = false>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> aerodynamic_wrench(const State<Scalar>& state, const Surroundings<Scalar>& air,
                                                            const ThrustFractions<Scalar>& thrusts) const noexcept {
-    return sum_of_effects<plain>(state, air, thrusts,
-                                 [this](const auto& effect, const auto& condition)
-                                     PINNQUAD_INLINE_LAMBDA { return effect.wrench(condition, airframe_); });
+    if constexpr (has_usual) {
+      if (usual_) return aerodynamic<false, true>(state, air, thrusts);
+    }
+    return aerodynamic<false, false>(state, air, thrusts);
   }
 
   /// The same with every effect that has branches on this one, whether the condition lies on it or not.
   Wrench<Scalar> aerodynamic_wrench_on(ThrustBranch branch, const State<Scalar>& state, const Surroundings<Scalar>& air,
                                        const ThrustFractions<Scalar>& thrusts) const noexcept {
-    return sum_of_effects(state, air, thrusts, [this, branch](const auto& effect, const auto& condition) noexcept {
+    const auto on_branch = [this, branch](const auto& effect, const auto& condition) noexcept {
       if constexpr (has_thrust_branches<std::decay_t<decltype(effect)>>) {
         return effect.wrench_on(branch, condition, airframe_);
       } else {
         return effect.wrench(condition, airframe_);
       }
-    });
+    };
+    if constexpr (has_usual) {
+      if (usual_) return sum_of_effects<false, true>(state, air, thrusts, on_branch);
+    }
+    return sum_of_effects<false, false>(state, air, thrusts, on_branch);
   }
 
   /// Wrenches and accelerations of settled rotors: `rotor_commands` are clipped to 0..1, without lag. Unchecked: valid
@@ -177,6 +174,9 @@ class Quadrotor {
                        const TimeStep& step) const noexcept {
     const Outcome<Scalar> input = check_input(state, commands, step.step_s);
     if (!any_of(input == Status::ok)) return input;
+    if constexpr (has_usual) {
+      if (all_of(plain_) && usual_) return advance<true, true>(state, commands, step, input);
+    }
     if (all_of(plain_)) return advance<true>(state, commands, step, input);
     if (!any_of(plain_)) return advance<false>(state, commands, step, input);
     // lanes of both kinds: each by the build of its own
@@ -210,7 +210,7 @@ class Quadrotor {
   }
 
   /// A step where the input is good.
-  template <bool plain>
+  template <bool plain, bool usual = false>
   PINNQUAD_FLATTEN Outcome<Scalar> advance(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
                                            const TimeStep& step, const Outcome<Scalar>& input) const noexcept {
     const Scalar step_s = step.step_s;
@@ -225,7 +225,9 @@ class Quadrotor {
     const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
       const ThrustFractions<Scalar>& now = calls == 0 ? start : (calls < 3 ? middle : end);
       ++calls;
-      return rate_of_change<plain>(body, now, Scalar(state.time_s + Wide<Scalar>(offset_s)), status);
+      const Scalar time_s(state.time_s + Wide<Scalar>(offset_s));
+      if constexpr (is_switched) return asked_rate_of_change<plain, usual>(body, now, time_s, status);
+      return rate_of_change<plain, usual>(body, now, time_s, status);
     };
     const State<Scalar> next = detail::rk4_step(state.body, step_s, rate);
     status = detail::refused_where(!(all_finite(next) && is_unit(next.attitude)), Status::output_not_finite, status);
@@ -274,36 +276,23 @@ class Quadrotor {
     return detail::refused_where(!is_unit(state.body.attitude), Status::not_unit_quaternion, status);
   }
 
-  /// The rotation worked out once for the two vectors that an evaluation turns: less than half the work of turning each
-  /// by the quaternion, and written in scalars because Eigen would split a vector of three into two and one.
-  struct Axes {
-    Scalar xx, xy, xz, yx, yy, yz, zx, zy, zz;  ///< R, row (world) by row
-
-    explicit Axes(const Quaternion<Scalar>& q) noexcept {
-      const Scalar one(1), x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
-      const Scalar w_x = q.w * x2, w_y = q.w * y2, w_z = q.w * z2;
-      const Scalar x_x = q.x * x2, x_y = q.x * y2, x_z = q.x * z2, y_y = q.y * y2, y_z = q.y * z2, z_z = q.z * z2;
-      xx = one - (y_y + z_z), xy = x_y - w_z, xz = x_z + w_y;
-      yx = x_y + w_z, yy = one - (x_x + z_z), yz = y_z - w_x;
-      zx = x_z - w_y, zy = y_z + w_x, zz = one - (x_x + y_y);
-    }
-    Vector3<Scalar> to_world(Scalar x, Scalar y, Scalar z) const noexcept {
-      return Vector3<Scalar>(xx * x + xy * y + xz * z, yx * x + yy * y + yz * z, zx * x + zy * y + zz * z);
-    }
-    /// Of a vector along the body's z axis.
-    Vector3<Scalar> to_world(Scalar z) const noexcept { return Vector3<Scalar>(xz * z, yz * z, zz * z); }
-    Vector3<Scalar> to_body(Scalar x, Scalar y, Scalar z) const noexcept {
-      return Vector3<Scalar>(xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z);
-    }
-  };
+  static constexpr bool is_switched = (detail::is_switched<Effects> || ...);
+  static constexpr bool has_usual = (detail::has_usual_state<Effects> || ...);
+  template <bool plain, bool usual>
+  PINNQUAD_ALWAYS_INLINE Wrench<Scalar> aerodynamic(const State<Scalar>& state, const Surroundings<Scalar>& air,
+                                                    const ThrustFractions<Scalar>& thrusts) const noexcept {
+    return sum_of_effects<plain, usual>(state, air, thrusts,
+                                        [this](const auto& effect, const auto& condition)
+                                            PINNQUAD_INLINE_LAMBDA { return effect.wrench(condition, airframe_); });
+  }
 
   /// Folds the effects in their order; `wrench_of(effect, condition)` evaluates one.
-  template <bool plain = false, class WrenchOf>
+  template <bool plain, bool usual, class WrenchOf>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> sum_of_effects(const State<Scalar>& state, const Surroundings<Scalar>& air,
                                                        const ThrustFractions<Scalar>& thrusts,
                                                        const WrenchOf& wrench_of) const noexcept {
     RotorCondition<Scalar> condition;
-    const Axes axes(state.attitude);
+    const detail::Axes<Scalar> axes(state.attitude);
     const Vector3<Scalar>& v = state.velocity_m_s;
     condition.air_relative_velocity_m_s =
         axes.to_body(v[0] - air.wind_m_s[0], v[1] - air.wind_m_s[1], v[2] - air.wind_m_s[2]);
@@ -313,11 +302,16 @@ class Quadrotor {
     condition.height_above_ground_m = site_.ground_z_m - state.position_m[2];
     condition.air_density_kg_m3 = air.air_density_kg_m3;
     condition.time_s = air.time_s;
-    each_effect([&](const auto& effect) PINNQUAD_INLINE_LAMBDA {
+    const auto show_rotors = [&]() PINNQUAD_INLINE_LAMBDA {
+      condition.rotors = rotors_.template wrench_of<plain>(thrusts, rotor_scale(air));
+      condition.rotor_thrust_N = rotors_.thrusts_of(thrusts, rotor_scale(air));
+    };
+    constexpr bool asked = is_switched && !usual;  // the compiler merges what all others show
+    if (asked && rotor_effect_) show_rotors();
+    each_effect<usual>([&](const auto& effect) PINNQUAD_INLINE_LAMBDA {
       using Effect = std::decay_t<decltype(effect)>;
       if constexpr (uses_rotor_wrench<Effect>) {
-        condition.rotors = rotors_.template wrench_of<plain>(thrusts, rotor_scale(air));
-        condition.rotor_thrust_N = rotors_.thrusts_of(thrusts, rotor_scale(air));
+        if constexpr (!asked) show_rotors();
         condition.aerodynamic = condition.aerodynamic + wrench_of(effect, condition);
       } else if constexpr (makes_wrench<Effect>) {
         const AeroCondition<Scalar>& without_rotors = condition;
@@ -337,32 +331,32 @@ class Quadrotor {
   }
 
   /// An evaluation up to the wrenches.
-  template <bool plain = false>
+  template <bool plain = false, bool usual = false>
   PINNQUAD_ALWAYS_INLINE Evaluation loads(const State<Scalar>& state, const ThrustFractions<Scalar>& thrusts,
                                           Scalar time_s) const noexcept {
     Evaluation result;
-    result.surroundings = surroundings(state, time_s);
+    result.surroundings = surroundings<usual>(state, time_s);
     const ThrustFractions<Scalar> turning = clipped(thrusts);
     result.rotors = rotors_.template wrench_of<plain>(turning, rotor_scale(result.surroundings));
-    result.aerodynamic = aerodynamic_wrench<plain>(state, result.surroundings, turning);
+    result.aerodynamic = aerodynamic<plain, usual>(state, result.surroundings, turning);
     return result;
   }
 
   /// The same motion as evaluate()'s, in world axes as the integrator wants it. v_dot = R f / m + g directly: Eq. (1)'s
   /// omega x v_B would be subtracted only to be added again.
-  template <bool plain>
+  template <bool plain, bool usual>
   PINNQUAD_ALWAYS_INLINE detail::StateDerivative<Scalar> rate_of_change(const State<Scalar>& state,
                                                                         const ThrustFractions<Scalar>& thrusts,
                                                                         Scalar time_s,
                                                                         Outcome<Scalar>& status) const noexcept {
-    const Evaluation e = loads<plain>(state, thrusts, time_s);
+    const Evaluation e = loads<plain, usual>(state, thrusts, time_s);
     status = select(status == Status::ok, e.surroundings.status, status);
     // a battery can't reverse thrust
     status = detail::refused_where(!(e.surroundings.thrust_scale >= Scalar(0)), Status::out_of_range, status);
     const Wrench<Scalar> wrench = total(e);
     detail::StateDerivative<Scalar> d;
     d.velocity_m_s = state.velocity_m_s;
-    const Axes axes(state.attitude);
+    const detail::Axes<Scalar> axes(state.attitude);
     if constexpr (plain && !(makes_wrench<Effects> || ...)) {
       d.acceleration_m_s2 = axes.to_world(wrench.force_N[2] * inverse_mass_);
     } else {
@@ -375,13 +369,21 @@ class Quadrotor {
     return d;
   }
 
-  template <class Function>
-  PINNQUAD_ALWAYS_INLINE void each_effect(const Function& function) const noexcept {
-    each_effect(function, std::index_sequence_for<Effects...>{});
+  /// Out of line: a step would hold four copies of all effects, more than an instruction cache does.
+  template <bool plain, bool usual>
+  PINNQUAD_NOINLINE PINNQUAD_FLATTEN detail::StateDerivative<Scalar> asked_rate_of_change(
+      const State<Scalar>& state, const ThrustFractions<Scalar>& thrusts, Scalar time_s,
+      Outcome<Scalar>& status) const noexcept {
+    return rate_of_change<plain, usual>(state, thrusts, time_s, status);
   }
-  template <class Function, std::size_t... Index>
+
+  template <bool usual, class Function>
+  PINNQUAD_ALWAYS_INLINE void each_effect(const Function& function) const noexcept {
+    each_effect<usual>(function, std::index_sequence_for<Effects...>{});
+  }
+  template <bool usual, class Function, std::size_t... Index>
   PINNQUAD_ALWAYS_INLINE void each_effect(const Function& function, std::index_sequence<Index...>) const noexcept {
-    (function(std::get<Index>(effects_)), ...);
+    (detail::with_effect<usual>(std::get<Index>(effects_), function), ...);
   }
 
   Airframe<Scalar> airframe_;
@@ -390,6 +392,8 @@ class Quadrotor {
   std::tuple<detail::BoundEffect<Effects, Scalar>...> effects_;
   Rotors<Scalar> rotors_;
   Mask<Scalar> plain_;
+  bool usual_;  ///< Switched effects stand as usual
+  bool rotor_effect_, branched_effect_;
   Outcome<Scalar> status_;
 };
 

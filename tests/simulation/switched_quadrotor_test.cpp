@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+// Effects switched at run time: to the bit the vehicle that names those that are on, also where they change in flight.
+#include "pinnquad/simulation/switched_quadrotor.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <random>
+
+#include "pinnquad/dynamics/airframes/light_quadrotor.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/simulation/flights.hpp"
+#include "pinnquad/simulation/random_pilot.hpp"
+#include "pinnquad/simulation/simulator.hpp"
+
+namespace {
+
+using namespace pinnquad;
+
+template <class... GroundEffect>
+using Fixed = Quadrotor<double, StandardAtmosphere, PeriodicWind, QuadraticDrag, GroundEffect...>;
+using Pilot = RandomPilot<std::mt19937_64>;
+
+const Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
+const Site<double> site = paper_site<double>();
+constexpr PeriodicWind breeze{{0.0, 1.0, 0.0}, 1.0, 0.5, 7.0};
+constexpr double start_height_m = 0.6;  // Z/R = 5.2: within both formulas' reach
+
+SwitchedQuadrotor switched(GroundEffectModel model = GroundEffectModel::none) {
+  SwitchedEffects effects = switched_effects<Quadrotor<double, StandardAtmosphere, QuadraticDrag>>();
+  switch_effect(effects, breeze);
+  set_ground_effect(effects, model);
+  return quadrotor_with(effects, airframe, site);
+}
+template <class... GroundEffect>
+Fixed<GroundEffect...> fixed(GroundEffect... ground_effect) {
+  return Fixed<GroundEffect...>(airframe, site, {}, breeze, {}, ground_effect...);
+}
+
+/// Low and gentle: the vehicle stays within two metres of the ground, where ground effects differ.
+Pilot pilot() {
+  PilotStyle style;
+  style.max_speed_m_s = style.max_climb_m_s = style.max_descent_m_s = 0.3;
+  style.lowest_m = 0.3;
+  style.highest_m = 1.5;
+  style.braking_m = 0.2;
+  style.thumbs.roll_pitch_deviation_rad_s = 0.05;
+  return Pilot(std::mt19937_64(4), style, site.ground_z_m);
+}
+
+FlightPlan low_start() {
+  FlightPlan settings;
+  settings.start_m = Vector3<double>(0, 0, site.ground_z_m - start_height_m);
+  return settings;
+}
+
+/// A simulator's steps from a state on, written anew from its parts; rows at multiples of 0.05 s.
+template <class Vehicle>
+Flight flown_on(const Vehicle& quadrotor, Pilot pilot, VehicleState<double> vehicle, std::size_t first_row,
+                std::size_t rows) {
+  const FlightPlan settings = low_start();
+  State<double> hover;
+  hover.position_m = settings.start_m;
+  const double density_ratio = quadrotor.rotor_scale(quadrotor.surroundings(hover, 0.0));
+  const FlightController<double> controller(
+      settings.gains, flight_limits(quadrotor.airframe(), density_ratio, settings.gains), site.gravity_m_s2);
+  Flight flight;
+  for (std::size_t row = first_row; row < first_row + rows; ++row) {
+    Commands<double> commands{};
+    for (int tick = 0; tick < 25; ++tick) {
+      Accelerations<double> demand;
+      REQUIRE(controller(vehicle.body, pilot(vehicle.body, vehicle.time_s), demand) == Status::ok);
+      REQUIRE(inverse_commands(quadrotor, vehicle.body, demand, vehicle.time_s, commands) == Status::ok);
+      commands = desaturate(quadrotor.rotors(), commands);
+      REQUIRE(quadrotor.step(vehicle, commands, 0.001) == Status::ok);
+      REQUIRE(quadrotor.step(vehicle, commands, 0.001) == Status::ok);
+    }
+    vehicle.time_s = static_cast<double>(row + 1) * settings.sample_period_s();
+    flight.push_back(ExactRecorder{}(quadrotor, vehicle, commands));
+  }
+  return flight;
+}
+
+template <class Vehicle>
+void check_switch(GroundEffectModel model, const Vehicle& compile_time) {
+  Simulator<SwitchedQuadrotor, Pilot> simulator(switched(), pilot(), low_start());
+  REQUIRE(simulator.advance(2));
+  const VehicleState<double> at_switch = simulator.vehicle();
+  const Pilot at_the_sticks = simulator.pilot();
+  REQUIRE(simulator.take_recording().size() == 40);
+  simulator.set_quadrotor(switched(model));
+  CHECK(simulator.time_s() == at_switch.time_s);
+  REQUIRE(simulator.advance(2));
+  CHECK(content_hash(simulator.recording()) == content_hash(flown_on(compile_time, at_the_sticks, at_switch, 40, 40)));
+}
+
+template <class Value>
+bool same_bits(const Value& a, const Value& b) {
+  return std::memcmp(&a, &b, sizeof(Value)) == 0;
+}
+
+/// A vehicle in a turn, low and in wind, whose rotors all do something else.
+VehicleState<double> turning() {
+  VehicleState<double> state;
+  state.body.position_m = Vector3<double>(0.3, -0.4, site.ground_z_m - 0.17);
+  state.body.velocity_m_s = Vector3<double>(2.5, -1.2, -0.7);
+  state.body.attitude = normalized(Quaternion<double>{0.95, 0.15, -0.2, 0.1});
+  state.body.body_rates_rad_s = Vector3<double>(0.7, -0.4, 0.9);
+  state.rotors = {0.52, 0.61, 0.48, 0.57};
+  state.time_s = 1.75;
+  return state;
+}
+
+/// The same loads and the same inverse; the same flight where `steps` says so.
+template <class Vehicle>
+void check_same(const SwitchedEffects& effects, const Vehicle& named, const Airframe<double>& flown, int steps) {
+  const SwitchedQuadrotor quadrotor = quadrotor_with(effects, flown, site);
+  REQUIRE(quadrotor.status() == named.status());
+  VehicleState<double> a = turning(), b = turning();
+  CHECK(same_bits(quadrotor.evaluate(a.body, a.rotors, a.time_s).motion,
+                  named.evaluate(b.body, b.rotors, b.time_s).motion));
+  Commands<double> of_a{}, of_b{};
+  const Accelerations<double> motion{Vector3<double>(0.5, -0.3, 1.0), Vector3<double>(3, -2, 0.5)};
+  REQUIRE(inverse_commands(quadrotor, a.body, motion, a.time_s, of_a) ==
+          inverse_commands(named, b.body, motion, b.time_s, of_b));
+  CHECK(same_bits(of_a, of_b));
+  if (steps == 0) return;
+  const Commands<double> held = {0.55, 0.5, 0.56, 0.51};
+  for (int i = 0; i < steps; ++i) {
+    REQUIRE(quadrotor.step(a, held, 0.001) == Status::ok);
+    REQUIRE(named.step(b, held, 0.001) == Status::ok);
+    REQUIRE(same_bits(a, b));
+  }
+}
+
+/// Effects whose values by default do nothing are given some.
+DrydenTurbulence<> some(const DrydenTurbulence<>& /*calm*/) {
+  std::mt19937_64 engine(3);
+  return DrydenTurbulence<>(engine, DrydenParameters::low_altitude(6, 20), 6);
+}
+ConstantWind some(const ConstantWind& /*calm*/) { return {{3, -2, 0.5}}; }
+RotorFault some(const RotorFault& /*sound*/) { return {2, 0.8, 1}; }
+Payload some(const Payload& /*none*/) { return {0.2, 1}; }
+template <class Effect>
+Effect some(const Effect& effect) {
+  return effect;
+}
+
+template <class Effect, Usually usually>
+void check_alone(const Switched<Effect, usually>& /*effect*/, const Airframe<double>& flown) {
+  SwitchedEffects effects;
+  switch_effect(effects, some(Effect{}));
+  check_same(effects, Quadrotor<double, Effect>(flown, site, some(Effect{})), flown, 0);
+}
+
+template <class... Effects>
+void check_all(const Quadrotor<double, Effects...>* /*type*/, const Airframe<double>& flown, int steps) {
+  SwitchedEffects effects;
+  (switch_effect(effects, some(Effects{})), ...);
+  check_same(effects, Quadrotor<double, Effects...>(flown, site, some(Effects{})...), flown, steps);
+}
+
+}  // namespace
+
+TEST_CASE("each effect alone has the bits of the vehicle that names it") {
+  Airframe<double> tilted = airframe;
+  tilted.rotors[1].axis = {0.05, 0.0, -0.99874921777};
+  for (const Airframe<double>& flown : {airframe, tilted}) {
+    std::apply([&flown](const auto&... effect) { (check_alone(effect, flown), ...); }, SwitchedEffects{});
+  }
+}
+
+TEST_CASE("without effects, and under those of each flight, a flight has the same bits") {
+  const auto check = [](auto* type) {
+    check_all(type, airframe, 200);
+    check_all(type, airframe_value<LightQuadrotor, double>(), 200);
+  };
+  check(static_cast<Quadrotor<double>*>(nullptr));
+  check(static_cast<AgileFlight::Vehicle*>(nullptr));
+  check(static_cast<NearGroundFlight::Vehicle*>(nullptr));
+  check(static_cast<WindyFlight::Vehicle*>(nullptr));
+  check(static_cast<HarderFlight::Vehicle*>(nullptr));
+}
+
+TEST_CASE("one effect beside the usual ones is not passed over") {
+  using Loaded = Quadrotor<double, StandardAtmosphere, QuadraticDrag, Payload>;
+  using Dragless = Quadrotor<double, StandardAtmosphere, PeriodicWind>;
+  check_all(static_cast<Loaded*>(nullptr), airframe, 200);
+  check_all(static_cast<Dragless*>(nullptr), airframe, 200);
+}
+
+TEST_CASE("fly 2 s, switch, fly on: the bits of the compile-time vehicle from that state on") {
+  check_switch(GroundEffectModel::none, fixed<>());
+  check_switch(GroundEffectModel::cheeseman_bennett, fixed(CheesemanBennettGroundEffect{}));
+  check_switch(GroundEffectModel::conyers, fixed(ConyersGroundEffect{}));
+}
+
+TEST_CASE("a choice that stays is a flight of the compile-time vehicle") {
+  const auto hash = [](const auto& quadrotor) {
+    FlightPlan plan;
+    static_cast<FlightPlan&>(plan) = low_start();
+    plan.samples = 60;
+    return content_hash(fly(quadrotor, pilot(), plan).flight);
+  };
+  const std::uint64_t none = hash(switched()), conyers = hash(switched(GroundEffectModel::conyers));
+  const std::uint64_t cheeseman_bennett = hash(switched(GroundEffectModel::cheeseman_bennett));
+  CHECK(none == hash(fixed<>()));
+  CHECK(cheeseman_bennett == hash(fixed(CheesemanBennettGroundEffect{})));
+  CHECK(conyers == hash(fixed(ConyersGroundEffect{})));
+  CHECK(conyers != none);
+  CHECK(conyers != cheeseman_bennett);
+  CHECK(cheeseman_bennett != none);
+}
+
+TEST_CASE("hover near the ground needs 1 / r of the command") {
+  const auto calm = [](GroundEffectModel model) { return flight_vehicle<AgileFlight>(airframe, model); };
+  constexpr double agreement = 2e-6;  // of the inverse's rounds
+  for (const double height_m : {0.2, 0.4, 0.9}) {
+    CAPTURE(height_m);
+    FlightPlan settings;
+    settings.start_m = Vector3<double>(0, 0, site.ground_z_m - height_m);
+    Simulator<SwitchedQuadrotor, SteadyPilot> simulator(calm(GroundEffectModel::none), SteadyPilot{}, settings);
+    const double x = height_m / (airframe.propeller_diameter_m / 2);
+    Commands<double> none{}, cheeseman_bennett{}, conyers{};
+    REQUIRE(simulator.hover_commands(none) == Status::ok);
+    simulator.set_quadrotor(calm(GroundEffectModel::cheeseman_bennett));
+    REQUIRE(simulator.hover_commands(cheeseman_bennett) == Status::ok);
+    simulator.set_quadrotor(calm(GroundEffectModel::conyers));
+    REQUIRE(simulator.hover_commands(conyers) == Status::ok);
+    for (std::size_t i = 0; i < 4; ++i) {
+      CHECK(none[i] / cheeseman_bennett[i] ==
+            doctest::Approx(CheesemanBennett{}.thrust_ratio(x, airframe)).epsilon(agreement));
+      CHECK(none[i] / conyers[i] == doctest::Approx(Conyers{}.thrust_ratio(x, airframe)).epsilon(agreement));
+    }
+  }
+}

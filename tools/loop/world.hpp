@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// The vehicle of a comparison under a condition, and what a controller sees of it.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "loop/conditions.hpp"
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/simulation/switched_quadrotor.hpp"
+#include "pinnquad/simulation/tracking.hpp"
+
+namespace programs {
+
+/// A world that flies (simulation/tracking.hpp).
+class LoopWorld {
+  using Commands = pinnquad::Commands<double>;
+  using Engine = std::mt19937_64;
+
+ public:
+  /// `still`: the vehicle's effects but for the wind.
+  LoopWorld(const pinnquad::Airframe<double>& told, const pinnquad::SwitchedEffects& still,
+            const pinnquad::Site<double>& site, const LoopCondition& condition, const LoopSensors& sensors,
+            double control_period_s, double half_s, std::uint64_t seed)
+      : LoopWorld(Draw(told, still, condition, seed), site, condition, sensors, control_period_s, half_s) {}
+
+  pinnquad::Status step(pinnquad::VehicleState<double>& state, const Commands& commands, double step_s) noexcept {
+    const bool changed = !at_half_ || state.time_s >= half_s_;
+    const pinnquad::SwitchedQuadrotor& vehicle = changed ? after_ : before_;
+    pinnquad::ThrustFractions<double> thrusts = vehicle.rotors().fractions(pinnquad::clipped(commands));
+    for (std::size_t i = 0; i < thrusts.size(); ++i) thrusts[i] *= changed ? strength_[i] : 1;
+    return vehicle.step(state, vehicle.rotors().commands_of(thrusts), step_s);
+  }
+
+  pinnquad::State<double> sense(const pinnquad::VehicleState<double>& state) noexcept {
+    pinnquad::State<double> seen = state.body;
+    if (!late_.empty()) {
+      seen = ticks_ < late_.size() ? (ticks_ == 0 ? state.body : late_.front()) : late_[ticks_ % late_.size()];
+      late_[ticks_ % late_.size()] = state.body;
+      ++ticks_;
+    }
+    pinnquad::Vector3<double> turn;
+    for (int i = 0; i < 3; ++i) {
+      seen.position_m[i] += sensors_.position_m * pinnquad::standard_normal(engine_);
+      seen.velocity_m_s[i] += sensors_.velocity_m_s * pinnquad::standard_normal(engine_);
+      seen.body_rates_rad_s[i] += sensors_.body_rates_rad_s * pinnquad::standard_normal(engine_);
+      turn[i] = 0.5 * sensors_.attitude_rad * pinnquad::standard_normal(engine_);
+    }
+    seen.attitude = pinnquad::normalized(seen.attitude * pinnquad::Quaternion<double>{1, turn[0], turn[1], turn[2]});
+    return seen;
+  }
+
+ private:
+  /// A condition as a seed draws it.
+  struct Draw {
+    pinnquad::Airframe<double> told, flown;
+    pinnquad::SwitchedEffects effects;
+    Commands strength{1, 1, 1, 1};
+    Engine engine;
+
+    Draw(const pinnquad::Airframe<double>& airframe, const pinnquad::SwitchedEffects& still,
+         const LoopCondition& condition, std::uint64_t seed)
+        : told(airframe), flown(airframe), effects(still), engine(0x6c6f6f70u + 7919 * seed) {
+      const double heading = pinnquad::uniform(engine, 0, 6.283185307179586);
+      const std::array<double, 2> to = {std::cos(heading), std::sin(heading)};
+      switch_effect(effects, pinnquad::ConstantWind{{condition.wind_m_s * to[0], condition.wind_m_s * to[1], 0}});
+      const auto weak = static_cast<std::size_t>(pinnquad::uniform_index(engine, pinnquad::rotor_count));
+      for (double& each : strength) each = condition.battery;
+      strength[weak] *= condition.rotor;
+      const auto wrong = [&] { return 1 + (engine() >> 63 != 0 ? condition.error : -condition.error); };
+      flown.mass_kg *= condition.mass * wrong();
+      const double inertia = wrong();
+      for (double& each : flown.inertia_kg_m2) each *= inertia;
+      const double thrust = wrong();
+      flown.thrust_coefficient *= thrust;
+      flown.power_coefficient *= thrust;
+      if (!condition.gusts) return;
+      constexpr double height_m = 20;
+      switch_effect(effects, pinnquad::DrydenTurbulence<>(
+                                 engine, pinnquad::DrydenParameters::low_altitude(condition.wind_m_s, height_m),
+                                 condition.wind_m_s, to));
+    }
+  };
+
+  LoopWorld(const Draw& draw, const pinnquad::Site<double>& site, const LoopCondition& condition,
+            const LoopSensors& sensors, double control_period_s, double half_s)
+      : before_(quadrotor_with(draw.effects, draw.told, site)),
+        after_(quadrotor_with(draw.effects, draw.flown, site)),
+        strength_(draw.strength),
+        at_half_(condition.at_half),
+        half_s_(half_s),
+        sensors_(sensors),
+        engine_(draw.engine),
+        late_(static_cast<std::size_t>(std::lround(sensors.delay_s / control_period_s))) {}
+
+  pinnquad::SwitchedQuadrotor before_, after_;
+  Commands strength_;
+  bool at_half_;
+  double half_s_;
+  LoopSensors sensors_;
+  Engine engine_;
+  std::vector<pinnquad::State<double>> late_;
+  std::size_t ticks_ = 0;
+};
+
+}  // namespace programs
