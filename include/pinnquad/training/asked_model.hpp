@@ -101,7 +101,7 @@ AskedModel asked_with_residual(const Model& model) {
   if constexpr (detail::has_bounded_residual<typename Model::Network>) {
     using Structure = detail::StatedStructure<typename Model::Network>;
     using Scalar = typename Model::Scalar;
-    constexpr int outputs = Model::Network::outputs;
+    constexpr std::size_t outputs = Model::Network::outputs;
     const auto* const bounds = model.network.parameters.data() + Structure::at;
     asked.residual_lower.assign(bounds, bounds + outputs);
     asked.residual_upper.assign(bounds + outputs, bounds + 2 * outputs);
@@ -112,7 +112,7 @@ AskedModel asked_with_residual(const Model& model) {
       model.input.standardise(own.data(), z.data());
       Structure::Inner::forward(model.network.parameters.data() + Structure::at + 2 * outputs, z.data(),
                                 static_cast<Scalar*>(made));
-      for (int k = 0; k < outputs; ++k) y[k] = static_cast<double>(made[k]);
+      for (std::size_t k = 0; k < outputs; ++k) y[k] = static_cast<double>(made[k]);
     };
   }
   return asked;

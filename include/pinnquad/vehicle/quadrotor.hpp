@@ -225,7 +225,7 @@ class Quadrotor {
     const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
       const ThrustFractions<Scalar>& now = calls == 0 ? start : (calls < 3 ? middle : end);
       ++calls;
-      const Scalar time_s(state.time_s + Wide<Scalar>(offset_s));
+      const auto time_s = Scalar(state.time_s + Wide<Scalar>(offset_s));
       if constexpr (is_switched) return asked_rate_of_change<plain, usual>(body, now, time_s, status);
       return rate_of_change<plain, usual>(body, now, time_s, status);
     };
