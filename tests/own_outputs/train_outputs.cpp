@@ -16,7 +16,7 @@
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/initialization.hpp"
-#include "pinnquad/training/structured/residual_fit.hpp"
+#include "pinnquad/training/structured/path_bounded_fit.hpp"
 #include "pinnquad/training/trainer.hpp"
 
 namespace {
