@@ -101,7 +101,7 @@ AskedModel asked_with_residual(const Model& model) {
   if constexpr (detail::has_bounded_residual<typename Model::Network>) {
     using Structure = detail::StatedStructure<typename Model::Network>;
     using Scalar = typename Model::Scalar;
-    constexpr std::size_t outputs = Model::Network::outputs;
+    static constexpr std::size_t outputs = Model::Network::outputs;
     const auto* const bounds = model.network.parameters.data() + Structure::at;
     asked.residual_lower.assign(bounds, bounds + outputs);
     asked.residual_upper.assign(bounds + outputs, bounds + 2 * outputs);
