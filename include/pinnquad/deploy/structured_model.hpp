@@ -79,7 +79,7 @@ inline void take_numbers(WrittenModel<float>& written, const FitContext& context
   }
 }
 
-/// Of a written model that has the structure.
+/// The certificate of a written model that has the structure.
 inline Certificate certificate_of_structured(const WrittenModel<float>& model, const FitContext& context,
                                              int thrusts_of_present, bool has_residual) {
   const Airframe<float> airframe = airframe_in<float>(model.airframe);
@@ -114,17 +114,16 @@ inline GroundModel<float> ground_model(const StructuredExport& from, const Struc
   const std::string& answer = numbers->answer;
   const auto mix = OutputMap<AxisCommandOutputs>::setting(from.airframe.airframe<float>());
   asked.predict = [numbers, mix, predictor = detail::DescribedPredictor(answer, written.parameters)](const double* x) {
-    float outputs[AxisCommandOutputs::size], commands[rotor_count];
+    float outputs[AxisCommandOutputs::size];
+    Commands<float> commands{};
     const std::vector<float> z = detail::standardised(*numbers, detail::scales_of(*numbers), x);
     const std::vector<float> made = predictor(z.data());
     for (std::size_t k = 0; k < made.size(); ++k) {
       outputs[k] = made[k] * numbers->output_deviation[k] + numbers->output_mean[k];
     }
     AxisCommandOutputs::commands(static_cast<const float*>(nullptr), static_cast<const float*>(outputs), mix,
-                                 static_cast<float*>(commands));
-    Commands<double> result{};
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = static_cast<double>(commands[i]);
-    return result;
+                                 commands.data());
+    return detail::in_double(commands);
   };
   if (!fit.has_residual) return ground;
   const std::vector<int> others = detail::other_features(context.inputs(), context.accelerations);

@@ -26,7 +26,7 @@ struct AskedModel {
   /// The same, worked out in double.
   std::function<void(const RowSet& rows, const Features& visit)> each_exact_row;
   std::function<Commands<double>(const double* x)> predict;  ///< as TrainedModel::predict()
-  /// Of a model with a bounded residual: its standardised outputs, before they are bounded; else empty.
+  /// The standardised outputs of a bounded residual, before they are bounded; empty for a model without one.
   std::function<void(const double* x, double* y)> residual;
   std::vector<double> residual_lower, residual_upper;  ///< standardised
 

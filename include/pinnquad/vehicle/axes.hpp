@@ -24,7 +24,7 @@ struct Axes {
   Vector3<Scalar> to_world(Scalar x, Scalar y, Scalar z) const noexcept {
     return Vector3<Scalar>(xx * x + xy * y + xz * z, yx * x + yy * y + yz * z, zx * x + zy * y + zz * z);
   }
-  /// Of a vector along the body's z axis.
+  /// Turns a vector along the body's z axis.
   Vector3<Scalar> to_world(Scalar z) const noexcept { return Vector3<Scalar>(xz * z, yz * z, zz * z); }
   Vector3<Scalar> to_body(Scalar x, Scalar y, Scalar z) const noexcept {
     return Vector3<Scalar>(xx * x + yx * y + zx * z, xy * x + yy * y + zy * z, xz * x + yz * y + zz * z);

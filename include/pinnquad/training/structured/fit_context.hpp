@@ -17,7 +17,7 @@
 namespace pinnquad {
 
 namespace detail {
-/// Of so many features all but the threes from these places on, ascending.
+/// The places of so many features but the threes from these places on, ascending.
 inline std::vector<int> other_features(int count, const std::vector<int>& threes) {
   std::vector<int> others;
   for (int i = 0; i < count; ++i) {
@@ -43,7 +43,7 @@ struct FitContext {
   std::vector<int> thrusts;         ///< of each tap's specific force along the thrust axis, the present first
   std::vector<double> tap_times_s;  ///< of a window, the present first; empty without a window
   double tap_tolerance_s = 0;
-  /// Of a window: the context of its present instant alone, of these rows.
+  /// The context of a window's present instant alone, of these rows; empty without a window.
   std::function<FitContext(const RowSet& rows)> present;
 
   int inputs() const { return static_cast<int>(input_mean.size()); }

@@ -33,7 +33,7 @@ struct StructuredAltitude {
   std::optional<double> error_with, error_without;
 };
 
-/// Those of all seeds that were finished, in the order of the seeds. A model has its residual where that helps.
+/// The fits of all seeds that were finished, in the order of the seeds. A model has its residual where that helps.
 template <class Fit>
 struct StructuredFitsIn {
   StructuredAltitude altitude;
