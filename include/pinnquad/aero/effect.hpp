@@ -257,6 +257,7 @@ constexpr Outcome<Scalar> effect_status(const Effect& effect, const Airframe<Sca
     return Status::ok;
   }
 }
+/// Status of an effect that a run switches; ok where it is off.
 template <class Effect, Usually usually, class Scalar>
 constexpr Outcome<Scalar> effect_status(const Switched<Effect, usually>& effect,
                                         const Airframe<Scalar>& airframe) noexcept {

@@ -87,6 +87,7 @@ Exported export_model(const Exported::Files& files, const std::string& name, con
   if (!result.no_trust_because.empty()) std::filesystem::remove(files.trust, ignored);
   return result;
 }
+/// The same for a model whose types are known.
 template <class NetworkType, class ContextType>
 Exported export_model(const Exported::Files& files, const std::string& name,
                       const TrainedModel<NetworkType, ContextType>& model, const RowSplit& split,

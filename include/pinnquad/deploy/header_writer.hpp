@@ -254,6 +254,7 @@ void write_model(std::ostream& stream, const std::string& struct_name, const Gro
   detail::require_identifier(struct_name);
   stream << detail::header_text(detail::written_model(model, golden, provenance, struct_name));
 }
+/// The same for a model whose types are known.
 template <class NetworkType, class ContextType>
 void write_model(std::ostream& stream, const std::string& struct_name,
                  const TrainedModel<NetworkType, ContextType>& model,

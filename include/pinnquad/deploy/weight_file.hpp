@@ -62,6 +62,7 @@ std::vector<unsigned char> model_block(const GroundModel<Scalar>& model, const s
   }
   return detail::block_beside_header(std::move(written));
 }
+/// The same for a model whose types are known.
 template <class NetworkType, class ContextType>
 std::vector<unsigned char> model_block(
     const TrainedModel<NetworkType, ContextType>& model,

@@ -86,6 +86,7 @@ Effects switched_effects() {
 /// Ground effect of the vehicle as a whole.
 enum class GroundEffectModel { none, cheeseman_bennett, conyers };
 
+/// Switches the model of ground effect named on and the other off.
 template <class Effects>
 void set_ground_effect(Effects& effects, GroundEffectModel model) {
   switch_effect(effects, CheesemanBennettGroundEffect{}, model == GroundEffectModel::cheeseman_bennett);

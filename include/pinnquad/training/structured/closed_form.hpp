@@ -106,8 +106,10 @@ inline std::vector<RowSet> left_out_groups(const RowSet& rows) {
   return groups;
 }
 
-/// Sums of standardised features and of `target(y, commands)`, y the standardised outputs.
+/// A row's regression targets, of its standardised outputs y and its commands.
 using RegressionTarget = std::function<std::vector<double>(const double* y, const Commands<double>& commands)>;
+
+/// Sums over `rows` of standardised features and of `targets` numbers, `target(y, commands)`, a row.
 inline RegressionSums regression_sums(const FitContext& context, const RowSet& rows, int targets,
                                       const RegressionTarget& target) {
   RegressionSums sums(context.inputs(), targets);
@@ -169,6 +171,7 @@ inline MonotoneShape monotone_shape(const FitContext& context) {
   }
   return shape;
 }
+/// The same for a context whose types are known.
 template <class ContextType>
 MonotoneShape monotone_shape(const ContextType& context) {
   static_assert(is_signed_sums<typename ContextType::Outputs>,
