@@ -16,6 +16,7 @@
 
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/deploy/export_model.hpp"
+#include "pinnquad/deploy/structured_model.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/evaluation/judgement.hpp"
@@ -25,7 +26,6 @@
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/adam.hpp"
 #include "pinnquad/training/initialization.hpp"
-#include "pinnquad/training/structured/fit_structured.hpp"
 #include "pinnquad/training/trainer.hpp"
 
 using namespace pinnquad;
@@ -130,9 +130,8 @@ int main(int count, char** arguments) try {
   settings.residual.epochs = epochs;
   settings.seeds = seeds;
   settings.first_seed = seed;
-  using Fits = StructuredFitsOf<InverseFeatures, InverseFeatures>;
-  const GivenAirframe airframe(PaperQuadrotor::name, airframe_value<PaperQuadrotor, double>());
-  const Fits fits = fit_structured<Fits>(split, airframe, settings, AllCores("structured"));
+  const auto fits = fit_structured<InverseFeatures, InverseFeatures>(split, given_airframe<PaperQuadrotor>(), settings,
+                                                                     AllCores("structured"));
   const auto& best = fits.best();  // least error on the validation rows
   const Judgement judged = judge(best.model, split);
   double structured = 0;

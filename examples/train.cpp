@@ -26,7 +26,7 @@ int main(int count, char** arguments) try {
   StructuredSettings settings;
   settings.residual.epochs = 20;  // a first look: the default is 300, from 5 seeds
   settings.seeds = 1;
-  const auto fits = fit_structured<PaperQuadrotor>(split, settings);
+  const auto fits = fit_structured(split, given_airframe<PaperQuadrotor>(), settings);
   const auto& best = fits.best();  // least error on the validation rows
   std::printf("seed %d, %s the altitude\n", int(best.seed), fits.altitude.taken ? "shown" : "not shown");
 

@@ -25,12 +25,11 @@ int main(int count, char** arguments) try {
   const logs::ImportedDataset imported = logs::read_source({arguments[2]}, how);
   const RowSplit split = split_by_flight(imported.flights);
 
-  using Fits = StructuredFitsOf<MyFeatures, MyFeatures>;  // second: the same with the altitude, where that is an input
   StructuredSettings settings;
   settings.residual.epochs = 60;
   settings.seeds = 1;
-  const auto fits =
-      fit_structured<Fits>(split, GivenAirframe{Vehicle::name, airframe_value<Vehicle, double>()}, settings);
+  // second set: the same with the altitude, where that is an input
+  const auto fits = fit_structured<MyFeatures, MyFeatures>(split, given_airframe<Vehicle>(), settings);
   const auto& best = fits.best();
 
   const Judgement judged = judge(best.model, split);

@@ -97,7 +97,7 @@ double excess(const Model& model, const Model::FeatureVector& x) {
 /// The command residual of a row is that of the rows before it: all that is known when the row is asked for.
 Scores scored(const Model& model, const FittedTrust& trust, const Flight& flight) {
   const RowSet rows(flight, {0, flight.size()});
-  const auto series = trust_series(asked_model(model), trust.distribution, rows);
+  const auto series = trust_series(model, trust.distribution, rows);
   const std::vector<double> means = command_residual_means(series.errors, trust.command_residual_factor);
   Scores scores;
   scores.errors = series.errors;

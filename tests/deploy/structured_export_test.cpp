@@ -2,17 +2,19 @@
 // A structured model that is exported as a value is that of its types to the byte: header, block, what trust asks.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <sstream>
 #include <string>
-#include <variant>
+#include <type_traits>
 #include <vector>
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/deploy/export_model.hpp"
 #include "pinnquad/deploy/structured_model.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/evaluation/judgement.hpp"
 #include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/features/windowed.hpp"
 
@@ -53,7 +55,7 @@ Dataset curved_flights() {
 template <class Scalar>
 std::string text_of(const GroundModel<Scalar>& model, const RowSet& rows) {
   std::ostringstream out;
-  write_model(out, "Same", model, golden_features(model.asked, rows), {});
+  write_model(out, "Same", model, golden_features(model, rows), {});
   return out.str();
 }
 
@@ -61,28 +63,33 @@ template <class Features>
 bool compare(bool with_residual) {
   const Dataset flights = curved_flights();
   const RowSplit split = split_for_training(flights);
-  const GivenAirframe airframe(PaperQuadrotor::name, airframe_value<PaperQuadrotor, double>());
+  const GivenAirframe airframe = given_airframe<PaperQuadrotor>();
   StructuredSettings settings;
   settings.seeds = 1;
   settings.residual.epochs = 8;
   if (!with_residual) settings.residual.least_gain = 1;
-  const StructuredExport set = structured_export<Features>(airframe);
-  const auto values = fit_structured(set.set, nullptr, split, settings);
-  const StructuredFit& fit = values.best();
-  const GroundModel<float> value = ground_model(set, fit, set.set.context(split.train), split.train);
-  const auto typed = fit_structured<StructuredFitsOf<Features, Features>>(split, airframe, settings);
-  std::visit(
-      [&](const auto& model) {
-        const GroundModel<float> of_types = ground_model(model);
-        CHECK(text_of(value, split.train) == text_of(of_types, split.train));
-        const auto golden = golden_features(value.asked, split.train);
-        CHECK(model_block(value, golden, {}) == model_block(of_types, golden, {}));
-        const auto joint = detail::fit_joint_distribution(value.asked, split.train);
-        CHECK(joint.whitening == detail::fit_joint_distribution(of_types.asked, split.train).whitening);
-        CHECK(trust_series(value.asked, joint, split.validation).errors ==
-              trust_series(of_types.asked, joint, split.validation).errors);
-      },
-      typed.best().model);
+  const StructuredModelFit fit = fit_structured<Features, Features>(split, airframe, settings).best();
+  const GroundModel<float>& value = fit.model;
+  using Base = detail::StructuredBase<Features>;
+  using Whole = detail::StructuredWhole<Features>;
+  const auto same_as = [&](auto tag) {
+    using Model = typename decltype(tag)::type;
+    typename Model::Network predictor{};
+    REQUIRE(fit.parameters.size() == predictor.parameters.size());
+    std::copy(fit.parameters.begin(), fit.parameters.end(), predictor.parameters.begin());
+    const auto context = make_context<Context<Features, GivenAirframe, AxisCommandOutputs>>(split.train, airframe);
+    const GroundModel<float> of_types = ground_model(make_trained_model(predictor, context, split.train));
+    CHECK(text_of(value, split.train) == text_of(of_types, split.train));
+    const auto golden = golden_features(value, split.train);
+    CHECK(model_block(value, golden, {}) == model_block(of_types, golden, {}));
+    const auto joint = detail::fit_joint_distribution(value, split.train);
+    CHECK(joint.whitening == detail::fit_joint_distribution(of_types, split.train).whitening);
+    CHECK(trust_series(value, joint, split.validation).errors ==
+          trust_series(of_types, joint, split.validation).errors);
+    CHECK(predicted_commands(value, split.test, true) == predicted_commands(of_types, split.test, true));
+    CHECK(judge(value, split).verdict.answered_share == judge(of_types, split).verdict.answered_share);
+  };
+  fit.has_residual ? same_as(std::common_type<Whole>{}) : same_as(std::common_type<Base>{});
   return fit.has_residual;
 }
 

@@ -93,20 +93,18 @@ std::shared_ptr<const TrainedNetwork> fit_structured_on(const FitTask& task, con
   settings.first_seed = task.seed;
   settings.seeds = 1;
   const pinnquad::RowSplit split{task.training, task.validation, {}};
-  const auto fits = pinnquad::fit_structured(sets.lower.set, sets.higher ? &sets.higher->set : nullptr, split, settings,
+  const auto fits = pinnquad::fit_structured(sets.lower, sets.higher ? &*sets.higher : nullptr, split, settings,
                                              StructuredWork(task, settings.residual.epochs));
   AltitudeChoice altitude;
   altitude.applies = sets.higher.has_value();
   altitude.taken = fits.altitude.taken;
   altitude.error_with = fits.altitude.error_with.value_or(pinnquad::not_a_number);
   altitude.error_without = fits.altitude.error_without.value_or(pinnquad::not_a_number);
-  const pinnquad::StructuredFit& best = fits.best();
+  const pinnquad::StructuredModelFit& best = fits.best();
   const pinnquad::StructuredExport& set = best.with_altitude ? *sets.higher : sets.lower;
-  const pinnquad::RowSet fitted = pinnquad::detail::fitted_rows(split, settings);
-  pinnquad::FitContext context = set.set.context(fitted);
-  auto model = pinnquad::ground_model(set, best, context, fitted);
-  return std::make_shared<StructuredNetwork>(std::move(model), std::move(context), task.training, altitude, best.slopes,
-                                             settings.fit_validation);
+  return std::make_shared<StructuredNetwork>(best.model,
+                                             set.set.context(pinnquad::detail::fitted_rows(split, settings)),
+                                             task.training, altitude, best.slopes, settings.fit_validation);
 }
 
 }  // namespace programs

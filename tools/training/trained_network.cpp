@@ -67,7 +67,7 @@ bool TrainedNetwork::is_proven() const { return block() != nullptr && block()->p
 BlockNetwork::BlockNetwork(const std::vector<unsigned char>& block) : block_("a trained model", block) {}
 
 BlockNetwork::BlockNetwork(const pinnquad::GroundModel<float>& model, const pinnquad::RowSet& training)
-    : BlockNetwork(pinnquad::model_block(model, pinnquad::golden_features(model.asked, training), {})) {}
+    : BlockNetwork(pinnquad::model_block(model, pinnquad::golden_features(model, training), {})) {}
 
 ExportableNetwork::ExportableNetwork(pinnquad::GroundModel<float> model, const pinnquad::RowSet& training,
                                      bool with_trust)

@@ -51,14 +51,14 @@ Exported export_model(const Exported::Files& files, const std::string& name, con
   if (model.window_s > 0) provenance.sample_period_s = 0;  // a window has its own
   Exported result;
   result.certificate = model.written.certificate;
-  const auto golden = golden_features(model.asked, split.train);
+  const auto golden = golden_features(model, split.train);
   AtomicFile header(files.header);
   write_model(header.stream(), name, model, golden, provenance);
   std::optional<AtomicFile> block, trust;
   std::optional<FittedTrust> limits;
   if (!files.trust.empty()) {
     try {
-      limits = fit_trust(model.asked, split.train, split.validation);
+      limits = fit_trust(model, split.train, split.validation);
       trust.emplace(files.trust);
       trust->stream() << "// To be included after the header of " << name << ". Limits by " << split.validation.size()
                       << " validation rows: guesses where those are\n// less than 30 minutes of flight "

@@ -154,7 +154,7 @@ template <class Model>
 std::vector<typename Model::FeatureVector> golden_features(const Model& model, const RowSet& training,
                                                            std::size_t count = 8) {
   std::vector<typename Model::FeatureVector> golden;
-  for (const std::vector<double>& x : golden_features(asked_with_residual(model), training, count)) {
+  for (const std::vector<double>& x : golden_features(AskedModel(model), training, count)) {
     golden.push_back(detail::as_features<typename Model::FeatureVector>(x.data()));
   }
   return golden;

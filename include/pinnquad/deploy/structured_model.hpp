@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Structured models (training/structured) exported without their types: as values, compiled once for all feature sets.
+// The structured model, whole: fitted (training/structured), judged and exported as a value, compiled once for all
+// feature sets.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -27,7 +30,7 @@ struct StructuredExport {
   int thrusts_of_present = 0;
 };
 
-/// What fits and exports structured models of `Features` for an airframe.
+/// Fits and exports of structured models of `Features` for an airframe.
 template <class Features>
 StructuredExport structured_export(const GivenAirframe& airframe) {
   using Base = detail::StructuredBase<Features>;
@@ -40,7 +43,9 @@ StructuredExport structured_export(const GivenAirframe& airframe) {
                         detail::WindowOf<Features>::period_s,
                         has_certificate<Base>,
                         detail::thrust_places<Features>().present};
-  made.rows.units.assign(Features::units.begin(), Features::units.end());
+  made.rows.airframe_name = airframe.airframe_name();
+  made.rows.airframe = airframe.airframe<double>();
+  detail::take_features<Features>(made.rows);
   made.rows.each_row = detail::rows_of_features<Features, float>();
   made.rows.each_exact_row = detail::rows_of_features<Features, double>();
   return made;
@@ -108,7 +113,7 @@ inline GroundModel<float> ground_model(const StructuredExport& from, const Struc
     written.certificate =
         detail::certificate_of_structured(written, context, from.thrusts_of_present, fit.has_residual);
   }
-  AskedModel& asked = ground.asked;
+  AskedModel& asked = ground;
   asked.envelope_lower = detail::converted<double>(written.envelope_lower);
   asked.envelope_upper = detail::converted<double>(written.envelope_upper);
   const auto numbers = std::make_shared<const detail::WrittenModel<float>>(written);
@@ -145,6 +150,40 @@ inline GroundModel<float> ground_model(const StructuredExport& from, const Struc
     for (std::size_t k = 0; k < made.size(); ++k) y[k] = static_cast<double>(made[k]);
   };
   return ground;
+}
+
+/// A structured model of one seed: judged, exported and asked as any other.
+struct StructuredModelFit : StructuredFit {
+  GroundModel<float> model;
+};
+using StructuredFits = StructuredFitsIn<StructuredModelFit>;
+
+/// Fits as fit_structured() of sets does, and makes a model of each. `higher` is null where there is no choice of the
+/// altitude.
+template <class Work = detail::InTurn>
+StructuredFits fit_structured(const StructuredExport& lower, const StructuredExport* higher, const RowSplit& split,
+                              const StructuredSettings& settings = {}, Work&& work = {}) {
+  auto made =
+      fit_structured(lower.set, higher != nullptr ? &higher->set : nullptr, split, settings, std::forward<Work>(work));
+  StructuredFits fits{made.altitude, {}};
+  const RowSet rows = detail::fitted_rows(split, settings);
+  for (const StructuredFit& fit : made.models) {
+    const StructuredExport& set = fit.with_altitude ? *higher : lower;
+    fits.models.push_back({fit, ground_model(set, fit, set.set.context(rows), rows)});
+  }
+  return fits;
+}
+
+/// The same of feature sets. `WithAltitude`: Features and the altitude, which the validation rows choose or do not;
+/// Features again where that was not measured.
+template <class Features = InverseFeatures, class WithAltitude = InverseFeaturesWithAltitude,
+          class Work = detail::InTurn>
+StructuredFits fit_structured(const RowSplit& split, const GivenAirframe& airframe,
+                              const StructuredSettings& settings = {}, Work&& work = {}) {
+  std::optional<StructuredExport> higher;
+  if constexpr (!std::is_same_v<Features, WithAltitude>) higher = structured_export<WithAltitude>(airframe);
+  return fit_structured(structured_export<Features>(airframe), higher ? &*higher : nullptr, split, settings,
+                        std::forward<Work>(work));
 }
 
 }  // namespace pinnquad

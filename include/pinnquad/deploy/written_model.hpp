@@ -87,8 +87,7 @@ void take_numbers(WrittenModel<Scalar>& written, const Model& model) {
 
 /// A trained model as an export takes it: whatever its types are, the export is compiled once.
 template <class Scalar>
-struct GroundModel {
-  AskedModel asked;
+struct GroundModel : AskedModel {
   detail::WrittenModel<Scalar> written;  ///< but for its name, golden vectors and provenance
   double window_s = 0;                   ///< period of its window; 0 without one
 };
@@ -118,7 +117,7 @@ GroundModel<typename Model::Scalar> ground_without_rows(const Model& model) {
 template <class Model>
 GroundModel<typename Model::Scalar> ground_model(const Model& model) {
   auto ground = detail::ground_without_rows(model);
-  ground.asked = asked_with_residual(model);
+  static_cast<AskedModel&>(ground) = AskedModel(model);
   return ground;
 }
 
@@ -133,7 +132,7 @@ WrittenModel<Scalar> written_model(const GroundModel<Scalar>& model, const std::
   for (const std::vector<double>& x : golden) {
     written.golden_features.emplace_back();
     for (const double number : x) written.golden_features.back().push_back(static_cast<Scalar>(number));
-    const Commands<double> commands = model.asked.predict(x.data());
+    const Commands<double> commands = model.predict(x.data());
     written.golden_commands.emplace_back();
     for (std::size_t i = 0; i < commands.size(); ++i) {
       written.golden_commands.back()[i] = static_cast<Scalar>(commands[i]);

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <variant>
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
@@ -16,31 +15,26 @@
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/loss/context.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/training/asked_model.hpp"
 
 namespace pinnquad {
 
 namespace detail {
-
-/// The errors of `predict(x)` over the rows that have features.
-template <class Features, class Scalar, class Predict>
-PredictionErrors<rotor_count> errors_on(const RowSet& rows, const Predict& predict) {
+/// The errors of `predict(x)` over the rows that `each_row(rows, visit)` shows.
+template <class EachRow, class Predict>
+PredictionErrors<rotor_count> errors_on(const RowSet& rows, const EachRow& each_row, const Predict& predict) {
   std::vector<std::array<double, rotor_count>> predicted, flown;
-  each_features<Features, Scalar>(rows, [&](const Flight& flight, std::size_t row, const auto& x) {
-    const auto u = predict(x);
-    predicted.push_back({});
-    for (std::size_t i = 0; i < rotor_count; ++i) predicted.back()[i] = static_cast<double>(u[i]);
+  each_row(rows, [&](const Flight& flight, std::size_t row, const auto& x) {
+    predicted.push_back(predict(x));
     flown.push_back(flight[row].commands);
   });
   return prediction_errors(predicted, flown);
 }
-
 }  // namespace detail
 
-/// The errors of a TrainedModel's commands, 0..1. Throws std::invalid_argument where no row has features.
-template <class Model>
-detail::PredictionErrors<rotor_count> model_errors(const Model& model, const RowSet& rows) {
-  return detail::errors_on<typename Model::Features, typename Model::Scalar>(
-      rows, [&model](const typename Model::FeatureVector& x) { return model.predict(x); });
+/// The errors of a model's commands, 0..1. Throws std::invalid_argument where no row has features.
+inline detail::PredictionErrors<rotor_count> model_errors(const AskedModel& model, const RowSet& rows) {
+  return detail::errors_on(rows, model.each_row, model.predict);
 }
 
 /// The errors on `test` of linear regression on a feature set, fitted to `training`. Throws as model_errors().
@@ -53,7 +47,9 @@ detail::PredictionErrors<rotor_count> linear_regression_errors(const RowSet& tra
     commands.push_back(flight[row].commands);
   });
   const auto regression = fit_linear_regression(features, commands);
-  return detail::errors_on<Features, double>(test, [&](const auto& x) { return regression.predict(x); });
+  return detail::errors_on(
+      test, [](const RowSet& rows, const auto& visit) { each_features<Features, double>(rows, visit); },
+      [&](const auto& x) { return regression.predict(x); });
 }
 
 /// The verdict on a model, beside linear regression on the same features that was fitted to its training rows. Throws
@@ -135,54 +131,45 @@ Judgement judge(const AirframeSource& airframe, const RowSet& rows, const std::v
   return result;
 }
 
-/// The commands of a TrainedModel, row by row. NaN for a row without features (a window that is not complete) and, if
+/// The commands of a model, row by row. NaN for a row without features (a window that is not complete) and, if
 /// `inside_envelope`, for a row that the guard of its export declines.
-template <class Model>
-std::vector<Commands<double>> predicted_commands(const Model& model, const RowSet& rows, bool inside_envelope = false) {
+inline std::vector<Commands<double>> predicted_commands(const AskedModel& model, const RowSet& rows,
+                                                        bool inside_envelope = false) {
   std::vector<Commands<double>> result;
+  const auto declined = [&model](const double* x) {
+    for (std::size_t i = 0; i < model.size(); ++i) {
+      if (!model.is_column[i] && !(x[i] >= model.envelope_lower[i] && x[i] <= model.envelope_upper[i])) return true;
+    }
+    return false;
+  };
   for (const FlightRows& piece : rows.pieces()) {
     const std::size_t first = result.size();
     result.resize(first + piece.rows.size(), {not_a_number, not_a_number, not_a_number, not_a_number});
-    each_features<typename Model::Features, typename Model::Scalar>(
-        RowSet(*piece.flight, piece.rows), [&](const Flight&, std::size_t row, const typename Model::FeatureVector& x) {
-          for (std::size_t i = 0; inside_envelope && i < x.size(); ++i) {
-            if (detail::is_column<typename Model::Features>(static_cast<int>(i))) continue;
-            if (!(x[i] >= model.envelope_lower[i] && x[i] <= model.envelope_upper[i])) return;
-          }
-          const auto u = model.predict(x);
-          for (std::size_t i = 0; i < u.size(); ++i) {
-            result[first + row - piece.rows.begin][i] = static_cast<double>(u[i]);
-          }
-        });
+    model.each_row(RowSet(*piece.flight, piece.rows), [&](const Flight&, std::size_t row, const double* x) {
+      if (!inside_envelope || !declined(x)) result[first + row - piece.rows.begin] = model.predict(x);
+    });
   }
   return result;
 }
 
-/// The share of rows that the guard of a TrainedModel's export lets it answer.
-template <class Model>
-double answered_share(const Model& model, const RowSet& rows) {
+/// The share of rows that the guard of a model's export lets it answer.
+inline double answered_share(const AskedModel& model, const RowSet& rows) {
   std::size_t answered = 0;
-  for (const Commands<double>& u : predicted_commands(model, rows, true)) answered += all_finite(u) ? 1 : 0;
+  for (const Commands<double>& u : predicted_commands(model, rows, true)) answered += all_finite(u) ? 1U : 0U;
   return static_cast<double>(answered) / static_cast<double>(rows.size());
 }
 
-/// Judges a TrainedModel on the test rows; its verdict is beside linear regression on the paper's features. Figures of
-/// a model of a window are NaN: its first rows have no features (model_errors() leaves them out). Throws
-/// std::invalid_argument for a split with an empty part.
-template <class Model>
-Judgement judge(const Model& model, const RowSplit& split) {
-  Judgement result = judge(model, split.test, predicted_commands(model, split.test));
+/// Judges a model on the test rows; its verdict is beside linear regression on the paper's features. Figures of a model
+/// of a window are NaN: its first rows have no features (model_errors() leaves them out). Throws std::invalid_argument
+/// for a split with an empty part.
+inline Judgement judge(const AskedModel& model, const RowSplit& split) {
+  Judgement result =
+      judge(GivenAirframe(model.airframe_name, model.airframe), split.test, predicted_commands(model, split.test));
   result.validation_error = model_errors(model, split.validation).mean.mean_absolute;
   result.verdict =
       verdict_on(result.errors, linear_regression_errors<PaperFeatures>(split.train, split.test).mean.r_squared);
   result.verdict.answered_share = answered_share(model, split.test);
   return result;
-}
-
-/// The same of the model that a fit chose.
-template <class... Models>
-Judgement judge(const std::variant<Models...>& model, const RowSplit& split) {
-  return std::visit([&split](const auto& chosen) { return judge(chosen, split); }, model);
 }
 
 }  // namespace pinnquad

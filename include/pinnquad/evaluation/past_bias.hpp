@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "pinnquad/control/motion_bias.hpp"
@@ -149,17 +148,9 @@ inline BiasTrial try_biases(const RowSet& rows, const std::vector<Commands<doubl
 
 /// The time constants that a model's header and block say: best_s() on rows that did not train it, as of flights whose
 /// derivatives do not look ahead.
-template <class Model>
-SignedSums<double> chosen_bias_time_constants_s(const Model& model, const RowSet& rows) {
-  const Airframe<double> airframe = model.template airframe<double>();
-  const PastRows past{flown_motion_age_s, least_bias_time_constant_s(airframe.rotor_time_constant_s)};
-  return try_biases(rows, predicted_commands(model, rows), airframe, past).best_s();
-}
-
-/// Of any of them.
-template <class... Models>
-SignedSums<double> chosen_bias_time_constants_s(const std::variant<Models...>& model, const RowSet& rows) {
-  return std::visit([&rows](const auto& one) { return chosen_bias_time_constants_s(one, rows); }, model);
+inline SignedSums<double> chosen_bias_time_constants_s(const AskedModel& model, const RowSet& rows) {
+  const PastRows past{flown_motion_age_s, least_bias_time_constant_s(model.airframe.rotor_time_constant_s)};
+  return try_biases(rows, predicted_commands(model, rows), model.airframe, past).best_s();
 }
 
 }  // namespace pinnquad

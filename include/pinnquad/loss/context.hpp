@@ -50,6 +50,12 @@ class GivenAirframe {
   Airframe<double> value_;
 };
 
+/// An airframe that the compiler knows as a value.
+template <class VehicleType>
+GivenAirframe given_airframe() {
+  return GivenAirframe(VehicleType::name, airframe_value<VehicleType, double>());
+}
+
 namespace detail {
 /// The same of an airframe that the compiler knows.
 template <class VehicleType>

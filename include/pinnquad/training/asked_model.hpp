@@ -16,9 +16,17 @@ namespace pinnquad {
 
 /// Numbers are doubles that hold the model's own scalar.
 struct AskedModel {
+  AskedModel() = default;
+  /// Of a TrainedModel, or of a class of one's own with the same members.
+  template <class Model, class = typename Model::Features::template Inputs<double>>
+  AskedModel(const Model& model);
+
   using Features = std::function<void(const Flight& flight, std::size_t row, const double* x)>;
 
+  std::string airframe_name;
+  Airframe<double> airframe{};
   std::vector<std::string> units;  ///< of the features
+  std::vector<bool> is_column;     ///< of the features: the export holds it at the envelope's edge, and answers
   std::vector<double> envelope_lower, envelope_upper;
   bool is_double = false;
   /// Calls `visit` for each row that has features, as the model's scalar has them.
@@ -63,6 +71,13 @@ Commands<double> in_double(const Commands<Scalar>& commands) {
   return result;
 }
 
+/// Units and columns of a feature set.
+template <class Features>
+void take_features(AskedModel& asked) {
+  asked.units.assign(Features::units.begin(), Features::units.end());
+  for (int i = 0; i < Features::size; ++i) asked.is_column.push_back(is_column<Features>(i));
+}
+
 /// Statistics of every feature, physical units.
 inline std::vector<ColumnStatistics> feature_statistics(const AskedModel& model, const RowSet& rows) {
   return column_statistics({model.units.begin(), model.units.end()}, [&](const RowVisit& visit) {
@@ -75,7 +90,9 @@ template <class Model>
 AskedModel asked_without_rows(const Model& model) {
   using FeatureVector = std::decay_t<decltype(model.envelope_lower)>;
   AskedModel asked;
-  asked.units.assign(Model::Features::units.begin(), Model::Features::units.end());
+  asked.airframe_name = model.airframe_name();
+  asked.airframe = model.template airframe<double>();
+  take_features<typename Model::Features>(asked);
   asked.envelope_lower.assign(model.envelope_lower.begin(), model.envelope_lower.end());
   asked.envelope_upper.assign(model.envelope_upper.begin(), model.envelope_upper.end());
   asked.is_double = std::is_same_v<typename Model::Scalar, double>;
@@ -85,27 +102,18 @@ AskedModel asked_without_rows(const Model& model) {
 
 }  // namespace detail
 
-/// A model of types (training/trained_model.hpp) as a value, but for its residual.
-template <class Model>
-AskedModel asked_model(const Model& model) {
-  AskedModel asked = detail::asked_without_rows(model);
-  asked.each_row = detail::rows_of_features<typename Model::Features, typename Model::Scalar>();
-  asked.each_exact_row = detail::rows_of_features<typename Model::Features, double>();
-  return asked;
-}
-
-/// The whole of it, for golden_features().
-template <class Model>
-AskedModel asked_with_residual(const Model& model) {
-  AskedModel asked = asked_model(model);
+template <class Model, class>
+AskedModel::AskedModel(const Model& model) : AskedModel(detail::asked_without_rows(model)) {
+  each_row = detail::rows_of_features<typename Model::Features, typename Model::Scalar>();
+  each_exact_row = detail::rows_of_features<typename Model::Features, double>();
   if constexpr (detail::has_bounded_residual<typename Model::Network>) {
     using Structure = detail::StatedStructure<typename Model::Network>;
     using Scalar = typename Model::Scalar;
     static constexpr std::size_t outputs = Model::Network::outputs;
     const auto* const bounds = model.network.parameters.data() + Structure::at;
-    asked.residual_lower.assign(bounds, bounds + outputs);
-    asked.residual_upper.assign(bounds + outputs, bounds + 2 * outputs);
-    asked.residual = [model](const double* x, double* y) {
+    residual_lower.assign(bounds, bounds + outputs);
+    residual_upper.assign(bounds + outputs, bounds + 2 * outputs);
+    residual = [model](const double* x, double* y) {
       const auto own = detail::as_features<typename Model::FeatureVector>(x);
       typename Model::FeatureVector z{};
       Scalar made[outputs] = {};
@@ -115,7 +123,6 @@ AskedModel asked_with_residual(const Model& model) {
       for (std::size_t k = 0; k < outputs; ++k) y[k] = static_cast<double>(made[k]);
     };
   }
-  return asked;
 }
 
 }  // namespace pinnquad

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The structured model whole: the choices of altitude and residual, whatever runs the fits.
-#include "pinnquad/training/structured/fit_structured.hpp"
-
 #include <doctest/doctest.h>
 
 #include <array>
@@ -19,6 +17,7 @@ using namespace pinnquad;
 namespace {
 
 using Altitude = StructuredSettings::Altitude;
+const GivenAirframe quadrotor = given_airframe<PaperQuadrotor>();
 
 Flight flown(const std::string& name, std::uint64_t seed, std::size_t samples) {
   FlightPlan plan = AgileFlight::plan();
@@ -54,19 +53,8 @@ StructuredSettings quick(Altitude altitude) {
 }
 
 StructuredFits fitted(const StructuredSettings& settings) {
-  return fit_structured<PaperQuadrotor>(split_for_training(flights()), settings);
+  return fit_structured(split_for_training(flights()), quadrotor, settings);
 }
-
-std::vector<float> parameters_of(const StructuredFits::Fit& fit) {
-  return std::visit(
-      [](const auto& model) {
-        return std::vector<float>(model.network.parameters.begin(), model.network.parameters.end());
-      },
-      fit.model);
-}
-
-bool has_residual(const StructuredFits::Fit& fit) { return fit.model.index() % 2 == 1; }
-bool shown_the_altitude(const StructuredFits::Fit& fit) { return fit.model.index() >= 2; }
 
 /// The last job first, and a word of each call.
 struct Backwards {
@@ -111,8 +99,8 @@ TEST_CASE("the altitude is shown as the rule says; by validation, where the erro
     CHECK(chosen.altitude.taken == (least < 0));
     for (std::size_t i = 0; i < 3; ++i) {
       CHECK(chosen.models[i].seed == 7 + i);
-      CHECK(shown_the_altitude(chosen.models[i]) == (least < 0));
-      CHECK(parameters_of(chosen.models[i]) == parameters_of((least < 0 ? with : without).models[i]));
+      CHECK(chosen.models[i].with_altitude == (least < 0));
+      CHECK(chosen.models[i].parameters == (least < 0 ? with : without).models[i].parameters);
       CHECK(chosen.best().validation_error <= chosen.models[i].validation_error);
     }
   }
@@ -123,11 +111,11 @@ TEST_CASE("what runs the fits, and in which order, changes no model") {
   const StructuredSettings settings = quick(Altitude::by_validation);
   const StructuredFits in_turn = fitted(settings);
   const StructuredFits backwards =
-      fit_structured<PaperQuadrotor>(split_for_training(flights()), settings, Backwards{&calls});
+      fit_structured(split_for_training(flights()), quadrotor, settings, Backwards{&calls});
   CHECK(calls == "run 2, chose, run 2, ");
   REQUIRE(backwards.models.size() == in_turn.models.size());
   for (std::size_t i = 0; i < in_turn.models.size(); ++i) {
-    CHECK(parameters_of(backwards.models[i]) == parameters_of(in_turn.models[i]));
+    CHECK(backwards.models[i].parameters == in_turn.models[i].parameters);
   }
 }
 
@@ -137,7 +125,7 @@ TEST_CASE("what is stopped before the choice leaves nothing, and after it the mo
     int left = epochs;
     bool chosen = false;
     const StructuredFits fits =
-        fit_structured<PaperQuadrotor>(split_for_training(flights()), settings, StopsAfter{&left, &chosen});
+        fit_structured(split_for_training(flights()), quadrotor, settings, StopsAfter{&left, &chosen});
     CHECK(chosen == (epochs > 4));
     CHECK(fits.models.size() == (epochs == 4 ? 0u : epochs == 8 ? 1u : 3u));
     if (fits.models.empty()) CHECK_THROWS_AS(static_cast<void>(fits.best()), std::logic_error);
@@ -149,8 +137,7 @@ TEST_CASE("pinned slopes are the airframe's, and every model is proven") {
   settings.pinned_slopes = true;
   const StructuredFits pinned = fitted(settings);
   const AxisSlopes own = hover_slopes(airframe_value<PaperQuadrotor, double>());
-  const Certificate certificate =
-      std::visit([](const auto& model) { return certificate_of_trained(model); }, pinned.best().model);
+  const Certificate certificate = *pinned.best().model.written.certificate;
   CHECK(certificate.proven());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CHECK(certificate.slope[axis] == doctest::Approx(own[axis]).epsilon(1e-5));
@@ -161,7 +148,7 @@ TEST_CASE("of errors that are not finite none is the best") {
   StructuredSettings settings = quick(Altitude::no);
   settings.seeds = 1;
   StructuredFits fits = fitted(settings);
-  const StructuredFits::Fit one = fits.models.front();
+  const StructuredModelFit one = fits.models.front();
   fits.models.assign(4, one);
   const double errors[] = {std::nan(""), 0.2, 0.1, std::nan("")};
   for (std::size_t i = 0; i < 4; ++i) fits.models[i].validation_error = errors[i];
@@ -180,8 +167,8 @@ TEST_CASE("a residual that the validation rows keep is dropped where whole fligh
     const RowSplit split = {{dataset[0], {0, 2000}}, {dataset[2], {0, 1000}}, {}};
     RowSplit both = split;
     both.train.add(dataset[1], {0, 1000});
-    CHECK(has_residual(fit_structured<PaperQuadrotor>(split, settings).best()));  // one flight: validation alone
-    return has_residual(fit_structured<PaperQuadrotor>(both, settings).best());
+    CHECK(fit_structured(split, quadrotor, settings).best().has_residual);  // one flight: validation alone
+    return fit_structured(both, quadrotor, settings).best().has_residual;
   };
   CHECK(kept(0.02));
   CHECK_FALSE(kept(-0.02));
@@ -201,11 +188,10 @@ TEST_CASE("where the validation rows are fitted too, whole flights left out choo
     RowSplit more = split;
     more.train.add(dataset[1], {0, 1200});
     const RowSet unseen(dataset[1], {0, 1200});
-    const auto two = fit_structured<PaperQuadrotor>(split, settings).best();
-    const double error =
-        std::visit([&](const auto& model) { return model_errors(model, unseen).mean.mean_absolute; }, two.model);
-    const auto three = fit_structured<PaperQuadrotor>(more, settings).best();
-    return std::array<double, 3>{has_residual(two) ? 1.0 : 0.0, error, has_residual(three) ? 1.0 : 0.0};
+    const auto two = fit_structured(split, quadrotor, settings).best();
+    const double error = model_errors(two.model, unseen).mean.mean_absolute;
+    const auto three = fit_structured(more, quadrotor, settings).best();
+    return std::array<double, 3>{two.has_residual ? 1.0 : 0.0, error, three.has_residual ? 1.0 : 0.0};
   };
   const auto with = fit(0.02, 0.02), odd = fit(0.02, -0.02);
   CHECK(with[0] == 1);
@@ -216,7 +202,7 @@ TEST_CASE("where the validation rows are fitted too, whole flights left out choo
   // one flight of one trajectory: its quarters are left out
   Dataset alone(bent("a", 3, 1500, 0.02));
   const RowSplit split{{alone[0], {0, 1200}}, {alone[0], {1200, 1500}}, {}};
-  CHECK(std::isfinite(fit_structured<PaperQuadrotor>(split, settings).best().validation_error));
+  CHECK(std::isfinite(fit_structured(split, quadrotor, settings).best().validation_error));
 }
 
 TEST_CASE("the share of a residual's answer is that of least squared error, and 0 where one group does not gain") {

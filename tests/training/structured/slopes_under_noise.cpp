@@ -12,7 +12,6 @@
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/pinnquad.hpp"
-#include "pinnquad/training/structured/fit_structured.hpp"
 
 using namespace pinnquad;
 
@@ -46,32 +45,30 @@ Flight flown(double gyro_noise_rad_s, std::size_t samples) {
   return flight;
 }
 
-StructuredFits::Fit fitted(const Flight& flight, bool pinned = false) {
+StructuredModelFit fitted(const Flight& flight, bool pinned = false) {
   StructuredSettings settings;
   settings.residual.epochs = 3;
   settings.altitude = StructuredSettings::Altitude::no;
   settings.pinned_slopes = pinned;
   settings.seeds = 1;
   const Dataset dataset(flight);
-  return fit_structured<PaperQuadrotor>(split_for_training(dataset), settings).best();
+  return fit_structured(split_for_training(dataset), given_airframe<PaperQuadrotor>(), settings).best();
 }
 
 const Flight& noisy() {
   static const Flight flight = flown(0.03, quiet().size());
   return flight;
 }
-const StructuredFits::Fit& noisy_fit() {
-  static const StructuredFits::Fit fit = fitted(noisy());
+const StructuredModelFit& noisy_fit() {
+  static const StructuredModelFit fit = fitted(noisy());
   return fit;
 }
 
-Certificate certificate_of_fit(const StructuredFits::Fit& fit) {
-  return std::visit([](const auto& model) { return certificate_of_trained(model); }, fit.model);
-}
+Certificate certificate_of_fit(const StructuredModelFit& fit) { return *fit.model.written.certificate; }
 
-double error_on(const StructuredFits::Fit& fit, const Flight& flight) {
+double error_on(const StructuredModelFit& fit, const Flight& flight) {
   const RowSet rows(flight, {0, flight.size()});
-  return std::visit([&](const auto& model) { return model_errors(model, rows).mean.mean_absolute; }, fit.model);
+  return model_errors(fit.model, rows).mean.mean_absolute;
 }
 
 const AxisSlopes own = hover_slopes(airframe_value<PaperQuadrotor, double>());
@@ -82,7 +79,7 @@ using Setting = Context<InverseFeatures, PaperQuadrotor, AxisCommandOutputs>;
 }  // namespace
 
 TEST_CASE("noise of the gyro bends the slopes of least squares; those by instruments are the airframe's") {
-  const StructuredFits::Fit& fit = noisy_fit();
+  const StructuredModelFit& fit = noisy_fit();
   const Certificate certificate = certificate_of_fit(fit);
   CHECK(certificate.proven());
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -110,7 +107,7 @@ TEST_CASE("of a quiet flight least squares are kept to the bit, with intervals")
   const Flight flight = flown(0, 2500);
   const Dataset dataset(flight);
   const RowSplit split = split_for_training(dataset);
-  const StructuredFits::Fit fit = fitted(flight);
+  const StructuredModelFit fit = fitted(flight);
   const auto context = make_context<Setting>(split.train);
   const auto base = monotone_base<Setting>(fit_monotone_base(context, split.train));
   CHECK_FALSE(fit.slopes.by_instruments());
@@ -122,17 +119,11 @@ TEST_CASE("of a quiet flight least squares are kept to the bit, with intervals")
     CHECK(slope.slope < slope.upper);
     CHECK(slope.upper - slope.lower < 0.1 * slope.slope);
   }
-  std::visit(
-      [&](const auto& model) {
-        for (std::size_t i = 0; i < base.parameters.size(); ++i) {
-          CHECK(model.network.parameters[i] == base.parameters[i]);
-        }
-      },
-      fit.model);
+  for (std::size_t i = 0; i < base.parameters.size(); ++i) CHECK(fit.parameters[i] == base.parameters[i]);
 }
 
 TEST_CASE("pinned slopes are not measured, nor those about the axes of a window, nor of few rows") {
-  const StructuredFits::Fit pinned = fitted(flown(0.03, 1500), true);
+  const StructuredModelFit pinned = fitted(flown(0.03, 1500), true);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CHECK_FALSE(pinned.slopes.of[1 + axis].known);
     CHECK(certificate_of_fit(pinned).slope[axis] == doctest::Approx(own[axis]).epsilon(1e-5));
@@ -156,11 +147,8 @@ TEST_CASE("a window's thrust slope, all taps together, is held where noise bends
     settings.residual.epochs = 3;
     settings.seeds = 1;
     const Dataset dataset(flight);
-    const GivenAirframe airframe(PaperQuadrotor::name, airframe_value<PaperQuadrotor, double>());
-    return fit_structured<StructuredFitsOf<Window, Window>>(split_for_training(dataset), airframe, settings).best();
-  };
-  const auto certificate_of = [](const auto& fit) {
-    return std::visit([](const auto& model) { return certificate_of_trained(model); }, fit.model);
+    return fit_structured<Window, Window>(split_for_training(dataset), given_airframe<PaperQuadrotor>(), settings)
+        .best();
   };
   CHECK_FALSE(fit_of(quiet()).slopes.of[0].known);
 
@@ -168,7 +156,7 @@ TEST_CASE("a window's thrust slope, all taps together, is held where noise bends
   std::mt19937_64 engine(5);
   for (Sample& sample : shaken) sample.linear_acceleration_m_s2[2] += 5 * standard_normal(engine);
   const auto fit = fit_of(shaken);
-  const Certificate certificate = certificate_of(fit);
+  const Certificate certificate = certificate_of_fit(fit);
   CHECK(fit.slopes.of[0].by_instruments);
   CHECK(fit.slopes.of[0].least_squares < 0.8 * own_thrust);
   CHECK_FALSE(fit.slopes.of[1].known);
@@ -204,7 +192,7 @@ TEST_CASE("a sum by instruments has no residual, the others keep theirs") {
   settings.altitude = StructuredSettings::Altitude::no;
   settings.seeds = 1;
   const Dataset dataset(bent);
-  const auto fit = fit_structured<PaperQuadrotor>(split_for_training(dataset), settings).best();
+  const auto fit = fit_structured(split_for_training(dataset), given_airframe<PaperQuadrotor>(), settings).best();
   const Certificate certificate = certificate_of_fit(fit);
   CHECK(certificate.proven());
   CHECK(fit.slopes.of[1].by_instruments);
@@ -241,7 +229,7 @@ TEST_CASE("neighbours are a tenth of a second away, and none is beyond a gap or 
 }
 
 TEST_CASE("rows to judge by are nearer to the truth than those with noise, and all else is as it was") {
-  const StructuredFits::Fit& fit = noisy_fit();
+  const StructuredModelFit& fit = noisy_fit();
   const RowSet rows(noisy(), {100, 600});
   const Dataset dataset(noisy());
   const FitContext context = fit_context(make_context<Setting>(split_for_training(dataset).train));

@@ -61,12 +61,17 @@ struct Limits {
 };
 
 /// Says 0.5 always.
-struct Stub {
-  using Features = ::Features;
-  using Scalar = float;
-  std::array<float, 6> envelope_lower{-5, -5, -5, -5, -5, -5}, envelope_upper{5, 5, 5, 5, 5, 5};
-  Commands<float> predict(const std::array<float, 6>&) const noexcept { return {0.5F, 0.5F, 0.5F, 0.5F}; }
-};
+AskedModel stub() {
+  AskedModel model;
+  model.units.assign(Features::units.begin(), Features::units.end());
+  model.is_column.assign(6, false);
+  model.envelope_lower.assign(6, -5);
+  model.envelope_upper.assign(6, 5);
+  model.each_row = detail::rows_of_features<Features, float>();
+  model.each_exact_row = detail::rows_of_features<Features, double>();
+  model.predict = [](const double*) { return Commands<double>{0.5, 0.5, 0.5, 0.5}; };
+  return model;
+}
 
 Flight noisy(std::size_t rows, unsigned seed) {
   std::mt19937_64 engine(seed);
@@ -104,12 +109,12 @@ TEST_CASE("fitted limits: new flights of the same kind raise as many alarms as a
   TrustSettings settings;
   settings.seconds_per_alarm = 100;
   const auto trust =
-      fit_trust(Stub{}, RowSet(training, {0, training.size()}), RowSet(validation, {0, validation.size()}), settings);
+      fit_trust(stub(), RowSet(training, {0, training.size()}), RowSet(validation, {0, validation.size()}), settings);
   CHECK(trust.update_period_s == doctest::Approx(0.05));
   CHECK(trust.command_residual_cleared < trust.command_residual_limit);
   CHECK(trust.command_residual_cleared > 0.0159);  // mean |error| = 0.02 sqrt(2 / pi)
   const auto alarms = [&](const Flight& flight) {
-    const auto series = trust_series(asked_model(Stub{}), trust.distribution, RowSet(flight, {0, flight.size()}));
+    const auto series = trust_series(stub(), trust.distribution, RowSet(flight, {0, flight.size()}));
     std::array<int, 2> count{};
     for (const double most : block_maxima(series.squared_distances, 200))
       count[0] += most > trust.squared_distance_limit ? 1 : 0;
@@ -136,7 +141,7 @@ namespace {
 /// The text of what fit_trust() throws; empty if it does not.
 std::string refusal(const Flight& training, const RowSet& validation) {
   try {
-    static_cast<void>(fit_trust(Stub{}, RowSet(training, {0, training.size()}), validation));
+    static_cast<void>(fit_trust(stub(), RowSet(training, {0, training.size()}), validation));
     return {};
   } catch (const std::invalid_argument& error) {
     return error.what();
@@ -192,7 +197,7 @@ TEST_CASE(
   first.add(validation, {0, validation.size()});
   single.add(late, {0, 1});  // one row has no period
   for (const RowSet& rows : {last, first, single}) {
-    const auto trust = fit_trust(Stub{}, RowSet(training, {0, training.size()}), rows);
+    const auto trust = fit_trust(stub(), RowSet(training, {0, training.size()}), rows);
     CHECK(trust.update_period_s == doctest::Approx(0.05).epsilon(1e-4));
   }
 }

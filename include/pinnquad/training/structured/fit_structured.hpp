@@ -10,9 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "pinnquad/core/finite.hpp"
@@ -50,11 +48,6 @@ struct StructuredFitsIn {
 };
 
 namespace detail {
-/// The model of one seed, with its types.
-template <class AnyModel>
-struct StructuredFitOf : StructuredFit {
-  AnyModel model;
-};
 template <class Set, class Predictor>
 using StructuredModel = TrainedModel<Predictor, Context<Set, GivenAirframe, AxisCommandOutputs>>;
 /// The residual network.
@@ -64,32 +57,7 @@ template <class Set>
 using StructuredBase = StructuredModel<Set, MonotoneBase<Set>>;
 template <class Set>
 using StructuredWhole = StructuredModel<Set, MonotonePredictor<Set, StructuredResidual<Set>>>;
-/// Base alone or base and residual, without the altitude or with it.
-template <class Lower, class Higher>
-struct StructuredVariant {
-  using type =
-      std::variant<StructuredBase<Lower>, StructuredWhole<Lower>, StructuredBase<Higher>, StructuredWhole<Higher>>;
-};
-template <class Only>
-struct StructuredVariant<Only, Only> {
-  using type = std::variant<StructuredBase<Only>, StructuredWhole<Only>>;
-};
 }  // namespace detail
-
-/// Fits as models of types. `Features`: without the altitude; `WithAltitude`: the same with it, or Features again where
-/// that was not measured.
-template <class Features = InverseFeatures, class WithAltitude = InverseFeaturesWithAltitude>
-struct StructuredFitsOf
-    : StructuredFitsIn<detail::StructuredFitOf<typename detail::StructuredVariant<Features, WithAltitude>::type>> {
-  using Lower = Features;
-  using Higher = WithAltitude;
-  static constexpr bool has_altitude = !std::is_same_v<Features, WithAltitude>;
-  template <class Set>
-  using Residual = detail::StructuredResidual<Set>;
-  using Model = typename detail::StructuredVariant<Features, WithAltitude>::type;
-  using Fit = detail::StructuredFitOf<Model>;
-};
-using StructuredFits = StructuredFitsOf<>;
 
 /// The set of these types. The residual trains with its inputs filled up to a multiple of sixteen: few networks are
 /// compiled, whatever the features, and the bits are the same.
@@ -116,16 +84,6 @@ struct InTurn {
   bool goes_on(int /*epoch*/) const { return true; }
   void chose(const StructuredAltitude&) const {}
 };
-
-/// A model of types with these parameters.
-template <class Model>
-Model typed_model(const StructuredFit& fit, const RowSet& rows, const GivenAirframe& airframe) {
-  typename Model::Network predictor{};
-  std::copy_n(fit.parameters.begin(), predictor.parameters.size(), predictor.parameters.begin());
-  const auto context =
-      make_context<Context<typename Model::Features, GivenAirframe, AxisCommandOutputs>>(rows, airframe);
-  return make_trained_model(predictor, context, rows);
-}
 
 }  // namespace detail
 
@@ -177,42 +135,6 @@ StructuredFitsIn<StructuredFit> fit_structured(const StructuredSet& without_alti
     if (one) fits.models.push_back(std::move(*one));
   }
   return fits;
-}
-
-/// The same as models of types. Throws std::invalid_argument for an airframe that can't fly, too.
-template <class Fits = StructuredFits, class Work = detail::InTurn>
-Fits fit_structured(const RowSplit& split, const GivenAirframe& airframe, const StructuredSettings& settings = {},
-                    Work&& work = {}) {
-  using Lower = typename Fits::Lower;
-  using Higher = typename Fits::Higher;
-  std::optional<StructuredSet> higher;
-  if constexpr (Fits::has_altitude) higher = structured_set<Higher>(airframe);
-  const StructuredSet lower = structured_set<Lower>(airframe);
-  auto found = fit_structured(lower, higher ? &*higher : nullptr, split, settings, std::forward<Work>(work));
-  Fits fits;
-  fits.altitude = found.altitude;
-  const RowSet rows = detail::fitted_rows(split, settings);
-  for (const StructuredFit& fit : found.models) {
-    const auto model = [&](auto index) {
-      using Model = std::variant_alternative_t<decltype(index)::value, typename Fits::Model>;
-      fits.models.push_back({fit, detail::typed_model<Model>(fit, rows, airframe)});
-    };
-    if constexpr (Fits::has_altitude) {
-      if (fit.with_altitude) {
-        fit.has_residual ? model(std::integral_constant<int, 3>{}) : model(std::integral_constant<int, 2>{});
-        continue;
-      }
-    }
-    fit.has_residual ? model(std::integral_constant<int, 1>{}) : model(std::integral_constant<int, 0>{});
-  }
-  return fits;
-}
-
-/// The same for an airframe that the compiler knows.
-template <class Vehicle, class Work = detail::InTurn>
-StructuredFits fit_structured(const RowSplit& split, const StructuredSettings& settings = {}, Work&& work = {}) {
-  return fit_structured(split, GivenAirframe(Vehicle::name, airframe_value<Vehicle, double>()), settings,
-                        std::forward<Work>(work));
 }
 
 }  // namespace pinnquad

@@ -263,11 +263,4 @@ inline FittedTrust fit_trust(const AskedModel& model, const RowSet& training, co
   return trust;
 }
 
-/// The same of a model of types.
-template <class Model, class = typename Model::Features::template Inputs<double>>
-FittedTrust fit_trust(const Model& model, const RowSet& training, const RowSet& validation,
-                      const TrustSettings& settings = {}) {
-  return fit_trust(asked_model(model), training, validation, settings);
-}
-
 }  // namespace pinnquad
