@@ -13,9 +13,9 @@ if(PINNQUAD_WARNINGS_AS_ERRORS)
 endif()
 
 # The benches link the warnings alone: they measure what a user's flags give. All else is reproducible:
-add_library(pinnquad_development INTERFACE)
-target_link_libraries(pinnquad_development INTERFACE pinnquad_warnings)
-target_compile_options(pinnquad_development INTERFACE
+add_library(pinnquad_flags INTERFACE)
+target_link_libraries(pinnquad_flags INTERFACE pinnquad_warnings)
+target_compile_options(pinnquad_flags INTERFACE
   # With FMA hardware (-march=native) gcc fuses a*b+c across statements and clang only within one, so the same
   # source gives different last bits. Without contraction both give the same flights and the same weights;
   # where a fused operation is wanted (the kernels) it is written as one.
@@ -25,13 +25,13 @@ target_compile_options(pinnquad_development INTERFACE
 # Its garbage it otherwise collects from 4 MiB on, again and again: an eighth of the time of a heavy translation unit,
 # which needs no more memory without.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(pinnquad_development INTERFACE -fno-tree-slp-vectorize --param=ggc-min-heapsize=1000000)
+  target_compile_options(pinnquad_flags INTERFACE -fno-tree-slp-vectorize --param=ggc-min-heapsize=1000000)
 endif()
 
 # gcc 16.2 dies at -O1 of the conjunction of lanes' truths in is_plain() (reassoc_stmt_dominates_stmt_p); of floating-point numbers
 # that pass changes nothing without fast-math.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 16)
-  target_compile_options(pinnquad_development INTERFACE -fno-tree-reassoc)
+  target_compile_options(pinnquad_flags INTERFACE -fno-tree-reassoc)
 endif()
 
 # gcc calls the deliberately undefined operands inside its own AVX-512 intrinsics uninitialised, where Eigen uses them
@@ -39,6 +39,11 @@ endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_FLAGS MATCHES "-march=|-mavx512")
   target_compile_options(pinnquad_warnings INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
 endif()
+
+# Both, and the bodies that are compiled once.
+include(PinnquadCompiled)
+add_library(pinnquad_development INTERFACE)
+target_link_libraries(pinnquad_development INTERFACE pinnquad_flags pinnquad_compiled)
 
 # pinnquad_state_build_flags(<target>): its reports name the flags that the build was configured with.
 function(pinnquad_state_build_flags target)

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -30,14 +31,12 @@
 
 using namespace pinnquad;
 
-/// Work of many trainings on all cores: what fit_structured() asks of one.
-class AllCores {
+/// Trainings on all cores, with progress.
+class AllCores : public FitWork {
  public:
   explicit AllCores(const char* what) : what_(what) {}
 
-  /// Calls job(i) for each i below `count`.
-  template <class Job>
-  void run(std::size_t count, const Job& job) const {
+  void run(std::size_t count, const std::function<bool(std::size_t)>& job) const override {
     std::atomic<std::size_t> next{0}, done{0};
     const auto work = [&] {
       for (std::size_t i = next++; i < count; i = next++) {
@@ -51,8 +50,6 @@ class AllCores {
     for (std::thread& thread : threads) thread.join();
     std::fprintf(stderr, "\r%48s\r", "");
   }
-  bool goes_on(int /*epoch*/) const { return true; }
-  void chose(const StructuredAltitude&) const {}
 
  private:
   const char* what_;
@@ -76,6 +73,7 @@ double network_error(const char* name, const RowSplit& split, int seeds, int epo
     for (int epoch = 0; epoch < epochs; ++epoch) trainer->epoch(data, {epoch, epochs}, engine);
     const auto model = make_trained_model(trainer->network(), context, split.train);
     errors[i] = model_errors(model, split.test).mean.mean_absolute;
+    return true;
   });
   double sum = 0;
   for (const double error : errors) sum += error;

@@ -2,6 +2,7 @@
 #include "training/structured_kind.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -46,28 +47,26 @@ class StructuredNetwork : public ExportableNetwork {
 };
 
 /// Work of fit_structured(): one fit after the other, with progress; Ctrl-C stops it.
-class StructuredWork {
+class StructuredWork : public pinnquad::FitWork {
  public:
   StructuredWork(const FitTask& task, int epochs) : task_(task), epochs_(epochs) {}
 
-  template <class Job>
-  void run(std::size_t count, const Job& job) {
+  void run(std::size_t count, const std::function<bool(std::size_t)>& job) const override {
     fits_ = static_cast<double>(count);
     for (std::size_t i = 0; i < count; ++i) {
       if (!job(i)) throw Interrupted{};
       done_ += 1;
     }
   }
-  bool goes_on(int epoch) const {
+  bool goes_on(int epoch) const override {
     task_.share_done((done_ + static_cast<double>(epoch) / epochs_) / fits_);
     return !interrupted();
   }
-  void chose(const pinnquad::StructuredAltitude&) const {}
 
  private:
   const FitTask& task_;
   int epochs_;
-  double fits_ = 1, done_ = 0;
+  mutable double fits_ = 1, done_ = 0;
 };
 
 /// As many steps as a recipe takes on the 9,000 training rows of a flight of the paper, over all groups left out.

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/io/csv_table.hpp"
@@ -37,44 +38,11 @@ std::vector<std::string> flight_columns(const Columns& extra) {
 /// Throws InputError (all of `read_csv`, time that does not increase from row to row, a column u5, and extra columns of
 /// one name or of a name that every flight has), its text one line:
 ///   flight.csv:17:5: expected a finite number in column wdot_x, found "abc"
-inline Flight read_flight_csv(const std::string& path, std::size_t minimum_rows = minimum_flight_rows,
-                              const std::vector<ColumnName>& extra = {}) {
-  Flight flight;
-  for (const std::string& head : detail::csv_header(path)) {
-    if (head == "u5") throw InputError(path, 1, 0, "the commands of four motors, u1 to u4", "a column u5");
-  }
-  try {
-    for (const ColumnName& column : extra) flight.add_column({column, {}});
-  } catch (const std::invalid_argument& refused) {
-    throw InputError(path, 1, 0, "extra columns that differ in name", refused.what());
-  }
-  detail::for_each_csv_row(
-      path, detail::flight_columns(extra), minimum_rows,
-      [&](const std::vector<double>& values, std::size_t line, const std::vector<std::size_t>& fields) {
-        if (!flight.empty() && !(values[0] > flight.back().time_s)) {
-          throw InputError(path, line, fields[0] + 1,
-                           "a time above " + number_text(flight.back().time_s) + " in column t",
-                           number_text(values[0]));
-        }
-        // room for all rows at once: growing would hold the flight twice
-        if (flight.empty()) flight.reserve(detail::most_records(path, fields.size()));
-        Sample::Values row;
-        std::copy_n(values.begin(), row.size(), row.begin());
-        flight.push_back(to_sample(row), values.data() + row.size(), extra.size());
-      });
-  return flight;
-}
+Flight read_flight_csv(const std::string& path, std::size_t minimum_rows = minimum_flight_rows,
+                       const std::vector<ColumnName>& extra = {});
 
 /// The extra columns of a file, in its order: those whose heads read `name [unit]`. Throws InputError.
-inline std::vector<ColumnName> extra_columns_in(const std::string& path) {
-  std::vector<ColumnName> columns;
-  for (const std::string& head : detail::csv_header(path)) {
-    const std::size_t unit = head.rfind(" [");
-    if (unit == std::string::npos || unit == 0 || head.back() != ']') continue;
-    columns.push_back({head.substr(0, unit), head.substr(unit + 2, head.size() - unit - 3)});
-  }
-  return columns;
-}
+std::vector<ColumnName> extra_columns_in(const std::string& path);
 
 /// Writes a flight with its extra columns; the file appears whole or not at all. `read_flight_csv` gives the same bits
 /// back. `after_row(rows_written)` is called after each row; if it throws, there is no file.
@@ -105,8 +73,10 @@ void write_flight_csv(const std::string& path, const Flight& flight, const Obser
   writer.commit();
 }
 /// The same, of which nobody watches the rows.
-inline void write_flight_csv(const std::string& path, const Flight& flight) {
-  write_flight_csv(path, flight, [](std::size_t) {});
-}
+void write_flight_csv(const std::string& path, const Flight& flight);
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/data/impl/csv.hpp"
+#endif

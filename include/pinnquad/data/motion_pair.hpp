@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/core/types.hpp"
 
@@ -20,39 +21,13 @@ namespace pinnquad::detail {
 /// how much one reading of the log beats the other, and their sum is three times as large as its deviation,
 /// sqrt(sum of squares). Nine blocks that agree can do that, however small the others; one block can't, however wild:
 /// a crash, a knock, a catch by hand, a take-off.
-inline bool is_plain(const std::vector<double>& gains) {
-  constexpr double deviations = 3;
-  double sum = 0, squares = 0;
-  for (const double gain : gains) {
-    sum += gain;
-    squares += gain * gain;
-  }
-  return sum > 0 && sum > deviations * std::sqrt(squares);
-}
+bool is_plain(const std::vector<double>& gains);
 
 /// Blocks of `is_plain`: so many, unless they get shorter than what motions of one manoeuvre have in common.
-inline std::size_t block_count(double duration_s) {
-  constexpr double most_blocks = 40, shortest_block_s = 0.2;
-  return static_cast<std::size_t>(std::clamp(std::floor(duration_s / shortest_block_s), 1.0, most_blocks));
-}
+std::size_t block_count(double duration_s);
 
 /// Weights of blocks with such energies: the wildest fifth weigh as much as the liveliest of the others.
-inline std::vector<double> block_weights(const std::vector<double>& energies) {
-  constexpr double usual = 0.8;
-  std::vector<double> sorted;
-  for (const double energy : energies) {
-    if (energy > 0) sorted.push_back(energy);
-  }
-  std::vector<double> weights(energies.size(), 1.0);
-  if (sorted.empty()) return weights;
-  const auto at = static_cast<std::ptrdiff_t>(usual * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
-  const double bar = sorted[static_cast<std::size_t>(at)];
-  for (std::size_t block = 0; block < weights.size(); ++block) {
-    if (energies[block] > bar) weights[block] = bar / energies[block];
-  }
-  return weights;
-}
+std::vector<double> block_weights(const std::vector<double>& energies);
 
 /// Sums over steps: changes of three quantities, and the integrals of three rates.
 struct MotionSums {
@@ -61,18 +36,8 @@ struct MotionSums {
   Vector3<double> integrals = Vector3<double>::Zero();
   double steps = 0;
 
-  void add(const Vector3<double>& change, const Vector3<double>& integral) {
-    products += change * integral.transpose();
-    changes += change.cwiseAbs2();
-    integrals += integral.cwiseAbs2();
-    steps += 1;
-  }
-  void add(const MotionSums& other, double weight) {
-    products += weight * other.products;
-    changes += weight * other.changes;
-    integrals += weight * other.integrals;
-    steps += weight * other.steps;
-  }
+  void add(const Vector3<double>& change, const Vector3<double>& integral);
+  void add(const MotionSums& other, double weight);
 };
 
 /// The same of a whole flight, by blocks of time that weigh alike.
@@ -80,17 +45,7 @@ struct MotionBlocks : MotionSums {
   std::vector<MotionSums> blocks;
 
   /// The blocks weighted, and their sum.
-  explicit MotionBlocks(std::vector<MotionSums> of) : blocks(std::move(of)) {
-    std::vector<double> energies;
-    for (const MotionSums& block : blocks) energies.push_back(block.changes.sum() + block.integrals.sum());
-    const std::vector<double> weights = block_weights(energies);
-    for (std::size_t block = 0; block < blocks.size(); ++block) {
-      MotionSums weighted;
-      weighted.add(blocks[block], weights[block]);
-      blocks[block] = weighted;
-      add(weighted, 1);
-    }
-  }
+  explicit MotionBlocks(std::vector<MotionSums> of);
 
   /// A number of each block.
   template <class Of>
@@ -103,52 +58,17 @@ struct MotionBlocks : MotionSums {
   /// Correlation over the flight; 0 where both stand still, or one of them to the last digit.
   double correlation(Eigen::Index axis, Eigen::Index column) const { return correlation(axis, column, *this); }
   /// The part of it that a block has.
-  double correlation(Eigen::Index axis, Eigen::Index column, const MotionSums& block) const {
-    constexpr double smallest_change = 1e-3, digits = 1e-5;  // rad, rad/s, m/s, m: root mean square over a step
-    const double more = std::max(changes[axis], integrals[column]), less = std::min(changes[axis], integrals[column]);
-    if (!(more > smallest_change * smallest_change * steps) || !(less > digits * digits * steps)) return 0;
-    return block.products(axis, column) / std::sqrt(changes[axis] * integrals[column]);
-  }
+  double correlation(Eigen::Index axis, Eigen::Index column, const MotionSums& block) const;
   /// The axes about which something moves.
-  std::array<bool, 3> moving() const {
-    constexpr double smallest_change = 1e-3;
-    std::array<bool, 3> result{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto at = static_cast<Eigen::Index>(axis);
-      result[axis] = changes[at] + integrals[at] > smallest_change * smallest_change * steps;
-    }
-    return result;
-  }
+  std::array<bool, 3> moving() const;
   /// 1 where change and integral are equal, -1 where they are opposite, 0 where they have nothing in common: mean over
   /// some axes; 1 where there are none.
-  double agreement(const std::array<bool, 3>& of) const {
-    return std::count(of.begin(), of.end(), true) > 0 ? agreement(of, *this) : 1;
-  }
-  double agreement(const std::array<bool, 3>& of, const MotionSums& block) const {
-    double sum = 0, axes = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto at = static_cast<Eigen::Index>(axis);
-      const double squares = changes[at] + integrals[at];
-      if (!of[axis]) continue;
-      sum += squares > 0 ? 2 * block.products(at, at) / squares : 0;
-      axes += 1;
-    }
-    return axes > 0 ? sum / axes : 0;
-  }
+  double agreement(const std::array<bool, 3>& of) const;
+  double agreement(const std::array<bool, 3>& of, const MotionSums& block) const;
   /// True where the flight plainly agrees better so than it does here; of one flight, read in two ways.
-  bool agrees_less_than(const MotionBlocks& so, const std::array<bool, 3>& axes) const {
-    std::vector<double> gains;
-    for (std::size_t block = 0; block < std::min(blocks.size(), so.blocks.size()); ++block) {
-      gains.push_back(so.agreement(axes, so.blocks[block]) - agreement(axes, blocks[block]));
-    }
-    return is_plain(gains);
-  }
+  bool agrees_less_than(const MotionBlocks& so, const std::array<bool, 3>& axes) const;
   /// True where a rate plainly follows its own axis: it has been checked.
-  bool confirms(Eigen::Index axis) const {
-    constexpr double related = 0.6;
-    return correlation(axis, axis) > related &&
-           is_plain(each([&](const MotionSums& block) { return correlation(axis, axis, block); }));
-  }
+  bool confirms(Eigen::Index axis) const;
 };
 
 /// A rate that follows another axis than its own, or its own negated or in another unit.
@@ -161,49 +81,11 @@ struct AxisMistake {
 
 /// True where a rate can be that of an axis: noise makes them differ in size by as much as it leaves of their
 /// correlation, a sensor that is mounted askew shows a few hundredths of another axis. Degrees for radians may be too.
-inline bool can_be_of_axis(const MotionSums& sums, Eigen::Index axis, Eigen::Index column, double correlation) {
-  constexpr double slack = 4;
-  const double size = std::sqrt(sums.integrals[column] / sums.changes[axis]);
-  for (const double unit : {1.0, degrees_per_radian, 1 / degrees_per_radian}) {
-    if (std::abs(correlation) < slack * std::min(size / unit, unit / size)) return true;
-  }
-  return false;
-}
+bool can_be_of_axis(const MotionSums& sums, Eigen::Index axis, Eigen::Index column, double correlation);
 
 /// The first that most blocks show. `follows`: least correlation with the other axis; `better`: by how much more than
 /// with its own.
-inline std::optional<AxisMistake> find_axis_mistake(const MotionBlocks& sums, double follows, double better) {
-  constexpr double alike = 0.1;  // an axis that its own column follows better is not what another column holds
-  constexpr double straight = 0.9, most_factor = 2;   // of a column that is its axis's but for a factor
-  constexpr double related = 0.6, great_factor = 20;  // the same where noise is left, of a factor that no noise makes
-  for (Eigen::Index column = 0; column < 3; ++column) {
-    const double own = sums.correlation(column, column);
-    Eigen::Index best = column;
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      if (std::abs(sums.correlation(axis, column)) > std::abs(sums.correlation(best, column))) best = axis;
-    }
-    const double fits = sums.correlation(best, column), sign = fits < 0 ? -1 : 1;
-    const auto gain = [&](const MotionSums& block) {
-      return sign * sums.correlation(best, column, block) - sums.correlation(column, column, block);
-    };
-    const bool is_free = best == column || sums.correlation(best, best) < std::abs(fits) + alike;
-    if (std::abs(fits) > follows && std::abs(fits) > own + better && is_free &&
-        can_be_of_axis(sums, best, column, fits) && is_plain(sums.each(gain))) {
-      return AxisMistake{column, best, fits < 0, 1};
-    }
-    if (!(own > related)) continue;
-    const double factor = own > straight ? sums.integrals[column] / sums.products(column, column)
-                                         : std::sqrt(sums.integrals[column] / sums.changes[column]);
-    const double limit = own > straight ? most_factor : great_factor;
-    const auto left = [&](const MotionSums& block, double over) {
-      return (block.integrals[column] / over - 2 * block.products(column, column)) / over;
-    };
-    const auto gain_in_unit = [&](const MotionSums& block) { return left(block, 1) - left(block, factor); };
-    if ((factor > limit || factor < 1 / limit) && is_plain(sums.each(gain_in_unit)))
-      return AxisMistake{column, column, false, factor};
-  }
-  return std::nullopt;
-}
+std::optional<AxisMistake> find_axis_mistake(const MotionBlocks& sums, double follows, double better);
 
 /// The two series row by row, as running sums, in stretches without a gap.
 class MotionPair {
@@ -232,50 +114,11 @@ class MotionPair {
   }
 
   /// Over steps of at least `step_s`, one after the other; the rate of `late_s` before.
-  MotionBlocks sums(double step_s, double late_s = 0) const {
-    constexpr double rounding = 1e-6;
-    double duration_s = 0;
-    for (const Stretch& stretch : stretches_) duration_s += stretch.time_s.back();
-    std::vector<MotionSums> blocks(block_count(duration_s));
-    double before_s = 0;
-    for (const Stretch& stretch : stretches_) {
-      const std::size_t rows = stretch.time_s.size();
-      std::size_t from = 0, to = 0;  // the rows before the begin and the end of the earlier step
-      for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
-        while (end < rows && stretch.time_s[end] - stretch.time_s[begin] < step_s - rounding) ++end;
-        if (end == rows) break;
-        const double first_s = stretch.time_s[begin] - late_s, last_s = stretch.time_s[end] - late_s;
-        if (first_s < 0 || last_s > stretch.time_s.back()) continue;
-        const Vector3<double> integral = stretch.integral_at(last_s, to) - stretch.integral_at(first_s, from);
-        const double share = (before_s + stretch.time_s[begin]) / duration_s;
-        const auto block = static_cast<std::size_t>(share * static_cast<double>(blocks.size()));
-        blocks[std::min(block, blocks.size() - 1)].add(stretch.changed[end] - stretch.changed[begin], integral);
-      }
-      before_s += stretch.time_s.back();
-    }
-    return MotionBlocks(std::move(blocks));
-  }
+  MotionBlocks sums(double step_s, double late_s = 0) const;
 
   /// The time by which the quantity comes after its rate, where the two agree far better with it than without, plainly:
   /// a tenth of a second or more, to half a second.
-  std::optional<double> lateness_s(double step_s) const {
-    constexpr double longest_s = 0.5, shortest_s = 0.1, grid_s = 0.02;
-    constexpr double agrees = 0.6, misses = 0.03, left = 0.4;
-    const MotionBlocks as_it_stands = sums(step_s);
-    const std::array<bool, 3> moving = as_it_stands.moving();
-    const double now = as_it_stands.agreement(moving);
-    if (!(now < 1 - misses)) return std::nullopt;
-    double late_s = 0, most = now;
-    for (int k = -static_cast<int>(longest_s / grid_s); k <= static_cast<int>(longest_s / grid_s); ++k) {
-      const MotionBlocks at = sums(step_s, grid_s * k);
-      if (!(at.agreement(moving) > most)) continue;
-      most = at.agreement(moving);
-      late_s = grid_s * k;
-    }
-    const bool found = std::abs(late_s) > shortest_s - grid_s / 2 && most > agrees && 1 - most < left * (1 - now) &&
-                       as_it_stands.agrees_less_than(sums(step_s, late_s), moving);
-    return found ? std::optional<double>(late_s) : std::nullopt;
-  }
+  std::optional<double> lateness_s(double step_s) const;
 
  private:
   struct Stretch {
@@ -293,3 +136,7 @@ class MotionPair {
 };
 
 }  // namespace pinnquad::detail
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/data/impl/motion_pair.hpp"
+#endif

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/data/dataset.hpp"
 
 namespace pinnquad {
@@ -78,21 +79,10 @@ RowSet all_rows(const Flights&&) = delete;  // the flights would be gone
 /// Median time between a row and the next of the same piece, s. 0 where no piece has two rows, or where the medians of
 /// two pieces differ by more than a hundredth of the first: then there is no one period. To the nanosecond, as a block
 /// holds it: times are sums of steps.
-inline double sample_period_s(const RowSet& rows) {
-  constexpr double tolerance = 0.01;
-  double period = 0;
-  for (const FlightRows& piece : rows.pieces()) {
-    std::vector<double> steps;
-    for (std::size_t row = piece.rows.begin + 1; row < piece.rows.end; ++row) {
-      steps.push_back((*piece.flight)[row].time_s - (*piece.flight)[row - 1].time_s);
-    }
-    if (steps.empty()) continue;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    if (period > 0 && !(std::abs(*middle - period) <= tolerance * period)) return 0;
-    if (!(period > 0)) period = *middle;
-  }
-  return std::round(period * 1e9) / 1e9;
-}
+double sample_period_s(const RowSet& rows);
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/data/impl/row_set.hpp"
+#endif

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/type_text.hpp"
 #include "pinnquad/io/file_error.hpp"
@@ -50,28 +51,9 @@ inline constexpr std::string_view taken_names[] = {
 /// True for a name that a struct at global scope may have: letters, digits and underscores, the first a letter, no two
 /// underscores in a row, at least one lower-case letter (NULL, EOF and M_PI are macros, as are M_PIf and what begins
 /// with EIGEN_), no `_t` at the end (POSIX has these), no keyword.
-inline bool is_identifier(std::string_view name) {
-  const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
-  const auto letter = [lower](char c) { return lower(c) || (c >= 'A' && c <= 'Z'); };
-  if (name.empty() || !letter(name[0]) || name.find("__") != std::string_view::npos) return false;
-  bool has_lower = false;
-  for (const char c : name) {
-    if (!letter(c) && !(c >= '0' && c <= '9') && c != '_') return false;
-    has_lower = has_lower || lower(c);
-  }
-  if (!has_lower || name.substr(0, 2) == "M_" || name.substr(0, 6) == "EIGEN_") return false;
-  if (name.size() > 2 && name.substr(name.size() - 2) == "_t") return false;
-  for (const std::string_view taken : detail::taken_names) {
-    if (name == taken) return false;
-  }
-  return true;
-}
+bool is_identifier(std::string_view name);
 /// Throws std::invalid_argument for a name that is none; `what` was given it.
-inline void require_identifier(const std::string& what, const std::string& name) {
-  if (is_identifier(name)) return;
-  throw std::invalid_argument(what + " " + printable(name) +
-                              ": a C++ identifier was expected, no keyword and no name that C++ reserves");
-}
+void require_identifier(const std::string& what, const std::string& name);
 
 /// "pinnquad::Network<float, pinnquad::InputSize<16>, ...>" (core/type_text.hpp), lists closed as ">>".
 template <class T>
@@ -84,9 +66,7 @@ std::string type_name() {
 namespace detail {
 
 /// Throws std::invalid_argument, one line, for a name that no struct may have.
-inline void require_identifier(const std::string& name) {
-  if (!is_identifier(name)) throw std::invalid_argument("export: '" + name + "' is not a C++ identifier");
-}
+void require_identifier(const std::string& name);
 
 /// Shortest text that reads back as the same value, marked as a literal of its type.
 template <class Number, class = std::enable_if_t<std::is_arithmetic_v<Number>>>
@@ -98,14 +78,7 @@ std::string literal(Number value) {
 }
 
 /// A C++ string literal of printable(text). A second '?' in a row is escaped: no trigraph.
-inline std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : printable(text)) {
-    if (c == '"' || c == '\\' || (c == '?' && result.back() == '?')) result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
+std::string quoted(const std::string& text);
 inline std::string literal(const char* text) { return quoted(text); }
 inline std::string literal(const std::string& text) { return quoted(text); }
 
@@ -139,3 +112,7 @@ void require_finite(const Numbers& numbers, const std::string& name) {
 
 }  // namespace detail
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/deploy/impl/cpp_text.hpp"
+#endif

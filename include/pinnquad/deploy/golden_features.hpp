@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/training/asked_model.hpp"
 
 namespace pinnquad {
@@ -23,110 +24,27 @@ class BoundSearch {
   explicit BoundSearch(const AskedModel& model) : model_(model), outputs_(model.residual_lower.size()) {}
 
   /// One vector for each bound that none before it passes, as far as one is found; `most` of them.
-  std::vector<Vector> beyond(const std::vector<Vector>& rows, std::size_t most) const {
-    std::vector<Vector> found;
-    std::vector<bool> missing(2 * outputs_);  // lower ones, then upper ones
-    for (std::size_t bound = 0; bound < missing.size(); ++bound) missing[bound] = has_range(bound);
-    for (std::size_t bound = 0; bound < missing.size() && found.size() < most; ++bound) {
-      if (!missing[bound]) continue;
-      const Vector far = climbed(nearest(rows, bound), bound, missing);
-      const Vector by = passed(far);
-      if (by[bound] < enough) continue;
-      found.push_back(far);
-      for (std::size_t k = 0; k < missing.size(); ++k) missing[k] = missing[k] && by[k] < enough;
-    }
-    return found;
-  }
+  std::vector<Vector> beyond(const std::vector<Vector>& rows, std::size_t most) const;
 
  private:
   static constexpr double enough = 0.05;  ///< of the residual's range
 
-  bool has_range(std::size_t bound) const {
-    return model_.residual_upper[bound % outputs_] > model_.residual_lower[bound % outputs_];
-  }
+  bool has_range(std::size_t bound) const;
 
   /// How far beyond each bound the residual is without it, in shares of its range.
-  Vector passed(const Vector& x) const {
-    Vector y(outputs_), by(2 * outputs_);
-    model_.residual(x.data(), y.data());
-    for (std::size_t k = 0; k < outputs_; ++k) {
-      const double lower = model_.residual_lower[k], upper = model_.residual_upper[k];
-      by[k] = (lower - y[k]) / (upper - lower);
-      by[outputs_ + k] = (y[k] - upper) / (upper - lower);
-    }
-    return by;
-  }
+  Vector passed(const Vector& x) const;
 
   /// The row at which the residual is nearest to the bound.
-  Vector nearest(const std::vector<Vector>& rows, std::size_t bound) const {
-    const Vector* best = &rows.front();
-    double most = passed(*best)[bound];
-    for (const Vector& row : rows) {
-      const double by = passed(row)[bound];
-      if (by > most) {
-        most = by;
-        best = &row;
-      }
-    }
-    return *best;
-  }
+  Vector nearest(const std::vector<Vector>& rows, std::size_t bound) const;
 
   /// The search climbs for the bound first, then for the others that no vector passes.
-  double height(const Vector& x, std::size_t bound, const std::vector<bool>& missing) const {
-    const Vector by = passed(x);
-    double sum = 0;
-    for (std::size_t k = 0; k < by.size(); ++k) {
-      if (missing[k]) sum += (k == bound ? static_cast<double>(by.size()) : 1.0) * std::min(by[k], enough);
-    }
-    return sum;
-  }
+  double height(const Vector& x, std::size_t bound, const std::vector<bool>& missing) const;
 
   /// From there, one feature after the other to a border of the envelope, the one that gains most first; then back
   /// along the line, as far as no bound that it passes is lost.
-  Vector climbed(const Vector& start, std::size_t bound, const std::vector<bool>& missing) const {
-    Vector x = start;
-    double highest = height(x, bound, missing);
-    for (std::size_t step = 0; step < x.size(); ++step) {
-      Vector best = x;
-      const double before = highest;
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        for (const double border : {model_.envelope_lower[i], model_.envelope_upper[i]}) {
-          Vector moved = x;
-          moved[i] = border;
-          const double reached = height(moved, bound, missing);
-          if (reached > highest) {
-            highest = reached;
-            best = moved;
-          }
-        }
-      }
-      if (!(highest > before)) break;
-      x = best;
-    }
-    const Vector by = passed(x);
-    const auto keeps = [&](const Vector& other) {
-      for (std::size_t k = 0; k < by.size(); ++k) {
-        if (missing[k] && by[k] >= enough && other[k] < enough) return false;
-      }
-      return true;
-    };
-    double near = 0, far = 1;
-    for (int halving = 0; halving < 20; ++halving) {
-      const double middle = (near + far) / 2;
-      (keeps(passed(between(start, x, middle))) ? far : near) = middle;
-    }
-    return between(start, x, far);
-  }
+  Vector climbed(const Vector& start, std::size_t bound, const std::vector<bool>& missing) const;
 
-  Vector between(const Vector& from, const Vector& to, double share) const {
-    Vector x = from;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double moved = from[i] + share * (to[i] - from[i]);
-      const double own = model_.is_double ? moved : static_cast<double>(static_cast<float>(moved));
-      x[i] = std::clamp(own, model_.envelope_lower[i], model_.envelope_upper[i]);
-    }
-    return x;
-  }
+  Vector between(const Vector& from, const Vector& to, double share) const;
 
   const AskedModel& model_;
   std::size_t outputs_;
@@ -137,18 +55,8 @@ class BoundSearch {
 /// `count` feature vectors, inside the envelope of a model that was trained on these rows. Of a model with a bounded
 /// residual first those at which it is clipped, all but two at most; then rows, the first and the last among them, the
 /// rest evenly between. Throws std::invalid_argument where no row has features, or for fewer than two.
-inline std::vector<std::vector<double>> golden_features(const AskedModel& model, const RowSet& training,
-                                                        std::size_t count = 8) {
-  std::vector<std::vector<double>> all, golden;
-  model.each_row(training, [&](const Flight&, std::size_t, const double* x) { all.emplace_back(x, x + model.size()); });
-  if (all.empty()) throw std::invalid_argument("golden_features: expected rows that have features, found none");
-  if (count < 2)
-    throw std::invalid_argument("golden_features: expected a count from 2, found " + std::to_string(count));
-  if (model.residual) golden = detail::BoundSearch(model).beyond(all, count - 2);
-  const std::size_t rows = count - golden.size();
-  for (std::size_t i = 0; i < rows; ++i) golden.push_back(all[i * (all.size() - 1) / (rows - 1)]);
-  return golden;
-}
+std::vector<std::vector<double>> golden_features(const AskedModel& model, const RowSet& training,
+                                                 std::size_t count = 8);
 /// The same of a model of types.
 template <class Model>
 std::vector<typename Model::FeatureVector> golden_features(const Model& model, const RowSet& training,
@@ -161,3 +69,7 @@ std::vector<typename Model::FeatureVector> golden_features(const Model& model, c
 }
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/deploy/impl/golden_features.hpp"
+#endif

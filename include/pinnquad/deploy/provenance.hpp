@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/dynamics/actuator.hpp"
@@ -126,10 +127,7 @@ std::vector<double> affine_schema(const Airframe<Scalar>& airframe) {
 }
 
 /// A figure of a judgement, rounded as far as sums over the test rows are the same on every machine.
-inline double stated_figure(double value) {
-  constexpr double digits = 1e6;
-  return std::abs(value) < digits ? std::round(value * digits) / digits : value;
-}
+double stated_figure(double value);
 
 /// Names and units in turn.
 template <class Names, class Units>
@@ -176,47 +174,7 @@ WrittenRecords records_of_types() {
 
 /// Throws std::invalid_argument for a range that is none, a time beyond 0 to 4 s, another period than the window's
 /// (`window_s`; 0 without one), and for statistics of another length than the model's, or that are not finite.
-inline void require_provenance(const Provenance& from, double window_s, std::size_t inputs, std::size_t outputs) {
-  const auto refuse = [](const std::string& what) { throw std::invalid_argument("export: " + what); };
-  if (!is_command_range(from.command_lower, from.command_upper)) {
-    refuse("the range of the commands is none, or beyond -1 to 1");
-  }
-  if (!in_range<StatedNumber::sample_period_s>(from.sample_period_s)) {
-    refuse("the sample period is not one of 0 to 4 s, or below 0.00001 s");
-  }
-  if (!in_range<StatedNumber::lag_removed_s>(from.lag_removed_s)) refuse("the lag removed is not one of 0 to 1 s");
-  if (window_s > 0 && from.sample_period_s > 0 && !same_period(from.sample_period_s, window_s)) {
-    refuse("the sample period is not that of the features' window");
-  }
-  if (const auto& range = from.residual_range) {
-    if (range->lower.size() != outputs || range->upper.size() != outputs) {
-      refuse("the range of a residual is not one of bounds for every output");
-    }
-    require_finite(range->lower, "the lower bounds of the residual");
-    require_finite(range->upper, "the upper bounds of the residual");
-    for (std::size_t i = 0; i < outputs; ++i) {
-      if (!(range->lower[i] <= range->upper[i])) refuse("a lower bound of the residual lies above the upper one");
-    }
-  }
-  if (from.bias_time_constants_s && !are_bias_time_constants(*from.bias_time_constants_s)) {
-    bool fast = true;
-    for (const double time_s : *from.bias_time_constants_s) {
-      fast = fast && time_s >= 0 && time_s <= longest_bias_time_constant_s;
-    }
-    refuse(fast ? "a time constant of the bias is below 0.02 s"
-                : "a time constant of the bias is not one of 0 to 60 s");
-  }
-  if (const auto& distance = from.distance) {
-    if (distance->mean.size() != inputs || distance->inverse_cholesky.size() != triangle(inputs)) {
-      refuse("the statistics of a distance are not those of " + std::to_string(inputs) + " features");
-    }
-    require_finite(distance->mean, "the means of the distance");
-    require_finite(distance->inverse_cholesky, "the triangle of the distance");
-    if (!in_range<StatedNumber::distance_limit>(distance->limit)) {
-      refuse("the limit of the distance is no number above 0 to 131072");
-    }
-  }
-}
+void require_provenance(const Provenance& from, double window_s, std::size_t inputs, std::size_t outputs);
 
 /// States the proof of records.certificate: signs and range of the residual, outward as the model's Scalar holds it.
 /// Throws std::invalid_argument where nothing is proven.
@@ -319,3 +277,7 @@ WrittenRecords records_of_header() {
 
 }  // namespace detail
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/deploy/impl/provenance.hpp"
+#endif

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "pinnquad/deploy/block_writer.hpp"
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/exported/model_block.hpp"
 #include "pinnquad/io/atomic_file.hpp"
@@ -22,28 +22,11 @@ namespace pinnquad {
 namespace detail {
 
 template <class Scalar>
-std::vector<unsigned char> block_of(const WrittenModel<Scalar>& model) {
-  LittleEndianBytes<Scalar> scalars;
-  for (const auto* numbers : {&model.input_mean, &model.input_deviation, &model.output_mean, &model.output_deviation,
-                              &model.envelope_lower, &model.envelope_upper}) {
-    scalars.add(*numbers);
-  }
-  scalars.add(model.golden_features);
-  scalars.add(model.golden_commands);
-  scalars.add(model.parameters);
-  return whole_block(
-      {sizeof(Scalar), model.input_mean.size(), model.output_mean.size(), model.parameters.size(),
-       model.golden_features.size(), model.training_rows, hash_of_shape(model), model.training_data_hash},
-      block_records<Scalar>(model), scalars.bytes);
-}
+std::vector<unsigned char> block_of(const WrittenModel<Scalar>& model);
 
 /// The block beside the header that write_struct() writes of the same model.
 template <class Scalar>
-std::vector<unsigned char> block_beside_header(WrittenModel<Scalar> model) {
-  std::ostream nowhere(nullptr);
-  model.contents_hash = write_struct(nowhere, model);
-  return block_of(model);
-}
+std::vector<unsigned char> block_beside_header(WrittenModel<Scalar> model);
 
 }  // namespace detail
 
@@ -53,15 +36,7 @@ std::vector<unsigned char> block_beside_header(WrittenModel<Scalar> model) {
 template <class Scalar>
 std::vector<unsigned char> model_block(const GroundModel<Scalar>& model, const std::vector<std::vector<double>>& golden,
                                        const Provenance& provenance, const std::string& name = "Model",
-                                       const FittedTrust* trust = nullptr) {
-  auto written = detail::written_model(model, golden, provenance, name);
-  if (trust != nullptr) {
-    written.trust = {trust->squared_distance_limit,   trust->command_residual_factor, trust->command_residual_limit,
-                     trust->command_residual_cleared, trust->update_period_s,         trust->distribution.mean,
-                     trust->distribution.whitening};
-  }
-  return detail::block_beside_header(std::move(written));
-}
+                                       const FittedTrust* trust = nullptr);
 /// The same for a model whose types are known.
 template <class NetworkType, class ContextType>
 std::vector<unsigned char> model_block(
@@ -99,16 +74,14 @@ std::vector<unsigned char> model_block() {
 }
 
 namespace detail {
-inline void write_block(std::ostream& out, const std::vector<unsigned char>& block) {
-  out.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size()));
-}
+void write_block(std::ostream& out, const std::vector<unsigned char>& block);
 }  // namespace detail
 
 /// A block as a file that appears whole or not at all.
-inline void write_weight_file(const std::string& path, const std::vector<unsigned char>& block) {
-  AtomicFile file(path);
-  detail::write_block(file.stream(), block);
-  file.commit();
-}
+void write_weight_file(const std::string& path, const std::vector<unsigned char>& block);
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/deploy/impl/weight_file.hpp"
+#endif

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
 #include "pinnquad/training/asked_model.hpp"
@@ -30,46 +31,15 @@ struct WrittenModel : WrittenRecords {
 struct NamesAndUnits {
   std::vector<std::string> names, units;
 };
-inline NamesAndUnits names_and_units(const std::vector<std::string>& texts, std::size_t first) {
-  NamesAndUnits apart;
-  for (std::size_t i = first; i + 1 < texts.size(); i += 2) {
-    apart.names.push_back(texts[i]);
-    apart.units.push_back(texts[i + 1]);
-  }
-  return apart;
-}
+NamesAndUnits names_and_units(const std::vector<std::string>& texts, std::size_t first);
 
 /// As detail::hash_of_shape(), of what is known when a program runs.
-inline std::uint64_t hash_of_shape(const WrittenRecords& model) {
-  const NamesAndUnits features = names_and_units(model.feature_texts, 0),
-                      outputs = names_and_units(model.output_texts, 1);
-  Fnv1a fnv;
-  fnv.absorb_text(model.answer);
-  absorb_shape(fnv, features.names, features.units, outputs.names, outputs.units, model.vehicle_name,
-               motor_torque_signs(model.airframe));
-  return fnv.hash;
-}
+std::uint64_t hash_of_shape(const WrittenRecords& model);
 
 /// Throws std::invalid_argument for a number that is not finite, for no golden vector, and for one outside the
 /// envelope, which no self test could pass.
 template <class Scalar>
-void require_numbers(const WrittenModel<Scalar>& model) {
-  require_finite(model.parameters, "the parameters");
-  require_finite(model.input_mean, "the input means");
-  require_finite(model.input_deviation, "the input standard deviations");
-  require_finite(model.output_mean, "the output means");
-  require_finite(model.output_deviation, "the output standard deviations");
-  require_finite(model.envelope_lower, "the lower envelope");
-  require_finite(model.envelope_upper, "the upper envelope");
-  if (model.golden_features.empty()) throw std::invalid_argument("export: a model needs at least one golden vector");
-  for (std::size_t i = 0; i < model.golden_features.size(); ++i) {
-    const std::vector<Scalar>& x = model.golden_features[i];
-    if (!inside_envelope(model.envelope_lower.data(), x.data(), model.envelope_upper.data(), x.size())) {
-      throw std::invalid_argument("export: golden vector " + std::to_string(i + 1) + " lies outside the envelope");
-    }
-    require_finite(model.golden_commands[i], "the commands of golden vector " + std::to_string(i + 1));
-  }
-}
+void require_numbers(const WrittenModel<Scalar>& model);
 
 /// `model` has scalers and envelope, as an object or as static members.
 template <class Scalar, class Model>
@@ -127,22 +97,7 @@ namespace detail {
 /// std::invalid_argument where require_numbers() and take_provenance() do.
 template <class Scalar>
 WrittenModel<Scalar> written_model(const GroundModel<Scalar>& model, const std::vector<std::vector<double>>& golden,
-                                   const Provenance& provenance, const std::string& name) {
-  WrittenModel<Scalar> written = model.written;
-  for (const std::vector<double>& x : golden) {
-    written.golden_features.emplace_back();
-    for (const double number : x) written.golden_features.back().push_back(static_cast<Scalar>(number));
-    const Commands<double> commands = model.predict(x.data());
-    written.golden_commands.emplace_back();
-    for (std::size_t i = 0; i < commands.size(); ++i) {
-      written.golden_commands.back()[i] = static_cast<Scalar>(commands[i]);
-    }
-  }
-  require_numbers(written);
-  take_provenance<Scalar>(written, provenance, model.window_s);
-  written.name = name;
-  return written;
-}
+                                   const Provenance& provenance, const std::string& name);
 
 /// Feature vectors of types as numbers.
 template <class FeatureVector>
@@ -154,3 +109,7 @@ std::vector<std::vector<double>> as_numbers(const std::vector<FeatureVector>& ve
 
 }  // namespace detail
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/deploy/impl/written_model.hpp"
+#endif

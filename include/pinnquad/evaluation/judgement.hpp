@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/evaluation/errors.hpp"
@@ -33,9 +34,7 @@ PredictionErrors<rotor_count> errors_on(const RowSet& rows, const EachRow& each_
 }  // namespace detail
 
 /// The errors of a model's commands, 0..1. Throws std::invalid_argument where no row has features.
-inline detail::PredictionErrors<rotor_count> model_errors(const AskedModel& model, const RowSet& rows) {
-  return detail::errors_on(rows, model.each_row, model.predict);
-}
+detail::PredictionErrors<rotor_count> model_errors(const AskedModel& model, const RowSet& rows);
 
 /// The errors on `test` of linear regression on a feature set, fitted to `training`. Throws as model_errors().
 template <class Features>
@@ -101,19 +100,7 @@ std::array<AxisSeries, 3> axis_series(const AirframeSource& airframe, const RowS
 }
 
 /// Shares of neighbouring rows on which sum and angular acceleration move apart, axis by axis (docs/monotonicity.md).
-inline Judgement::PairSigns pair_signs(const std::array<AxisSeries, 3>& series) {
-  constexpr double large_step_share = 0.5;  // of the standard deviation
-  Judgement::PairSigns result;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const AxisSeries& s = series[axis];
-    const double large = large_step_share * std::sqrt(joint_moments(s.angular_acceleration, s.target).variance_x);
-    result.all[axis] = sign_violation_share(s.predicted, s.angular_acceleration);
-    result.of_flown[axis] = sign_violation_share(s.target, s.angular_acceleration);
-    result.large[axis] = sign_violation_share(s.predicted, s.angular_acceleration, large);
-    result.large_of_flown[axis] = sign_violation_share(s.target, s.angular_acceleration, large);
-  }
-  return result;
-}
+Judgement::PairSigns pair_signs(const std::array<AxisSeries, 3>& series);
 
 /// Judges commands, one for each row. Throws std::invalid_argument for no rows or another number of commands.
 template <class AirframeSource>
@@ -133,43 +120,19 @@ Judgement judge(const AirframeSource& airframe, const RowSet& rows, const std::v
 
 /// The commands of a model, row by row. NaN for a row without features (a window that is not complete) and, if
 /// `inside_envelope`, for a row that the guard of its export declines.
-inline std::vector<Commands<double>> predicted_commands(const AskedModel& model, const RowSet& rows,
-                                                        bool inside_envelope = false) {
-  std::vector<Commands<double>> result;
-  const auto declined = [&model](const double* x) {
-    for (std::size_t i = 0; i < model.size(); ++i) {
-      if (!model.is_column[i] && !(x[i] >= model.envelope_lower[i] && x[i] <= model.envelope_upper[i])) return true;
-    }
-    return false;
-  };
-  for (const FlightRows& piece : rows.pieces()) {
-    const std::size_t first = result.size();
-    result.resize(first + piece.rows.size(), {not_a_number, not_a_number, not_a_number, not_a_number});
-    model.each_row(RowSet(*piece.flight, piece.rows), [&](const Flight&, std::size_t row, const double* x) {
-      if (!inside_envelope || !declined(x)) result[first + row - piece.rows.begin] = model.predict(x);
-    });
-  }
-  return result;
-}
+std::vector<Commands<double>> predicted_commands(const AskedModel& model, const RowSet& rows,
+                                                 bool inside_envelope = false);
 
 /// The share of rows that the guard of a model's export lets it answer.
-inline double answered_share(const AskedModel& model, const RowSet& rows) {
-  std::size_t answered = 0;
-  for (const Commands<double>& u : predicted_commands(model, rows, true)) answered += all_finite(u) ? 1U : 0U;
-  return static_cast<double>(answered) / static_cast<double>(rows.size());
-}
+double answered_share(const AskedModel& model, const RowSet& rows);
 
 /// Judges a model on the test rows; its verdict is beside linear regression on the paper's features. Figures of a model
 /// of a window are NaN: its first rows have no features (model_errors() leaves them out). Throws std::invalid_argument
 /// for a split with an empty part.
-inline Judgement judge(const AskedModel& model, const RowSplit& split) {
-  Judgement result =
-      judge(GivenAirframe(model.airframe_name, model.airframe), split.test, predicted_commands(model, split.test));
-  result.validation_error = model_errors(model, split.validation).mean.mean_absolute;
-  result.verdict =
-      verdict_on(result.errors, linear_regression_errors<PaperFeatures>(split.train, split.test).mean.r_squared);
-  result.verdict.answered_share = answered_share(model, split.test);
-  return result;
-}
+Judgement judge(const AskedModel& model, const RowSplit& split);
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/evaluation/impl/judgement.hpp"
+#endif

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 
 namespace pinnquad {
@@ -37,23 +38,7 @@ namespace detail {
 
 /// P(W <= w) for W the sum of those ranks whose sign comes up positive, all 2^n signs equally likely.
 /// Each rank doubles the distribution: p(s) = (p(s) + p(s - rank)) / 2; exact in a double up to 50 ranks.
-inline double signed_rank_cdf(const std::vector<std::size_t>& ranks, std::size_t w) {
-  std::size_t total = 0;
-  for (const std::size_t rank : ranks) total += rank;
-  const std::size_t most = std::min(w, total);  // values above are in no sum
-  std::vector<double> probability(most + 1, 0.0);
-  probability[0] = 1;
-  std::size_t reached = 0;
-  for (const std::size_t rank : ranks) {
-    reached += rank;
-    for (std::size_t s = std::min(reached, most) + 1; s-- > 0;) {
-      probability[s] = (probability[s] + (s >= rank ? probability[s - rank] : 0.0)) / 2;
-    }
-  }
-  double sum = 0;
-  for (const double p : probability) sum += p;
-  return sum;
-}
+double signed_rank_cdf(const std::vector<std::size_t>& ranks, std::size_t w);
 
 }  // namespace detail
 
@@ -65,44 +50,10 @@ inline constexpr std::size_t most_pairs = 500;
 /// 2^(1-n): five seeds cannot reach 0.05.
 /// Throws std::invalid_argument for series of different length, none or more than 500 pairs, NaN or Inf.
 /// Source: Wilcoxon, Individual comparisons by ranking methods (1945); Kerby, The simple difference formula (2014).
-inline PairedComparison compare_paired(const std::vector<double>& candidate, const std::vector<double>& baseline) {
-  detail::require_equal_length("compare_paired", candidate.size(), baseline.size());
-  if (candidate.empty() || candidate.size() > most_pairs) {
-    throw std::invalid_argument("compare_paired: expected 1 to " + std::to_string(most_pairs) + " pairs, found " +
-                                std::to_string(candidate.size()));
-  }
-  PairedComparison result;
-  result.pairs = candidate.size();
-  std::vector<double> differences;
-  std::vector<double> decided;  // without zeros, sorted by magnitude
-  for (std::size_t i = 0; i < candidate.size(); ++i) {
-    const double difference = candidate[i] - baseline[i];
-    if (!std::isfinite(difference)) {
-      throw std::invalid_argument("compare_paired: pair " + std::to_string(i) + " has no finite difference");
-    }
-    differences.push_back(difference);
-    if (difference != 0) decided.push_back(difference);
-    ++(difference < 0 ? result.wins : difference > 0 ? result.losses : result.ties);
-  }
-  result.candidate_mean = detail::mean_of(candidate);
-  result.baseline_mean = detail::mean_of(baseline);
-  result.mean_difference = detail::mean_of(differences);
-  result.relative_difference =
-      result.baseline_mean != 0 ? result.mean_difference / std::abs(result.baseline_mean) : not_a_number;
-  if (decided.empty()) return result;
-
-  std::sort(decided.begin(), decided.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  std::vector<double> magnitudes;
-  for (const double difference : decided) magnitudes.push_back(std::abs(difference));
-  const std::vector<std::size_t> ranks = detail::doubled_ranks(magnitudes);
-  std::size_t wins = 0;
-  std::size_t losses = 0;
-  for (std::size_t i = 0; i < decided.size(); ++i) (decided[i] < 0 ? wins : losses) += ranks[i];
-  result.win_rank_sum = static_cast<double>(wins) / 2;
-  result.loss_rank_sum = static_cast<double>(losses) / 2;
-  result.rank_biserial = (result.win_rank_sum - result.loss_rank_sum) / (result.win_rank_sum + result.loss_rank_sum);
-  result.p_value = std::min(1.0, 2 * detail::signed_rank_cdf(ranks, std::min(wins, losses)));
-  return result;
-}
+PairedComparison compare_paired(const std::vector<double>& candidate, const std::vector<double>& baseline);
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/evaluation/impl/paired_test.hpp"
+#endif

@@ -16,6 +16,7 @@
 #include <system_error>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/io/file_error.hpp"
 
 namespace pinnquad {
@@ -33,16 +34,7 @@ inline constexpr std::uintmax_t most_input_bytes = std::uintmax_t{1} << 33;
 
 /// Throws InputError, one line, for all that is there and is no regular file of such a size. An absent file passes:
 /// opening it gives the system's reason.
-inline void require_regular_file(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  if (!fs::exists(status)) return;
-  if (fs::is_directory(status)) throw InputError(path, 0, 0, "a readable file", "a folder");
-  if (!fs::is_regular_file(status)) throw InputError(path, 0, 0, "a regular file", "a device or a pipe");
-  const std::uintmax_t bytes = fs::file_size(path, ignored);
-  if (!ignored && bytes > detail::most_input_bytes) detail::refuse_size(path);
-}
+void require_regular_file(const std::string& path);
 
 namespace detail {
 
@@ -86,12 +78,10 @@ inline constexpr std::size_t read_block = std::size_t{1} << 18;
 }  // namespace detail
 
 /// The whole of a file. Throws InputError, one line: no such file, a folder, a device, a pipe, a read error.
-inline std::string file_text(const std::string& path) {
-  detail::TextFile file(path);
-  std::string text;
-  std::vector<char> block(detail::read_block);
-  while (const std::size_t count = file.read(block.data(), block.size())) text.append(block.data(), count);
-  return text;
-}
+std::string file_text(const std::string& path);
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/io/impl/text_file.hpp"
+#endif

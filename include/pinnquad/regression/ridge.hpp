@@ -4,9 +4,6 @@
 // the penalty takes all alike. Fits take sums over rows: to leave a trajectory out is a subtraction, whatever its rows.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Jacobi>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -17,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/core/types.hpp"
 
 namespace pinnquad {
@@ -44,13 +42,7 @@ class RegressionSums {
         outputs_(outputs),
         products_(Eigen::MatrixXd::Zero(1 + inputs + outputs, 1 + inputs + outputs)) {}
 
-  void add(const double* x, const double* y) {
-    Eigen::VectorXd row(products_.rows());
-    row[0] = 1;
-    for (int i = 0; i < inputs_; ++i) row[1 + i] = x[i];
-    for (int k = 0; k < outputs_; ++k) row[1 + inputs_ + k] = y[k];
-    products_.selfadjointView<Eigen::Lower>().rankUpdate(row);
-  }
+  void add(const double* x, const double* y);
   RegressionSums& operator+=(const RegressionSums& other) {
     products_ += other.products_;
     return *this;
@@ -68,11 +60,7 @@ class RegressionSums {
   /// Sums of 1, x, y and their products, symmetric.
   Eigen::MatrixXd products() const { return products_.selfadjointView<Eigen::Lower>(); }
   /// With these instead, of as many inputs and outputs; the lower triangle is read.
-  RegressionSums with(const Eigen::MatrixXd& products) const {
-    RegressionSums other(inputs_, outputs_);
-    other.products_ = products;
-    return other;
-  }
+  RegressionSums with(const Eigen::MatrixXd& products) const;
 
   int inputs() const noexcept { return inputs_; }
   int outputs() const noexcept { return outputs_; }
@@ -81,22 +69,10 @@ class RegressionSums {
   /// Means of x and of y, in this order.
   Eigen::VectorXd means() const { return products_.col(0).tail(inputs_ + outputs_) / rows(); }
   /// Covariances of x and y, divisor n.
-  Eigen::MatrixXd covariances() const {
-    const Eigen::VectorXd mean = means();
-    Eigen::MatrixXd all = products_.bottomRightCorner(inputs_ + outputs_, inputs_ + outputs_) / rows();
-    all.triangularView<Eigen::StrictlyUpper>() = all.transpose();
-    return all - mean * mean.transpose();
-  }
+  Eigen::MatrixXd covariances() const;
 
  private:
-  RegressionSums of_column(int from) const {
-    RegressionSums one(inputs_, 1);
-    const int to = 1 + inputs_;
-    one.products_.topLeftCorner(to, to) = products_.topLeftCorner(to, to);
-    for (int i = 0; i < to; ++i) one.products_(to, i) = from < i ? products_(i, from) : products_(from, i);
-    one.products_(to, to) = products_(from, from);
-    return one;
-  }
+  RegressionSums of_column(int from) const;
 
   int inputs_, outputs_;
   Eigen::MatrixXd products_;  ///< lower triangle
@@ -117,67 +93,15 @@ struct EigenPairs {
 /// Of a symmetric matrix, by Jacobi's rotations: Eigen's solver is faster when it runs, and takes each translation unit
 /// that fits a ridge four seconds longer to compile, for a case that is rare. Blocks along the diagonal with nothing
 /// between them, as equations without a common unknown make them, are turned one by one.
-inline EigenPairs eigen_pairs(const Eigen::MatrixXd& a) {
-  constexpr int most_sweeps = 60;  // a handful is usual: it converges quadratically
-  const Eigen::Index size = a.rows();
-  EigenPairs pairs{Eigen::VectorXd(size), Eigen::MatrixXd::Zero(size, size)};
-  const double negligible = size > 0 ? std::numeric_limits<double>::epsilon() * a.cwiseAbs().maxCoeff() : 0.0;
-  for (Eigen::Index first = 0, next = 0; first < size; first = next) {
-    next = first + 1;
-    for (Eigen::Index i = first; i < next; ++i) {
-      for (Eigen::Index j = next; j < size; ++j) {
-        if (a(i, j) != 0 || a(j, i) != 0) next = j + 1;
-      }
-    }
-    const Eigen::Index count = next - first;
-    Eigen::MatrixXd block = a.block(first, first, count, count), vectors = Eigen::MatrixXd::Identity(count, count);
-    for (int sweep = 0, turned = 1; sweep < most_sweeps && turned > 0; ++sweep) {
-      turned = 0;
-      for (Eigen::Index p = 0; p < count; ++p) {
-        for (Eigen::Index q = p + 1; q < count; ++q) {
-          if (!(std::abs(block(p, q)) > negligible)) continue;
-          Eigen::JacobiRotation<double> rotation;
-          rotation.makeJacobi(block, p, q);
-          block.applyOnTheLeft(p, q, rotation.adjoint());
-          block.applyOnTheRight(p, q, rotation);
-          vectors.applyOnTheRight(p, q, rotation);
-          ++turned;
-        }
-      }
-    }
-    pairs.values.segment(first, count) = block.diagonal();
-    pairs.vectors.block(first, first, count, count) = vectors;
-  }
-  return pairs;
-}
+EigenPairs eigen_pairs(const Eigen::MatrixXd& a);
 
 /// X of A X = B, of all that come closest to it the one of least norm: what A does not tell is 0. A: symmetric, no
 /// eigenvalue below 0 but by rounding; its diagonal of one order of magnitude, or 0.
-inline Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(a.rows());
-  const Eigen::LLT<Eigen::MatrixXd> factors(a);
-  // Far above rounding: what is left of a variance that the other columns explain is a difference of equals.
-  constexpr double enough = 1e4;
-  if (factors.info() == Eigen::Success && factors.rcond() > enough * rounding) return factors.solve(b);
-  const EigenPairs pairs = eigen_pairs(a);
-  const double largest = a.rows() > 0 ? pairs.values.maxCoeff() : 0.0;
-  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(b.rows(), b.cols());
-  for (Eigen::Index i = 0; i < a.rows(); ++i) {
-    if (!(pairs.values[i] > enough * rounding * largest)) continue;
-    const auto axis = pairs.vectors.col(i);
-    for (Eigen::Index k = 0; k < b.cols(); ++k) x.col(k) += axis.dot(b.col(k)) / pairs.values[i] * axis;
-  }
-  return x;
-}
+Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// Lower triangular W with W A W' = 1: the inverse of Cholesky's factor. A: symmetric, its lower triangle is read.
 /// Empty where A is not positive definite, by rounding too, or not finite.
-inline std::optional<Eigen::MatrixXd> whitening_of(const Eigen::MatrixXd& a) {
-  const Eigen::LLT<Eigen::MatrixXd> factors(a);
-  // Eigen takes NaN and infinity for positive; a row's reach its diagonal.
-  if (factors.info() != Eigen::Success || !factors.matrixLLT().diagonal().allFinite()) return {};
-  return factors.matrixL().solve(Eigen::MatrixXd::Identity(a.rows(), a.cols()));
-}
+std::optional<Eigen::MatrixXd> whitening_of(const Eigen::MatrixXd& a);
 
 /// sum of factor x weight over `terms` >= least, or = least.
 struct WeightBound {
@@ -187,11 +111,7 @@ struct WeightBound {
 };
 
 /// All rows of one group or more.
-inline RegressionSums total(const std::vector<RegressionSums>& groups) {
-  RegressionSums all = groups.front();
-  for (std::size_t i = 1; i < groups.size(); ++i) all += groups[i];
-  return all;
-}
+RegressionSums total(const std::vector<RegressionSums>& groups);
 
 /// The normal equations A X = B of the features that are taken; `columns` are these.
 struct RidgeSystem {
@@ -199,44 +119,10 @@ struct RidgeSystem {
   Eigen::MatrixXd a, b;
   Eigen::VectorXd mean;
 
-  RidgeSystem(const RegressionSums& sums, double penalty, const std::vector<bool>& taken) {
-    if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
-    if (!(penalty >= 0) || penalty > 1e12) {
-      throw std::invalid_argument("ridge: expected a penalty from 0, found " + std::to_string(penalty));
-    }
-    for (int i = 0; i < sums.inputs(); ++i) {
-      if (taken.empty() || taken[std::size_t(i)]) columns.push_back(i);
-    }
-    const Eigen::MatrixXd covariances = sums.covariances();
-    mean = sums.means();
-    const auto size = static_cast<Eigen::Index>(columns.size());
-    a.resize(size, size);
-    b.resize(size, sums.outputs());
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const int row = columns[std::size_t(i)];
-      for (Eigen::Index j = 0; j < size; ++j) a(i, j) = covariances(row, columns[std::size_t(j)]);
-      a(i, i) += penalty;
-      for (int k = 0; k < sums.outputs(); ++k) b(i, k) = covariances(row, sums.inputs() + k);
-    }
-  }
+  RidgeSystem(const RegressionSums& sums, double penalty, const std::vector<bool>& taken);
 
   /// The map of a solution X. A feature that is not taken has the weight 0.
-  AffineMap map(const RegressionSums& sums, const Eigen::MatrixXd& solution) const {
-    AffineMap map;
-    map.inputs = sums.inputs();
-    map.outputs = sums.outputs();
-    map.weights.assign(std::size_t(map.inputs) * std::size_t(map.outputs), 0.0);
-    for (int k = 0; k < map.outputs; ++k) {
-      double at_mean = 0;
-      for (std::size_t i = 0; i < columns.size(); ++i) {
-        const double weight = solution(Eigen::Index(i), k);
-        map.weights[std::size_t(k * map.inputs + columns[i])] = weight;
-        at_mean += weight * mean[columns[i]];
-      }
-      map.intercept.push_back(mean[map.inputs + k] - at_mean);
-    }
-    return map;
-  }
+  AffineMap map(const RegressionSums& sums, const Eigen::MatrixXd& solution) const;
 };
 
 }  // namespace detail
@@ -244,127 +130,28 @@ struct RidgeSystem {
 /// The map of these rows. `taken`: of `inputs` entries, false for a feature that gets no weight; empty takes all. A
 /// feature that stands still, or that the others repeat, does no harm, without a penalty too. Throws
 /// std::invalid_argument for no rows and for a penalty that is no number from 0.
-inline AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken = {}) {
-  const detail::RidgeSystem system(sums, penalty, taken);
-  return system.map(sums, detail::solve_symmetric(system.a, system.b));
-}
+AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken = {});
 
 /// Sum of (y - map(x))^2 over the rows and outputs of these sums.
-inline double squared_error(const RegressionSums& sums, const AffineMap& map) {
-  const Eigen::MatrixXd covariances = sums.covariances();
-  const Eigen::VectorXd mean = sums.means();
-  const int n = map.inputs;
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::Map<const RowMajor> w(map.weights.data(), map.outputs, n);
-  double sum = 0;
-  for (int k = 0; k < map.outputs; ++k) {
-    const Eigen::VectorXd of = w.row(k).transpose();
-    const double bias = mean[n + k] - map.intercept[std::size_t(k)] - of.dot(mean.head(n));
-    sum += covariances(n + k, n + k) - 2 * of.dot(covariances.col(n + k).head(n)) +
-           of.dot(covariances.topLeftCorner(n, n) * of) + bias * bias;
-  }
-  return sum * sums.rows();
-}
+double squared_error(const RegressionSums& sums, const AffineMap& map);
 
 /// Penalties that are tried: half decades, of features and outputs with standard deviation 1.
-inline std::vector<double> usual_penalties() {
-  return {1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0, 3.0, 10.0};
-}
+std::vector<double> usual_penalties();
 
 /// The penalty that predicts best what was left out: each group of rows (a trajectory with its repeats) by the fit to
 /// all others; of equals the largest. Throws std::invalid_argument for fewer than two groups or no candidate.
-inline double choose_penalty(const std::vector<RegressionSums>& groups,
-                             const std::vector<double>& candidates = usual_penalties(),
-                             const std::vector<bool>& taken = {}) {
-  if (groups.size() < 2) {
-    throw std::invalid_argument("ridge: expected two groups of rows or more, to leave one out in turn, found " +
-                                std::to_string(groups.size()));
-  }
-  if (candidates.empty()) throw std::invalid_argument("ridge: expected a penalty to choose, found none");
-  const RegressionSums all = detail::total(groups);
-  std::vector<double> errors(candidates.size(), 0.0);  // mean squared, over all rows
-  for (const RegressionSums& left_out : groups) {
-    RegressionSums others = all;
-    others -= left_out;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      errors[i] += squared_error(left_out, fit_ridge(others, candidates[i], taken)) / (all.rows() * all.outputs());
-    }
-  }
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < candidates.size(); ++i) {
-    const double error = errors[i], least = errors[best];
-    if (error < least || (!(error > least) && candidates[i] > candidates[best])) best = i;
-  }
-  return candidates[best];
-}
+double choose_penalty(const std::vector<RegressionSums>& groups,
+                      const std::vector<double>& candidates = usual_penalties(), const std::vector<bool>& taken = {});
 
 /// The map to the one output of `sums` under the bounds. `taken` as for fit_ridge(). Each choice of bounds that hold
 /// with equality is solved; of those that keep all bounds the one of least cost is taken, which is the minimum: the
 /// cost is convex. Throws std::invalid_argument for no rows, several outputs, a penalty that is no number from 0, more
 /// than 8 bounds, a bound of a feature that is not taken, and where no choice keeps all.
-inline AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken,
-                                   const std::vector<detail::WeightBound>& bounds) {
-  constexpr std::size_t most_bounds = 8;
-  if (sums.outputs() != 1) {
-    throw std::invalid_argument("ridge: expected one output, found " + std::to_string(sums.outputs()));
-  }
-  if (bounds.size() > most_bounds) throw std::invalid_argument("ridge: expected 8 bounds at most");
-  const detail::RidgeSystem system(sums, penalty, taken);
-  const auto size = static_cast<Eigen::Index>(system.columns.size());
-  const auto count = static_cast<Eigen::Index>(bounds.size());
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(size, 1 + count);  // the free fit, then each bound's
-  right.col(0) = system.b;
-  for (Eigen::Index k = 0; k < count; ++k) {
-    for (const auto& [feature, factor] : bounds[std::size_t(k)].terms) {
-      const auto column = std::find(system.columns.begin(), system.columns.end(), feature);
-      if (column == system.columns.end()) {
-        throw std::invalid_argument("ridge: a bound of feature " + std::to_string(feature) + ", not taken");
-      }
-      right(column - system.columns.begin(), 1 + k) = factor;
-    }
-  }
-  const Eigen::MatrixXd solution = detail::solve_symmetric(system.a, right);
-  const Eigen::MatrixXd by = right.rightCols(count), moved = solution.rightCols(count);
-  const Eigen::VectorXd free = solution.col(0);
-  constexpr double tolerance = 1e-9;  // of a bound that holds with equality, after rounding
-  Eigen::VectorXd best;
-  double least_cost = 0;
-  for (std::size_t active = 0; active < (std::size_t{1} << bounds.size()); ++active) {
-    std::vector<Eigen::Index> held;
-    bool allowed = true;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const bool is_held = (active >> k & 1U) != 0;
-      allowed = allowed && (is_held || !bounds[std::size_t(k)].pinned);
-      if (is_held) held.push_back(k);
-    }
-    if (!allowed) continue;
-    Eigen::VectorXd weights = free;
-    if (!held.empty()) {
-      const auto rows = static_cast<Eigen::Index>(held.size());
-      Eigen::MatrixXd gram(rows, rows), missing(rows, 1);
-      for (Eigen::Index i = 0; i < rows; ++i) {
-        for (Eigen::Index j = 0; j < rows; ++j)
-          gram(i, j) = by.col(held[std::size_t(i)]).dot(moved.col(held[std::size_t(j)]));
-        missing(i, 0) = bounds[std::size_t(held[std::size_t(i)])].least - by.col(held[std::size_t(i)]).dot(free);
-      }
-      const Eigen::MatrixXd forces = detail::solve_symmetric(gram, missing);
-      for (Eigen::Index i = 0; i < rows; ++i) weights += forces(i, 0) * moved.col(held[std::size_t(i)]);
-    }
-    bool keeps = true;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const double short_of = bounds[std::size_t(k)].least - by.col(k).dot(weights);
-      const double scale = by.col(k).cwiseAbs().dot(weights.cwiseAbs()) + std::abs(bounds[std::size_t(k)].least);
-      keeps = keeps && short_of <= tolerance * scale;
-    }
-    if (!keeps) continue;
-    const double cost = weights.dot(system.a * weights) - 2 * weights.dot(right.col(0));
-    if (best.size() == 0 || cost < least_cost) {
-      best = weights;
-      least_cost = cost;
-    }
-  }
-  if (best.size() == 0 && size > 0) throw std::invalid_argument("ridge: no weights keep all bounds");
-  return system.map(sums, best);
-}
+AffineMap fit_bounded_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken,
+                            const std::vector<detail::WeightBound>& bounds);
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/regression/impl/ridge.hpp"
+#endif

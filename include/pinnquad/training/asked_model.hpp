@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
 #include "pinnquad/training/trained_model.hpp"
 
@@ -79,11 +80,7 @@ void take_features(AskedModel& asked) {
 }
 
 /// Statistics of every feature, physical units.
-inline std::vector<ColumnStatistics> feature_statistics(const AskedModel& model, const RowSet& rows) {
-  return column_statistics({model.units.begin(), model.units.end()}, [&](const RowVisit& visit) {
-    model.each_exact_row(rows, [&](const Flight&, std::size_t, const double* x) { visit(x); });
-  });
-}
+std::vector<ColumnStatistics> feature_statistics(const AskedModel& model, const RowSet& rows);
 
 /// Without rows: of a model whose Inputs no row has.
 template <class Model>
@@ -126,3 +123,7 @@ AskedModel::AskedModel(const Model& model) : AskedModel(detail::asked_without_ro
 }
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/training/impl/asked_model.hpp"
+#endif

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/loss/context.hpp"
 
@@ -43,31 +44,7 @@ struct Resolution {
 ///   margin    0.2    0.5      0.1   0.05   0.05   0.05    0.2   0.5    0.5
 /// Any other unit: a millionth and a hundredth of |mean|, of 1 for a smaller mean. No smallest deviation is below a
 /// millionth of |mean|: a float's rounding.
-inline Resolution resolution_of(std::string_view unit, double mean) {
-  struct Named {
-    std::string_view unit;
-    Resolution resolution;
-  };
-  constexpr std::array<Named, 9> named = {{{"m/s^2", {0.01, 0.2}},
-                                           {"rad/s^2", {0.01, 0.5}},
-                                           {"m/s", {0.01, 0.1}},
-                                           {"rad/s", {0.001, 0.05}},
-                                           {"rad", {0.001, 0.05}},
-                                           {"1", {0.0001, 0.05}},
-                                           {"m", {0.01, 0.2}},
-                                           {"rev/s", {0.01, 0.5}},
-                                           {"V", {0.01, 0.5}}}};
-  constexpr double rounding = 1e-6;
-  const double magnitude = std::abs(mean);
-  for (const Named& known : named) {
-    if (known.unit != unit) continue;
-    Resolution resolution = known.resolution;
-    if (resolution.smallest_deviation < rounding * magnitude) resolution.smallest_deviation = rounding * magnitude;
-    return resolution;
-  }
-  const double scale = magnitude > 1 ? magnitude : 1.0;
-  return {rounding * scale, 0.01 * scale};
-}
+Resolution resolution_of(std::string_view unit, double mean);
 
 /// By how many half-widths of its range a feature of this unit reaches beyond it on both sides, in a model that is
 /// affine but for a bounded residual: a motion twice as great as any that was flown, of which squares and products are
@@ -103,35 +80,8 @@ struct ColumnStatistics {
 /// Statistics of every column of a table that is made row by row and never held, by two passes: `each_row(visit)` calls
 /// `visit(row)` for every row, the same ones in the same order each time, with a number for each of the units.
 using RowVisit = std::function<void(const double* row)>;
-inline std::vector<ColumnStatistics> column_statistics(const std::vector<std::string_view>& units,
-                                                       const std::function<void(const RowVisit&)>& each_row) {
-  const std::size_t size = units.size();
-  std::vector<ColumnStatistics> columns(size);
-  std::vector<double> sums(size), squares(size);
-  std::size_t rows = 0;
-  each_row([&](const double* row) {
-    for (std::size_t i = 0; i < size; ++i) sums[i] += row[i];
-    ++rows;
-  });
-  const double count = static_cast<double>(rows);
-  for (std::size_t i = 0; i < size; ++i) columns[i].mean = sums[i] / count;
-  bool first = true;
-  each_row([&](const double* row) {
-    for (std::size_t i = 0; i < size; ++i) {
-      ColumnStatistics& column = columns[i];
-      const double value = row[i];
-      squares[i] += (value - column.mean) * (value - column.mean);
-      column.lowest = first || value < column.lowest ? value : column.lowest;
-      column.highest = first || value > column.highest ? value : column.highest;
-    }
-    first = false;
-  });
-  for (std::size_t i = 0; i < size; ++i) {
-    columns[i].standard_deviation = std::sqrt(squares[i] / count);
-    columns[i].resolution = resolution_of(units[i], columns[i].mean);
-  }
-  return columns;
-}
+std::vector<ColumnStatistics> column_statistics(const std::vector<std::string_view>& units,
+                                                const std::function<void(const RowVisit&)>& each_row);
 
 /// Outputs of a sample with these features in the schema's physical units. `setting`: the context's output_setting().
 template <class ContextType, class FeatureVector, class Setting>
@@ -238,3 +188,7 @@ TrainingData<Scalar, ContextType::Features::size, ContextType::output_count> sta
 }
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/training/impl/training_data.hpp"
+#endif

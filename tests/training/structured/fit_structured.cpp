@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -57,27 +58,24 @@ StructuredFits fitted(const StructuredSettings& settings) {
 }
 
 /// The last job first, and a word of each call.
-struct Backwards {
-  std::string* calls;
-  template <class Job>
-  void run(std::size_t count, const Job& job) const {
+struct Backwards : FitWork {
+  explicit Backwards(std::string* words) : calls(words) {}
+  void run(std::size_t count, const std::function<bool(std::size_t)>& job) const override {
     *calls += "run " + std::to_string(count) + ", ";
     for (std::size_t i = count; i-- > 0;) static_cast<void>(job(i));
   }
-  bool goes_on(int) const { return true; }
-  void chose(const StructuredAltitude&) const { *calls += "chose, "; }
+  void chose(const StructuredAltitude&) const override { *calls += "chose, "; }
+
+  std::string* calls;
 };
 
-struct StopsAfter {
+struct StopsAfter : FitWork {
+  StopsAfter(int* epochs, bool* was_chosen) : epochs_left(epochs), chosen(was_chosen) {}
+  bool goes_on(int) const override { return --*epochs_left >= 0; }
+  void chose(const StructuredAltitude&) const override { *chosen = true; }
+
   int* epochs_left;
   bool* chosen;
-  template <class Job>
-  void run(std::size_t count, const Job& job) const {
-    for (std::size_t i = 0; i < count && job(i); ++i) {
-    }
-  }
-  bool goes_on(int) const { return --*epochs_left >= 0; }
-  void chose(const StructuredAltitude&) const { *chosen = true; }
 };
 
 }  // namespace
@@ -111,7 +109,7 @@ TEST_CASE("what runs the fits, and in which order, changes no model") {
   const StructuredSettings settings = quick(Altitude::by_validation);
   const StructuredFits in_turn = fitted(settings);
   const StructuredFits backwards =
-      fit_structured(split_for_training(flights()), quadrotor, settings, Backwards{&calls});
+      fit_structured(split_for_training(flights()), quadrotor, settings, Backwards(&calls));
   CHECK(calls == "run 2, chose, run 2, ");
   REQUIRE(backwards.models.size() == in_turn.models.size());
   for (std::size_t i = 0; i < in_turn.models.size(); ++i) {
@@ -125,7 +123,7 @@ TEST_CASE("what is stopped before the choice leaves nothing, and after it the mo
     int left = epochs;
     bool chosen = false;
     const StructuredFits fits =
-        fit_structured(split_for_training(flights()), quadrotor, settings, StopsAfter{&left, &chosen});
+        fit_structured(split_for_training(flights()), quadrotor, settings, StopsAfter(&left, &chosen));
     CHECK(chosen == (epochs > 4));
     CHECK(fits.models.size() == (epochs == 4 ? 0u : epochs == 8 ? 1u : 3u));
     if (fits.models.empty()) CHECK_THROWS_AS(static_cast<void>(fits.best()), std::logic_error);

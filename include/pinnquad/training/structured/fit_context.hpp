@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
 #include "pinnquad/model/certified_numbers.hpp"
@@ -18,15 +19,7 @@ namespace pinnquad {
 
 namespace detail {
 /// The places of so many features but the threes from these places on, ascending.
-inline std::vector<int> other_features(int count, const std::vector<int>& threes) {
-  std::vector<int> others;
-  for (int i = 0; i < count; ++i) {
-    bool other = true;
-    for (const int first : threes) other = other && (i < first || i > first + 2);
-    if (other) others.push_back(i);
-  }
-  return others;
-}
+std::vector<int> other_features(int count, const std::vector<int>& threes);
 }  // namespace detail
 
 /// The features of a set and the outputs of a schema: how rows show them, and how a training set standardises them.
@@ -107,3 +100,7 @@ FitContext fit_context(const ContextType& context) {
 }
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/training/structured/impl/fit_context.hpp"
+#endif

@@ -8,22 +8,62 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/data/split.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
-#include "pinnquad/training/structured/structured_fitter.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
+#include "pinnquad/training/structured/slopes_under_noise.hpp"
 
 namespace pinnquad {
 
 /// The training in words, for Provenance::loss.
 inline constexpr const char* structured_in_words =
     "least squares, slopes above 0; MSE of the residual, which sees no angular acceleration";
+
+/// The settings of fit_structured().
+struct StructuredSettings {
+  /// Whether the model is shown the altitude above ground. A model that is shown it must be given it in flight.
+  enum class Altitude {
+    by_validation,  ///< shown where it lowers the error on the validation rows much
+    yes,
+    no
+  };
+
+  ResidualTraining residual{};
+  bool pinned_slopes = false;  ///< the base's slopes are the airframe's in hover; false: learnt
+  Altitude altitude = Altitude::by_validation;
+  /// The validation rows are fitted too. Then whole flights, each left out in turn, choose alone, and no rows are left
+  /// that limits of trust could be found by.
+  bool fit_validation = false;
+  double least_altitude_gain = 0.2;  ///< by_validation: least share of the error that the altitude must take away
+  std::uint64_t first_seed = 1;
+  int seeds = 5;
+};
+
+/// A feature set as fit_structured() takes it.
+struct StructuredSet {
+  std::function<FitContext(const RowSet& training)> context;
+  ResidualKind residual;
+};
+
+/// The model of one seed: parameters of a MonotoneBase, or of a MonotonePredictor with its residual.
+struct StructuredFit {
+  std::vector<float> parameters;
+  bool has_residual = false;
+  bool with_altitude = false;
+  std::uint64_t seed = 0;
+  double validation_error = 0;  ///< mean absolute error of the commands on the validation rows, by least squares
+  double training_s = 0;        ///< wall-clock time of the residual's training
+  MeasuredSlopes slopes{};      ///< the same of all seeds
+};
 
 /// The choice of the altitude. Errors are those of the first seed; none where the rule is not by_validation.
 struct StructuredAltitude {
@@ -72,69 +112,41 @@ StructuredSet structured_set(const GivenAirframe& airframe) {
               false, detail::NoProjection{})};
 }
 
-namespace detail {
-
-/// Runs the fits of fit_structured() one after the other.
-struct InTurn {
-  template <class Job>
-  void run(std::size_t count, const Job& job) const {
+/// Runs the fits of fit_structured(): one after the other. A class of one's own, with threads, progress and interrupts,
+/// overrides what it does otherwise.
+class FitWork {
+ public:
+  virtual ~FitWork() = default;
+  /// Calls job(i) for each i below `count`, also from several threads. A job that returns false was stopped: no further
+  /// one need be started.
+  virtual void run(std::size_t count, const std::function<bool(std::size_t)>& job) const {
     for (std::size_t i = 0; i < count && job(i); ++i) {
     }
   }
-  bool goes_on(int /*epoch*/) const { return true; }
-  void chose(const StructuredAltitude&) const {}
+  /// Asked before each epoch of each fit; false stops it.
+  virtual bool goes_on(int /*epoch*/) const { return true; }
+  /// Called once, before the fits of the other seeds.
+  virtual void chose(const StructuredAltitude& /*choice*/) const {}
 };
-
-}  // namespace detail
 
 /// Fits a structured model from each seed. The first seed tries both feature sets where the altitude is chosen
 /// by_validation; `higher` is null where there is no such choice. Throws std::invalid_argument for rows that are too
 /// few.
-/// `work` runs the fits; without it they run one after the other. A class of one's own, with threads, progress and
-/// interrupts, has
-///   template <class Job> void run(std::size_t count, const Job& job);  // calls job(i) for each i below `count`, also
-///       // from several threads. A job that returns false was stopped: no further one need be started.
-///   bool goes_on(int epoch);                     // asked before each epoch of each fit; false stops it
-///   void chose(const StructuredAltitude&);   // called once, before the fits of the other seeds
-template <class Work = detail::InTurn>
 StructuredFitsIn<StructuredFit> fit_structured(const StructuredSet& without_altitude, const StructuredSet* higher,
                                                const RowSplit& split, const StructuredSettings& settings = {},
-                                               Work&& work = {}) {
-  using Altitude = StructuredSettings::Altitude;
-  std::optional<detail::StructuredFitter> fitters[2];  // without the altitude, with it
-  const Altitude rule = higher != nullptr ? settings.altitude : Altitude::no;
-  if (rule != Altitude::no) fitters[1].emplace(*higher, split, settings);
-  if (rule != Altitude::yes) fitters[0].emplace(without_altitude, split, settings);
-  const auto fit = [&](bool with_altitude, std::uint64_t seed) {
-    auto made = (*fitters[with_altitude ? 1 : 0])(seed, [&work](int epoch) { return work.goes_on(epoch); });
-    if (made) made->with_altitude = with_altitude;
-    return made;
-  };
+                                               const FitWork& work = FitWork());
 
-  StructuredFitsIn<StructuredFit> fits;
-  StructuredAltitude& choice = fits.altitude;
-  choice.taken = rule == Altitude::yes;
-  std::vector<std::optional<StructuredFit>> made(static_cast<std::size_t>(std::max(settings.seeds, 0)));
-  std::size_t next = 0;  // seed that is fitted next
-  if (rule == Altitude::by_validation && !made.empty()) {
-    std::optional<StructuredFit> tried[2];
-    work.run(2, [&](std::size_t i) { return (tried[i] = fit(i == 1, settings.first_seed)).has_value(); });
-    if (!tried[0] || !tried[1]) return fits;
-    choice.error_without = tried[0]->validation_error;
-    choice.error_with = tried[1]->validation_error;
-    choice.taken = *choice.error_with < (1 - settings.least_altitude_gain) * *choice.error_without;
-    made[next++] = std::move(tried[choice.taken ? 1 : 0]);
-  }
-  work.chose(choice);
-  const auto finish = [&](std::size_t i) {
-    made[next + i] = fit(choice.taken, settings.first_seed + static_cast<std::uint64_t>(next + i));
-    return made[next + i].has_value();
-  };
-  if (next < made.size()) work.run(made.size() - next, finish);
-  for (auto& one : made) {
-    if (one) fits.models.push_back(std::move(*one));
-  }
-  return fits;
-}
+namespace detail {
 
+/// All rows of some groups.
+RowSet rows_of(const std::vector<RowSet>& groups);
+
+/// The rows that a model is fitted to.
+RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings);
+
+}  // namespace detail
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/training/structured/impl/fit_structured.hpp"
+#endif

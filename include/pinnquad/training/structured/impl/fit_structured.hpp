@@ -1,67 +1,24 @@
 // SPDX-License-Identifier: MIT
-// The structured models of one feature set, a value: base, residual, slopes, and the choice whether the residual is
-// kept. fit_structured.hpp chooses between sets, and gives the models their types.
+// Bodies of fit_structured.hpp: the structured models of one feature set, and the choice between sets.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <random>
 #include <utility>
 #include <vector>
 
-#include "pinnquad/data/split.hpp"
 #include "pinnquad/training/structured/agreement.hpp"
-#include "pinnquad/training/structured/residual_fit.hpp"
-#include "pinnquad/training/structured/slopes_under_noise.hpp"
+#include "pinnquad/training/structured/fit_structured.hpp"
 
 namespace pinnquad {
-
-/// The settings of fit_structured().
-struct StructuredSettings {
-  /// Whether the model is shown the altitude above ground. A model that is shown it must be given it in flight.
-  enum class Altitude {
-    by_validation,  ///< shown where it lowers the error on the validation rows much
-    yes,
-    no
-  };
-
-  ResidualTraining residual{};
-  bool pinned_slopes = false;  ///< the base's slopes are the airframe's in hover; false: learnt
-  Altitude altitude = Altitude::by_validation;
-  /// The validation rows are fitted too. Then whole flights, each left out in turn, choose alone, and no rows are left
-  /// that limits of trust could be found by.
-  bool fit_validation = false;
-  double least_altitude_gain = 0.2;  ///< by_validation: least share of the error that the altitude must take away
-  std::uint64_t first_seed = 1;
-  int seeds = 5;
-};
-
-/// A feature set as fit_structured() takes it.
-struct StructuredSet {
-  std::function<FitContext(const RowSet& training)> context;
-  ResidualKind residual;
-};
-
-/// The model of one seed: parameters of a MonotoneBase, or of a MonotonePredictor with its residual.
-struct StructuredFit {
-  std::vector<float> parameters;
-  bool has_residual = false;
-  bool with_altitude = false;
-  std::uint64_t seed = 0;
-  double validation_error = 0;  ///< mean absolute error of the commands on the validation rows, by least squares
-  double training_s = 0;        ///< wall-clock time of the residual's training
-  MeasuredSlopes slopes{};      ///< the same of all seeds
-};
-
 namespace detail {
 
-/// All rows of some groups.
-inline RowSet rows_of(const std::vector<RowSet>& groups) {
+PINNQUAD_BODY RowSet rows_of(const std::vector<RowSet>& groups) {
   RowSet rows;
   for (const RowSet& group : groups) {
     for (const FlightRows& piece : group.pieces()) rows.add(*piece.flight, piece.rows);
@@ -69,8 +26,7 @@ inline RowSet rows_of(const std::vector<RowSet>& groups) {
   return rows;
 }
 
-/// The rows that a model is fitted to.
-inline RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings) {
+PINNQUAD_BODY RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings) {
   return settings.fit_validation ? rows_of({split.train, split.validation}) : split.train;
 }
 
@@ -264,4 +220,45 @@ class StructuredFitter {
 };
 
 }  // namespace detail
+
+PINNQUAD_BODY StructuredFitsIn<StructuredFit> fit_structured(const StructuredSet& without_altitude,
+                                                             const StructuredSet* higher, const RowSplit& split,
+                                                             const StructuredSettings& settings, const FitWork& work) {
+  using Altitude = StructuredSettings::Altitude;
+  std::optional<detail::StructuredFitter> fitters[2];  // without the altitude, with it
+  const Altitude rule = higher != nullptr ? settings.altitude : Altitude::no;
+  if (rule != Altitude::no) fitters[1].emplace(*higher, split, settings);
+  if (rule != Altitude::yes) fitters[0].emplace(without_altitude, split, settings);
+  const auto fit = [&](bool with_altitude, std::uint64_t seed) {
+    auto made = (*fitters[with_altitude ? 1 : 0])(seed, [&work](int epoch) { return work.goes_on(epoch); });
+    if (made) made->with_altitude = with_altitude;
+    return made;
+  };
+
+  StructuredFitsIn<StructuredFit> fits;
+  StructuredAltitude& choice = fits.altitude;
+  choice.taken = rule == Altitude::yes;
+  std::vector<std::optional<StructuredFit>> made(static_cast<std::size_t>(std::max(settings.seeds, 0)));
+  std::size_t next = 0;  // seed that is fitted next
+  if (rule == Altitude::by_validation && !made.empty()) {
+    std::optional<StructuredFit> tried[2];
+    work.run(2, [&](std::size_t i) { return (tried[i] = fit(i == 1, settings.first_seed)).has_value(); });
+    if (!tried[0] || !tried[1]) return fits;
+    choice.error_without = tried[0]->validation_error;
+    choice.error_with = tried[1]->validation_error;
+    choice.taken = *choice.error_with < (1 - settings.least_altitude_gain) * *choice.error_without;
+    made[next++] = std::move(tried[choice.taken ? 1 : 0]);
+  }
+  work.chose(choice);
+  const auto finish = [&](std::size_t i) {
+    made[next + i] = fit(choice.taken, settings.first_seed + static_cast<std::uint64_t>(next + i));
+    return made[next + i].has_value();
+  };
+  if (next < made.size()) work.run(made.size() - next, finish);
+  for (auto& one : made) {
+    if (one) fits.models.push_back(std::move(*one));
+  }
+  return fits;
+}
+
 }  // namespace pinnquad

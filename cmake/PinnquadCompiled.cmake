@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: MIT
+#
+# The bodies of include/pinnquad/**/impl, compiled once for tests, programs and Python (PINNQUAD_COMPILED, core/body.hpp): one
+# source a room. Never installed: a user's project includes them.
+file(GLOB bodies CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/include"
+  "${PROJECT_SOURCE_DIR}/include/pinnquad/*/impl/*.hpp" "${PROJECT_SOURCE_DIR}/include/pinnquad/*/*/impl/*.hpp")
+foreach(body IN LISTS bodies)
+  string(REGEX MATCH "^pinnquad/([a-z]+)/" room "${body}")
+  set(room ${CMAKE_MATCH_1})
+  list(APPEND compiled_rooms ${room})
+  string(APPEND bodies_of_${room} "#include \"${body}\"\n")
+endforeach()
+list(REMOVE_DUPLICATES compiled_rooms)
+add_library(pinnquad_compiled STATIC)
+foreach(room IN LISTS compiled_rooms)
+  set(source "${PROJECT_BINARY_DIR}/compiled/${room}.cpp")
+  file(CONFIGURE OUTPUT "${source}" CONTENT "${bodies_of_${room}}" @ONLY)
+  target_sources(pinnquad_compiled PRIVATE "${source}")
+endforeach()
+target_compile_options(pinnquad_compiled PRIVATE $<$<CONFIG:Release>:-O2>) # it trains
+set_target_properties(pinnquad_compiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
+target_compile_definitions(pinnquad_compiled PUBLIC PINNQUAD_COMPILED)
+target_link_libraries(pinnquad_compiled PUBLIC pinnquad::pinnquad PRIVATE pinnquad_flags)

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+// Bodies of motion_checks.hpp.
+#pragma once
+
+#include "pinnquad/data/motion_checks.hpp"
+
+namespace pinnquad {
+namespace detail {
+
+PINNQUAD_BODY std::string field_name(std::size_t first, Eigen::Index axis) {
+  return std::string(sample_field_names[first + static_cast<std::size_t>(axis)]);
+}
+
+/// "3.6 times"
+PINNQUAD_BODY std::string times_text(double factor) {
+  return number_text(factor < 1 ? std::round(factor * 1e4) / 1e4 : std::round(factor * 100) / 100) + " times";
+}
+
+PINNQUAD_BODY EulerAngles<double> angles_of(const Sample& sample) {
+  return {sample.roll_rad, sample.pitch_rad, sample.yaw_rad};
+}
+
+PINNQUAD_BODY Vector3<double> turn_vector(const Quaternion<double>& q) {
+  const double shorter_way = q.w < 0 ? -1 : 1;
+  const Vector3<double> v = shorter_way * Vector3<double>(q.x, q.y, q.z);
+  const double sine = v.norm();
+  return v * (sine > 1e-12 ? 2 * std::atan2(sine, shorter_way * q.w) / sine : 2.0);
+}
+
+PINNQUAD_BODY MotionPair turning_pair(const Flight& flight, const TurningReading& reading) {
+  const auto read = [&](std::size_t row) {
+    EulerAngles<double> angles = angles_of(flight[row]);
+    if (reading.degrees[0]) angles.roll_rad /= degrees_per_radian;
+    if (reading.degrees[1]) angles.pitch_rad /= degrees_per_radian;
+    if (reading.degrees[2]) angles.yaw_rad /= degrees_per_radian;
+    return angles;
+  };
+  const auto change = [&](std::size_t row) -> Vector3<double> {
+    const EulerAngles<double> begin = read(row), end = read(row + 1);
+    const Quaternion<double> q = from_euler(begin);
+    const Vector3<double> turn = turn_vector(conjugate(q) * from_euler(end)) * reading.rates_unit;
+    const double sr = std::sin(begin.roll_rad), cr = std::cos(begin.roll_rad);
+    switch (reading.rates) {
+      case TurningReading::of_world: return body_to_world(q, turn);
+      case TurningReading::of_enu_world: return swap_enu_ned(body_to_world(q, turn));
+      case TurningReading::of_angles: {
+        const double across = sr * turn[1] + cr * turn[2];
+        return {turn[0] + std::tan(begin.pitch_rad) * across, cr * turn[1] - sr * turn[2],
+                across / std::cos(begin.pitch_rad)};
+      }
+      case TurningReading::of_flu_body: return swap_flu_frd(turn);
+      case TurningReading::reversed: return -turn;
+      case TurningReading::of_body: break;
+    }
+    return turn;
+  };
+  return {flight.size(), [&](std::size_t row) { return flight[row].time_s; }, change,
+          [&](std::size_t row) -> const Vector3<double>& { return flight[row].body_rates_rad_s; }};
+}
+
+/// The sentence of a reading that is not the flight's: angles and rates share the blame for a factor of 57.
+PINNQUAD_BODY Implausible misread_turning(const TurningReading& reading, const std::string& evidence) {
+  for (std::size_t angle = 0; angle < 3; ++angle) {
+    if (!reading.degrees[angle]) continue;
+    const std::string name = field_name(angles_field, static_cast<Eigen::Index>(angle));
+    return {0, angles_field + angle, "radians in column " + name,
+            "degrees, by how they change with the body rates w_x, w_y, w_z (multiply by pi / 180), or these 57 times "
+            "too small" +
+                evidence};
+  }
+  if (reading.rates_unit > 1) {
+    return {0, rates_field, "radians per second in columns w_x, w_y, w_z",
+            "degrees per second, by how roll, pitch and yaw change (multiply by pi / 180), or these 57 times too "
+            "small" +
+                evidence};
+  }
+  return {0, rates_field, "rates in the body's axes in columns w_x, w_y, w_z",
+          turning_rate_texts[reading.rates] + evidence};
+}
+
+/// True where this body rate stands still: a sensor that has stopped fits no attitude, whatever its unit.
+PINNQUAD_BODY bool is_frozen_rate(const Flight& flight, Eigen::Index axis) {
+  const double first = flight.front().body_rates_rad_s[axis];
+  return std::all_of(flight.begin(), flight.end(), [&](const Sample& sample) {
+    return !(sample.body_rates_rad_s[axis] < first) && !(sample.body_rates_rad_s[axis] > first);
+  });
+}
+
+/// Rates that have stopped, if one of them should not have.
+PINNQUAD_BODY std::optional<Implausible> find_stopped_rate(const Flight& flight, const MotionBlocks& sums) {
+  constexpr double turns = 0.5, least = 1e-3;  // rad over a step
+  std::string stopped;
+  std::size_t first = 0;
+  bool contradicted = false;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (!is_frozen_rate(flight, axis)) continue;
+    const double both = sums.changes[axis] + sums.integrals[axis];
+    // roll and pitch alone turn less about another axis: a heading that a file holds at 0 is no gyro's fault
+    const bool moves = both > least * least * sums.steps && sums.changes[axis] > sums.changes.maxCoeff() / 16;
+    const bool plain = is_plain(sums.each([&](const MotionSums& block) { return block.changes[axis]; }));
+    contradicted = contradicted || (moves && plain && 2 * sums.products(axis, axis) < turns * both);
+    if (stopped.empty()) first = rates_field + static_cast<std::size_t>(axis);
+    stopped += (stopped.empty() ? "" : ", ") + field_name(rates_field, axis);
+  }
+  if (!contradicted) return std::nullopt;
+  return Implausible{0, first, "body rates that change, as the attitude does, in columns " + stopped,
+                     "the same in all " + std::to_string(flight.size()) + " rows"};
+}
+
+/// A rate that turns the attitude about another axis, or the other way.
+PINNQUAD_BODY Implausible wrong_rate(const MotionBlocks& sums, const AxisMistake& mistake) {
+  const std::size_t field = rates_field + static_cast<std::size_t>(mistake.column);
+  const std::string rate = field_name(rates_field, mistake.column), angle = field_name(angles_field, mistake.column);
+  const std::string evidence = ", correlation " + hundredths(sums.correlation(mistake.axis, mistake.column));
+  const std::string expected =
+      "the turning of roll, pitch and yaw about " + std::string(1, "xyz"[mistake.column]) + " in column " + rate;
+  if (mistake.axis == mistake.column) {
+    return {0, field, expected, "that negated" + evidence + " (" + rate + " or " + angle + " is negated)"};
+  }
+  return {0, field, expected,
+          std::string("that about ") + "xyz"[mistake.axis] + (mistake.negated ? " negated" : "") + evidence + " (" +
+              angle + " and " + field_name(angles_field, mistake.axis) + ", or " + rate + " and " +
+              field_name(rates_field, mistake.axis) + ", are exchanged)"};
+}
+
+}  // namespace detail
+
+PINNQUAD_BODY std::optional<detail::Implausible> find_turning_mistake(const Flight& flight) {
+  using namespace detail;
+  constexpr double follows = 0.6, clearly = 0.4;
+  const MotionPair pair = turning_pair(flight, {});
+  const MotionBlocks sums = pair.sums(turning_step_s);
+  const std::array<bool, 3> moving = sums.moving();
+  const double as_it_stands = sums.agreement(moving);
+  if (as_it_stands < agrees) {
+    if (auto stopped = find_stopped_rate(flight, sums)) return stopped;
+    double most = as_it_stands;
+    TurningReading best;
+    const auto judge = [&](const TurningReading& reading) {
+      const MotionBlocks so = turning_pair(flight, reading).sums(turning_step_s);
+      const double agreement = so.agreement(moving);
+      if (!(agreement > most) || !sums.agrees_less_than(so, moving)) return;
+      most = agreement;
+      best = reading;
+    };
+    for (unsigned choice = 1; choice < 16; ++choice) {
+      judge(
+          {{(choice & 1u) != 0, (choice & 2u) != 0, (choice & 4u) != 0}, (choice & 8u) != 0 ? degrees_per_radian : 1});
+    }
+    for (const auto rates : {TurningReading::of_world, TurningReading::of_enu_world, TurningReading::of_flu_body,
+                             TurningReading::of_angles, TurningReading::reversed}) {
+      judge({{}, 1, rates});
+    }
+    if (most > related && 1 - most < far_better * (1 - as_it_stands))
+      return misread_turning(best,
+                             "; agreement " + hundredths(as_it_stands) + " as it stands, " + hundredths(most) + " so");
+    if (const auto mistake = find_axis_mistake(sums, follows, clearly)) {
+      if (mistake->axis != mistake->column || mistake->negated) return wrong_rate(sums, *mistake);
+      constexpr double about = 1.5;
+      TurningReading reading;
+      if (mistake->factor > degrees_per_radian / about) reading.rates_unit = degrees_per_radian;
+      if (mistake->factor < about / degrees_per_radian) reading.degrees[0] = true;
+      if (reading.rates_unit > 1 || reading.degrees[0])
+        return misread_turning(reading, "; the rates are " + times_text(mistake->factor) + " the turning");
+    }
+  }
+  if (const auto late_s = pair.lateness_s(turning_step_s)) {
+    const bool angles = *late_s > 0;
+    return Implausible{0, angles ? angles_field : rates_field, "roll, pitch and yaw at the times of w_x, w_y and w_z",
+                       (angles ? "roll, pitch and yaw " : "w_x, w_y and w_z ") + late_text(*late_s) +
+                           ", by how the one turns with the other"};
+  }
+  return std::nullopt;
+}
+
+namespace detail {
+
+/// The first of three accelerations that follows another axis, or its own against the sign, or in another unit.
+PINNQUAD_BODY std::optional<Implausible> wrong_axis(const MotionBlocks& sums, std::size_t first_field,
+                                                    std::size_t first_integrated_field) {
+  constexpr double follows = 0.35, better = 0.25;  // correlations
+  const auto mistake = find_axis_mistake(sums, follows, better);
+  if (!mistake) return std::nullopt;
+  const std::size_t field = first_field + static_cast<std::size_t>(mistake->column);
+  const bool of_unit = mistake->axis == mistake->column && !mistake->negated;
+  const std::string found =
+      of_unit ? "about " + times_text(mistake->factor) + " that (its unit?)"
+              : "that of " + field_name(first_integrated_field, mistake->axis) + (mistake->negated ? " negated" : "");
+  return Implausible{0, field,
+                     "the derivative of " + field_name(first_integrated_field, mistake->column) + " " + "in column " +
+                         field_name(first_field, mistake->column),
+                     found + ", by how rates and velocity change from row to row"};
+}
+
+PINNQUAD_BODY std::array<Vector3<double>, acceleration_kinds> as_body_derivative(const Sample& sample) {
+  const Vector3<double> given = sample.linear_acceleration_m_s2;
+  const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
+  const Quaternion<double> q = from_euler(angles_of(sample));
+  const Vector3<double> gravity = world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>));
+  return {given, given - turning, given + gravity - turning, world_to_body(q, given) - turning};
+}
+
+PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, int turns) {
+  const auto velocity = [&](std::size_t row) {
+    const Quaternion<double> q = from_euler(angles_of(flight[row]));
+    Vector3<double> result = flight[row].velocity_m_s;
+    for (int turn = 0; turn < turns; ++turn) result = body_to_world(q, result);
+    return result;
+  };
+  return {flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+          [&](std::size_t row) -> Vector3<double> { return velocity(row + 1) - velocity(row); },
+          [&](std::size_t row) {
+            const Sample& sample = flight[row];
+            const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
+            return body_to_world(from_euler(angles_of(sample)),
+                                 Vector3<double>(sample.linear_acceleration_m_s2 + turning));
+          }};
+}
+
+/// Velocities that are negated along one axis of the world, of another unit, or late.
+PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& flight) {
+  constexpr double follows = 0.8, better = 0.25, straight = 0.9, alike = 1.3;
+  constexpr std::array<const char*, 3> along = {"north", "east", "down"};
+  const MotionPair pair = world_velocity_pair(flight);
+  const MotionBlocks sums = pair.sums(turning_step_s);
+  const std::string expected =
+      "a velocity that changes by the accelerations vdot_bx to vdot_bz in columns v_bx, v_by, v_bz";
+  if (const auto mistake = find_axis_mistake(sums, follows, better)) {
+    const Eigen::Index axis = mistake->column;
+    const auto own = [&](Eigen::Index of) { return sums.correlation(of, of); };
+    const Eigen::Index other = (axis + 1) % 3, third = (axis + 2) % 3;
+    if (mistake->negated && mistake->axis == axis && own(other) > follows && own(third) > follows) {
+      return Implausible{0, velocity_field, expected,
+                         std::string("one that is negated along ") + along[static_cast<std::size_t>(axis)] +
+                             ", correlation " + hundredths(own(axis))};
+    }
+    const auto factor = [&](Eigen::Index of) { return sums.changes[of] / sums.products(of, of); };
+    const double factors[] = {factor(0), factor(1), factor(2)};
+    const auto [least, most] = std::minmax_element(std::begin(factors), std::end(factors));
+    const bool one_unit = own(0) > straight && own(1) > straight && own(2) > straight && *most < alike * *least;
+    if (one_unit)
+      return Implausible{0, velocity_field, expected, times_text(factors[0]) + " that (km/h is 3.6 times m/s)"};
+  }
+  const std::array<bool, 3> moving = sums.moving();
+  const double as_it_stands = sums.agreement(moving);
+  for (const auto& [turns, text] : {std::pair{0, "velocities in the world's axes (turn them into the body)"},
+                                    {2, "velocities in the body's axes that were turned into them once more"}}) {
+    if (!(as_it_stands < agrees)) break;
+    const MotionBlocks turned = world_velocity_pair(flight, turns).sums(turning_step_s);
+    const double so = turned.agreement(moving);
+    if (!(so > related && 1 - so < far_better * (1 - as_it_stands) && sums.agrees_less_than(turned, moving))) continue;
+    return Implausible{0, velocity_field, expected,
+                       text + ("; agreement " + hundredths(as_it_stands)) + " as it stands, " + hundredths(so) + " so"};
+  }
+  if (const auto late_s = pair.lateness_s(turning_step_s)) {
+    return Implausible{0, *late_s > 0 ? velocity_field : linear_field, expected,
+                       (*late_s > 0 ? "velocities " : "accelerations ") + late_text(*late_s) + " against the other"};
+  }
+  return std::nullopt;
+}
+
+/// An altitude that falls where the velocity rises, or rises by another unit.
+PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& flight) {
+  constexpr double follows = 0.8;
+  const MotionPair pair(
+      flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+      [&](std::size_t row) { return Vector3<double>(flight[row + 1].altitude_m - flight[row].altitude_m, 0, 0); },
+      [&](std::size_t row) {
+        return Vector3<double>(-body_to_world(from_euler(angles_of(flight[row])), flight[row].velocity_m_s)[2], 0, 0);
+      });
+  const MotionBlocks sums = pair.sums(turning_step_s);
+  const auto mistake = find_axis_mistake(sums, follows, follows);
+  if (!mistake) return std::nullopt;
+  return Implausible{0, altitude_field, "a height that rises with the velocity v_bx to v_bz in column altitude",
+                     mistake->negated
+                         ? "one that falls with it, correlation " + hundredths(sums.correlation(0, 0)) +
+                               " (altitude or the velocity along down is negated)"
+                         : "a velocity of " + times_text(mistake->factor) + " its slope (km/h is 3.6 times m/s)"};
+}
+
+}  // namespace detail
+
+PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
+  using namespace detail;
+  constexpr double unexplained = 0.3, better = 0.25;
+  const auto sums = [&](const auto& value, const auto& rate) {
+    return MotionPair(
+               flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+               [&](std::size_t row) { return Vector3<double>(value(flight[row + 1]) - value(flight[row])); },
+               [&](std::size_t row) { return Vector3<double>(rate(flight[row])); })
+        .sums(acceleration_step_s);
+  };
+  const MotionBlocks angular = sums([](const Sample& sample) { return sample.body_rates_rad_s; },
+                                    [](const Sample& sample) { return sample.angular_acceleration_rad_s2; });
+  if (auto mistake = wrong_axis(angular, angular_field, rates_field)) return mistake;
+  if (auto mistake = find_velocity_mistake(flight)) return mistake;
+  if (auto mistake = find_altitude_mistake(flight)) return mistake;
+  std::vector<MotionBlocks> linear;
+  std::array<double, acceleration_kinds> left{};
+  const auto left_of = [](const MotionSums& block) {
+    return block.changes.sum() + block.integrals.sum() - 2 * block.products.trace();
+  };
+  for (std::size_t kind = 0; kind < acceleration_kinds; ++kind) {
+    linear.push_back(sums([](const Sample& sample) { return sample.velocity_m_s; },
+                          [kind](const Sample& sample) { return as_body_derivative(sample)[kind]; }));
+    left[kind] = left_of(linear[kind]);
+  }
+  const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
+  std::vector<double> gains = linear[0].each(left_of);
+  for (std::size_t block = 0; block < gains.size(); ++block) gains[block] -= left_of(linear[best].blocks[block]);
+  if (left[0] > unexplained * linear[0].changes.sum() && left[best] < better * left[0] && is_plain(gains)) {
+    return Implausible{
+        0, linear_field, "the derivative of the velocity in the body's axes in column " + field_name(linear_field, 0),
+        std::string(acceleration_kind_texts[best]) + ", by how rates and velocity change from row to row"};
+  }
+  return wrong_axis(linear[0], linear_field, velocity_field);
+}
+
+}  // namespace pinnquad

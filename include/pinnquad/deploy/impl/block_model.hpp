@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+// Bodies of block_model.hpp.
+#pragma once
+
+#include "pinnquad/deploy/block_model.hpp"
+
+namespace pinnquad {
+namespace detail {
+
+PINNQUAD_BODY bool is_affine(const RunTimeNetwork& network) {
+  for (int i = 0; i < network.part_count(); ++i) {
+    const RunTimePart& part = network.part(i);
+    if (part.bounded || part.path_bounded) return false;
+    for (int layer = 0; layer < part.layer_count; ++layer) {
+      if (part.layers[layer].outputs == 0) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace detail
+
+template <class Scalar>
+void BlockModel::open_as() {
+  auto model = std::make_unique<RunTimeModel<Scalar>>();
+  BlockFault fault;
+  if (RunTimeModel<Scalar>::open(data(), length_, *model, fault) != Status::ok) {
+    refuse(fault.expected, *fault.found == 0 ? number_text(fault.number) : fault.found);
+  }
+  derivatives_ = ExactDerivatives(*model);
+  const bool says_signs = model->records().slope_signs != nullptr;
+  const unsigned char* stated = model->records().certificate;
+  model_ = std::unique_ptr<const RunTimeModel<Scalar>>(std::move(model));
+  require_words();
+  if (!(golden_difference() <= golden_tolerance)) refuse("golden commands that its weights give", "others");
+  if (!says_signs && stated == nullptr) return;
+  const std::optional<Certificate> proof = certificate();
+  if (proof && !proof->proven()) refuse("slopes and bounds of which its certificate is proven", "others");
+  if (stated == nullptr) return;
+  if (!proof || !detail::states_certificate(stated, *proof)) refuse(detail::StatedNumber::certificate, "others");
+}
+
+PINNQUAD_BODY void BlockModel::open() {
+  const bool is_double =
+      length_ >= ModelBlockHeader::size && detail::read_u32(data() + ModelBlockHeader::scalar_bytes) == sizeof(double);
+  is_double ? open_as<double>() : open_as<float>();
+}
+
+PINNQUAD_BODY std::uint32_t BlockModel::checksum() const noexcept {
+  return detail::read_u32(data() + detail::read_u32(data() + ModelBlockHeader::length) -
+                          ModelBlockHeader::checksum_size);
+}
+
+PINNQUAD_BODY std::string BlockModel::provenance(const char* word) const {
+  return with([&](const auto& model) { return printable(model.provenance(word)); });
+}
+
+PINNQUAD_BODY std::string BlockModel::answer() const {
+  return with([](const auto& model) { return printable(model.records().answer); });
+}
+
+PINNQUAD_BODY std::string BlockModel::schema() const {
+  return with([](const auto& model) { return printable(model.schema()); });
+}
+
+PINNQUAD_BODY const RunTimeNetwork& BlockModel::network() const {
+  return with([](const auto& model) -> const RunTimeNetwork& { return model.network(); });
+}
+
+PINNQUAD_BODY const RunTimeFeatures& BlockModel::features() const {
+  return with([](const auto& model) -> const RunTimeFeatures& { return model.features(); });
+}
+
+PINNQUAD_BODY std::string BlockModel::airframe_name() const {
+  return with([](const auto& model) { return printable(model.records().vehicle_name); });
+}
+
+PINNQUAD_BODY const Airframe<double>& BlockModel::airframe() const {
+  return with([](const auto& model) -> const Airframe<double>& { return model.airframe(); });
+}
+
+PINNQUAD_BODY std::uint64_t BlockModel::contents_hash() const {
+  return with([](const auto& model) { return model.records().contents_hash; });
+}
+
+PINNQUAD_BODY std::vector<std::string> BlockModel::feature_names() const {
+  std::vector<std::string> names;
+  for (int i = 0; i < features().size(); ++i) names.emplace_back(features()[i].name);
+  return names;
+}
+
+PINNQUAD_BODY std::vector<ColumnName> BlockModel::columns() const {
+  std::vector<ColumnName> columns;
+  for (int i = 0; i < features().column_count(); ++i) {
+    const auto [column, unit] = features().column(i);
+    columns.push_back({std::string(column), std::string(unit)});
+  }
+  return columns;
+}
+
+PINNQUAD_BODY bool BlockModel::knows_its_features() const {
+  return with([](const auto& model) {
+    bool known = true;
+    for (int i = 0; i < model.features().size(); ++i) {
+      known = known && shown_acceleration(model, i) != ShownAcceleration::unknown;
+    }
+    return known;
+  });
+}
+
+PINNQUAD_BODY bool BlockModel::is_axis_commands() const {
+  return with([](const auto& model) { return model.outputs().is_axis_commands(); });
+}
+
+PINNQUAD_BODY bool BlockModel::has_affine_schema() const {
+  bool curved = false;
+  for (const auto& rotor : airframe().rotors) curved = curved || rotor.thrust_curve > 0;
+  return with([&](const auto& model) { return model.outputs().is_affine(curved); });
+}
+
+PINNQUAD_BODY std::vector<double> BlockModel::envelope_lower() const {
+  return with([](const auto& m) { return in_double(m.scales().lower, m.features().size()); });
+}
+
+PINNQUAD_BODY std::vector<double> BlockModel::envelope_upper() const {
+  return with([](const auto& m) { return in_double(m.scales().upper, m.features().size()); });
+}
+
+PINNQUAD_BODY int BlockModel::golden_count() const {
+  return with([](const auto& model) { return model.golden_count(); });
+}
+
+PINNQUAD_BODY std::vector<double> BlockModel::golden_features(int vector) const {
+  return with([&](const auto& m) { return in_double(m.golden_features(vector), m.features().size()); });
+}
+
+PINNQUAD_BODY double BlockModel::golden_difference() const {
+  return with([](const auto& model) {
+    std::vector<ScalarOf<decltype(model)>> work(model.workspace());
+    return static_cast<double>(model.golden_difference(work.data()));
+  });
+}
+
+PINNQUAD_BODY std::optional<Certificate> BlockModel::certificate() const {
+  std::vector<double> work;
+  for (int i = 0; i < network().part_count(); ++i) work.resize(work.size() + path_workspace(network().part(i)));
+  Certificate certificate;
+  const bool has_structure =
+      with([&](const auto& model) { return run_time_certificate(model, work.data(), certificate); });
+  return has_structure ? std::optional(certificate) : std::nullopt;
+}
+
+PINNQUAD_BODY std::optional<ProvenSigns> BlockModel::proven_signs() const {
+  if (angular_accelerations().empty()) return {};
+  ProvenSigns proof;
+  if (const std::optional<Certificate> structure = certificate(); structure && structure->proven()) {
+    if (network().part(network().part_count() - 1).path_bounded) proof.by = SignProof::path_bound;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      proof.slope[axis] = structure->slope[axis];
+      proof.held_slope[axis] = structure->held_slope[axis];
+    }
+    return proof;
+  }
+  if (!has_affine_schema() || !detail::is_affine(network()) || !knows_its_features()) return {};
+  proof.by = SignProof::affinity;
+  const std::vector<double> anywhere = golden_features(0);
+  proof.slope = derivatives(anywhere, false);
+  proof.held_slope = derivatives(anywhere, true);
+  const auto vehicle = detail::certified_vehicle<AxisCommandOutputs>(airframe());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double floor = std::max(vehicle.least_slope[axis], 0.0);
+    if (!(proof.slope[axis] > floor && proof.held_slope[axis] > floor)) return {};
+  }
+  return proof;
+}
+
+PINNQUAD_BODY Commands<double> BlockModel::commands(const std::vector<double>& x) const {
+  return with([&](const auto& model) {
+    using Scalar = ScalarOf<decltype(model)>;
+    const std::vector<Scalar> own(x.begin(), x.end());
+    std::vector<Scalar> work(model.workspace());
+    Commands<Scalar> u{};
+    model.commands(own.data(), u.data(), work.data());
+    return in_double_commands(u);
+  });
+}
+
+PINNQUAD_BODY AxisDerivatives BlockModel::derivatives(const std::vector<double>& x, bool held) const {
+  return derivatives_(x.data(), held);
+}
+
+PINNQUAD_BODY void BlockModel::require_words() const {
+  using detail::StatedNumber;
+  const auto require_whole = [this](const char* word, StatedNumber number) {
+    const std::string text = provenance(word);
+    const bool whole = std::all_of(text.begin(), text.end(), [](char c) { return '0' <= c && c <= '9'; });
+    if (!whole || text.size() > 20) refuse(number, text);
+  };
+  require_whole("seed", StatedNumber::seed);
+  require_whole("epochs", StatedNumber::epochs);
+  double figures[2]{};
+  bool stated = true;
+  for (const char* word : {"test_r_squared", "linear_regression_r_squared"}) {
+    const std::string text = provenance(word);
+    double& figure = figures[word[0] == 't' ? 0 : 1];
+    stated = stated && !text.empty();
+    if (text.empty()) continue;
+    if (!parse_number(text, figure) || !is_finite(figure) || !detail::in_range<StatedNumber::r_squared>(figure)) {
+      refuse(StatedNumber::r_squared, text);
+    }
+  }
+  const bool borne_out = with([&](const auto& model) {
+    const auto& said = model.records();
+    return !said.has_verdict ||
+           detail::bears_out(said.worse_than_mean, said.beats_linear_regression, figures[0], figures[1]);
+  });
+  if (stated && !borne_out) refuse(StatedNumber::judged_figures, "another");
+}
+
+PINNQUAD_BODY void BlockModel::refuse(detail::StatedNumber number, const std::string& found) const {
+  refuse(detail::stated_ranges[static_cast<std::size_t>(number)].expected, found);
+}
+
+PINNQUAD_BODY void BlockModel::refuse(const std::string& expected, const std::string& found) const {
+  throw InputError(path_, 0, 0, expected, found);
+}
+
+PINNQUAD_BODY void BlockModel::answer(const RowSet& rows,
+                                      const std::function<void(std::size_t, const AnsweredRow&)>& take,
+                                      bool with_derivatives) const {
+  with([&](const auto& model) {
+    using Scalar = ScalarOf<decltype(model)>;
+    const auto taps = std::size_t(model.features().window().taps), size = std::size_t(model.features().size());
+    std::vector<RunTimeInputs<Scalar>> inputs(taps);
+    std::vector<RunTimeInputs<double>> exact(taps);
+    std::vector<Scalar> x(size), work(model.workspace());
+    std::vector<double> exact_x(size);
+    AnsweredRow answered;
+    std::size_t first = 0;
+    for (const FlightRows& piece : rows.pieces()) {
+      const detail::RunTimeFlightInputs<Scalar> own(model.features(), piece);
+      const detail::RunTimeFlightInputs<double> in_double(model.features(), piece);
+      for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
+        if (!own.read(row, inputs.data())) continue;
+        model.features().extract(static_cast<const RunTimeInputs<Scalar>*>(inputs.data()), x.data());
+        Commands<Scalar> u{};
+        model.commands(x.data(), u.data(), work.data());
+        answered.features.assign(x.begin(), x.end());
+        answered.commands = in_double_commands(u);
+        answered.inside_envelope = model.inside_envelope(x.data());
+        if (with_derivatives && in_double.read(row, exact.data())) {
+          model.features().extract(static_cast<const RunTimeInputs<double>*>(exact.data()), exact_x.data());
+          answered.derivatives = derivatives_(exact_x.data());
+        }
+        take(first + row - piece.rows.begin, answered);
+      }
+      first += piece.rows.size();
+    }
+  });
+}
+
+}  // namespace pinnquad

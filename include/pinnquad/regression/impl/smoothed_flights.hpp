@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// Bodies of smoothed_flights.hpp.
+#pragma once
+
+#include "pinnquad/regression/smoothed_flights.hpp"
+
+namespace pinnquad {
+
+PINNQUAD_BODY SmoothedFlights::SmoothedFlights(const RowSet& rows, double window_s) : period_s_(sample_period_s(rows)) {
+  if (!(period_s_ > 0)) return;
+  half_ = std::max<std::size_t>(4, static_cast<std::size_t>(std::lround(0.5 * window_s / period_s_)));
+  stride_ = std::max<std::size_t>(1, half_ / 4);
+  make_weights();
+  for (const FlightRows& piece : rows.pieces()) take(piece);
+  const auto moves = [](const Series& series) {
+    return std::any_of(series.begin(), series.end(), [](double v) { return v != 0; });
+  };
+  if (std::none_of(velocities_.begin(), velocities_.end(), moves)) kinematic_forces_ = {};
+}
+
+PINNQUAD_BODY std::array<SmoothedFlights::Series, rotor_count> SmoothedFlights::thrust_fractions(
+    double curve, const RotorResponse& response) const {
+  std::array<Series, rotor_count> result;
+  constexpr double longest_step_s = 0.005;
+  const auto parts = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(period_s_ / longest_step_s - 1e-9)));
+  const double step = 1 / static_cast<double>(parts);  // in rows
+  // what is left of a distance at the end of a step, and in the mean over it
+  struct Approach {
+    AllRotors end, mean;
+  };
+  const auto approach = [step_s = period_s_ * step](double lag_s) {
+    const double end = lag_factor(lag_s, step_s);
+    return Approach{AllRotors(end), AllRotors((1 - end) * lag_s / step_s)};
+  };
+  const Approach rise = approach(response.rise_s), fall = approach(response.fall_s);
+  const double late = response.delay_s / period_s_;
+  std::vector<AllRotors> thrust;
+  for (const Stretch& stretch : stretches_) {
+    const auto wanted_at = [&](double row) {
+      return thrust_fraction(AllRotors(curve), clip_command(at_row(stretch.commands, row - late)));
+    };
+    thrust.resize(stretch.commands.size() - 1);
+    AllRotors now = wanted_at(0);
+    for (std::size_t row = 0; row < thrust.size(); ++row) {
+      AllRotors sum(0);
+      for (std::size_t part = 0; part < parts; ++part) {
+        const AllRotors wanted = wanted_at(static_cast<double>(row) + (static_cast<double>(part) + 0.5) * step);
+        const auto rising = wanted >= now;
+        sum += wanted + select(rising, rise.mean, fall.mean) * (now - wanted);
+        now = wanted + select(rising, rise.end, fall.end) * (now - wanted);
+      }
+      thrust[row] = sum * AllRotors(step);
+    }
+    smooth(thrust, stretch.instants, stretch.first, [&result](const AllRotors& fractions) {
+      for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
+        result[rotor].push_back(fractions.lane(static_cast<int>(rotor)));
+      }
+    });
+  }
+  return result;
+}
+
+PINNQUAD_BODY void SmoothedFlights::make_weights() {
+  constexpr double tau = 6.283185307179586;
+  const std::size_t count = 2 * half_;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+    weights_.push_back((1 - std::cos(tau * share)) / static_cast<double>(count));
+  }
+}
+
+PINNQUAD_BODY SmoothedFlights::AllRotors SmoothedFlights::at_row(const std::vector<AllRotors>& u, double row) noexcept {
+  const auto last = static_cast<double>(u.size() - 1);
+  if (row <= 0) return u.front();
+  if (row >= last) return u.back();
+  const auto i = static_cast<std::size_t>(row);
+  const AllRotors s(row - static_cast<double>(i)), two(2), three(3), four(4), five(5);
+  const auto [a, b, c, d] = around(u, i);
+  return b + AllRotors(0.5) * s * (c - a + s * (two * a - five * b + four * c - d + s * (three * (b - c) + d - a)));
+}
+
+PINNQUAD_BODY SmoothedFlights::Series SmoothedFlights::means(const Series& u) {
+  Series result(u.size() - 1);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const auto [a, b, c, d] = around(u, i);
+    result[i] = (13 * (b + c) - a - d) / 24;
+  }
+  return result;
+}
+
+PINNQUAD_BODY SmoothedFlights::Series SmoothedFlights::differences(const Series& u) const {
+  Series result(u.size() - 1);
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = (u[i + 1] - u[i]) / period_s_;
+  return result;
+}
+
+PINNQUAD_BODY void SmoothedFlights::take(const FlightRows& piece) {
+  const Flight& flight = *piece.flight;
+  std::size_t begin = piece.rows.begin;
+  for (std::size_t row = piece.rows.begin + 1; row <= piece.rows.end; ++row) {
+    if (row < piece.rows.end && flight[row].time_s - flight[row - 1].time_s < 1.5 * period_s_) continue;
+    take_stretch(flight, {begin, row});
+    begin = row;
+  }
+}
+
+PINNQUAD_BODY void SmoothedFlights::take_stretch(const Flight& flight, const IndexRange& rows) {
+  const auto settling = static_cast<std::size_t>(std::ceil(settling_s / period_s_));
+  const std::size_t first = settling + half_;
+  if (rows.size() < first + half_ + 1) return;
+  Stretch stretch;
+  stretch.first = first;
+  stretch.instants = (rows.size() - 1 - half_ - first) / stride_ + 1;
+  std::array<Series, 18> series;
+  const ExtraColumn* const battery = flight.column("battery_voltage");
+  Series voltage;
+  for (std::size_t row = rows.begin; row < rows.end; ++row) {
+    const Sample& sample = flight[row];
+    AllRotors commands(0);
+    for (std::size_t k = 0; k < rotor_count; ++k) commands.set_lane(static_cast<int>(k), sample.commands[k]);
+    stretch.commands.push_back(commands);
+    const MotionInputs<double> motion = sample_inputs<MotionInputs<double>>(sample);
+    const Vector3<double> force = SpecificForce::of(motion);
+    const Vector3<double>& w = sample.body_rates_rad_s;
+    const Vector3<double>& v = sample.velocity_m_s;
+    const Vector3<double> but_derivative = force - sample.linear_acceleration_m_s2;  // omega x v - R^T g
+    for (int i = 0; i < 3; ++i) {
+      const auto axis = static_cast<std::size_t>(i);
+      series[axis].push_back(w[i]);
+      series[3 + axis].push_back(w[(i + 1) % 3] * w[(i + 2) % 3]);
+      series[6 + axis].push_back(force[i]);
+      series[9 + axis].push_back(v[i]);
+      series[12 + axis].push_back(std::abs(v[i]) * v[i]);
+      series[15 + axis].push_back(but_derivative[i]);
+    }
+    if (battery != nullptr) voltage.push_back(battery->values[row]);
+  }
+  const auto add = [&](const Series& intervals, Series& result) {
+    smooth(intervals, stretch.instants, first, [&result](double sum) { result.push_back(sum); });
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    add(means(series[axis]), rates_[axis]);
+    add(differences(series[axis]), derivatives_[axis]);
+    add(means(series[3 + axis]), products_[axis]);
+    add(means(series[6 + axis]), forces_[axis]);
+    add(means(series[9 + axis]), velocities_[axis]);
+    add(means(series[12 + axis]), squares_[axis]);
+    Series kinematic = means(series[15 + axis]);
+    const Series derivative = differences(series[9 + axis]);
+    for (std::size_t i = 0; i < kinematic.size(); ++i) kinematic[i] += derivative[i];
+    add(kinematic, kinematic_forces_[axis]);
+  }
+  has_voltage_ = has_voltage_ && battery != nullptr;
+  if (has_voltage_) add(means(voltage), voltage_);
+  if (!has_voltage_) voltage_.clear();
+  stretch_.insert(stretch_.end(), stretch.instants, stretches_.size());
+  stretches_.push_back(std::move(stretch));
+}
+
+}  // namespace pinnquad
