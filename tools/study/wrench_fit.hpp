@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Trains a residual wrench (control/wrench_network.hpp) on flights: what the motion of each row has beyond the rigid
+// Trains a residual wrench (study/wrench_network.hpp) on flights: what the motion of each row has beyond the rigid
 // body under its rotors, in the air of the paper's site.
 #pragma once
 
@@ -16,7 +16,6 @@
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/control/rotor_follower.hpp"
-#include "pinnquad/control/wrench_network.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/adam.hpp"
@@ -25,8 +24,11 @@
 #include "pinnquad/training/optimizer.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/trainer.hpp"
+#include "study/wrench_network.hpp"
 
-namespace pinnquad {
+namespace study {
+
+using namespace pinnquad;
 
 /// The training of a residual wrench.
 struct WrenchTraining {
@@ -49,7 +51,8 @@ inline const std::vector<ColumnName>& rotor_columns() {
 
 /// The flight with its rotors' state as columns: its commands behind the airframe's lag, less the part of it that was
 /// taken out of the commands. Throws std::invalid_argument for rows that are too far apart for that lag.
-inline Flight with_rotor_states(const Flight& flight, const Airframe<double>& airframe, double lag_removed_s = 0) {
+inline Flight with_rotor_states(const Flight& flight, const pinnquad::Airframe<double>& airframe,
+                                double lag_removed_s = 0) {
   const double lag_s = std::max(0.0, airframe.rise_time_constant_s(0) - lag_removed_s);
   const double period_s = sample_period_s(RowSet(flight, {0, flight.size()}));
   if (lag_s > 0 && !(period_s > 0 && period_s <= lag_s)) {
@@ -85,7 +88,7 @@ inline Flight with_rotor_states(const Flight& flight, const Airframe<double>& ai
 /// The part of a row's motion that is not of rotors and gravity: force / mass and angular acceleration, body.
 inline Accelerations<double> residual_wrench_of(const Sample& sample, const Commands<double>& rotors,
                                                 const Quadrotor<double, StandardAtmosphere>& vehicle) {
-  const Airframe<double>& airframe = vehicle.airframe();
+  const pinnquad::Airframe<double>& airframe = vehicle.airframe();
   const auto motion = sample_inputs<MotionInputs<double>>(sample);
   State<double> state;
   state.position_m[2] = vehicle.site().ground_z_m - sample.altitude_m;
@@ -99,7 +102,7 @@ namespace detail {
 
 /// Calls `visit(x, y)` for each row: features, and the outputs, which are against the residual.
 template <class Visit>
-void each_wrench_row(const RowSet& rows, const Airframe<double>& airframe, const Visit& visit) {
+void each_wrench_row(const RowSet& rows, const pinnquad::Airframe<double>& airframe, const Visit& visit) {
   const Quadrotor<double, StandardAtmosphere> vehicle(airframe, paper_site<double>());
   each_features<WrenchFeatures, double>(rows, [&](const Flight& flight, std::size_t row, const auto& x) {
     const Accelerations<double> residual = residual_wrench_of(flight[row], {x[6], x[7], x[8], x[9]}, vehicle);
@@ -121,9 +124,9 @@ struct WrenchJudgement {
 };
 /// Of a model that was fitted, on rows that it has not seen.
 inline WrenchJudgement judge_wrench(const WrenchModel& model, const RowSet& rows) {
-  const detail::Scales<float> scales{model.input.mean.data(),     model.input.standard_deviation.data(),
-                                     model.output.mean.data(),    model.output.standard_deviation.data(),
-                                     model.envelope_lower.data(), model.envelope_upper.data()};
+  const pinnquad::detail::Scales<float> scales{model.input.mean.data(),     model.input.standard_deviation.data(),
+                                               model.output.mean.data(),    model.output.standard_deviation.data(),
+                                               model.envelope_lower.data(), model.envelope_upper.data()};
   const WrenchNetwork<WrenchNet> network(scales, model.network.parameters.data());
   std::array<double, 6> sum{}, squares{}, errors{};
   double count = 0;
@@ -163,7 +166,7 @@ WrenchModel fit_wrench(const RowSet& training, const RowSet& validation, const G
   WrenchContext context{airframe};
   std::vector<std::string_view> units(WrenchFeatures::units.begin(), WrenchFeatures::units.end());
   units.insert(units.end(), AccelerationOutputs::units.begin(), AccelerationOutputs::units.end());
-  const auto columns = detail::column_statistics(units, [&](const detail::RowVisit& visit) {
+  const auto columns = pinnquad::detail::column_statistics(units, [&](const pinnquad::detail::RowVisit& visit) {
     detail::each_wrench_row(training, value, [&](const auto& x, const auto& y) {
       std::array<double, 16> row{};
       std::copy(y.begin(), y.end(), std::copy(x.begin(), x.end(), row.begin()));
@@ -208,4 +211,4 @@ WrenchModel fit_wrench(const RowSet& training, const RowSet& validation, const G
   return make_trained_model(best.network(), context, training);
 }
 
-}  // namespace pinnquad
+}  // namespace study
