@@ -5,7 +5,6 @@
 #include "pinnquad/flight.hpp"  // first: it says which C++ is needed
 
 #include "pinnquad/control/autopilot/recorded_controller.hpp"
-#include "pinnquad/control/mppi.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/dataset.hpp"
@@ -55,9 +54,7 @@
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/optimizer.hpp"
 #include "pinnquad/training/structured/fit_structured.hpp"
-#include "pinnquad/training/structured/path_bounded_fit.hpp"
 #include "pinnquad/training/trained_model.hpp"
 #include "pinnquad/training/trainer.hpp"
 #include "pinnquad/training/training_data.hpp"
-#include "pinnquad/training/wrench_fit.hpp"
 #include "pinnquad/vehicle/lanes_of_vehicles.hpp"

@@ -16,8 +16,8 @@
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/initialization.hpp"
-#include "pinnquad/training/structured/path_bounded_fit.hpp"
 #include "pinnquad/training/trainer.hpp"
+#include "study/path_bounded_fit.hpp"
 
 namespace {
 
@@ -109,7 +109,7 @@ void write_structured(const Flight& flight, const std::string& folder) {
   const AffineMap map = fit_monotone_base(context, training);
   const auto fit = fit_monotone<Residual>(context, training, validation, map, short_training(), engine, on);
   write_structured(fit.predictor, context, training, flight, folder + "/structured", "StructuredModel");
-  const auto seeing = fit_path_bounded<Seeing>(context, training, validation, map, short_training(), engine, on);
+  const auto seeing = study::fit_path_bounded<Seeing>(context, training, validation, map, short_training(), engine, on);
   write_structured(seeing.predictor, context, training, flight, folder + "/path_bounded", "PathBoundedModel");
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """loop flies a model from its block as the compiled model flies: the same figures as fly_export's, and of a model of a
-user's own (a column, a window, a wrench, another activation) as its header's; what it can't fly is refused."""
+user's own (a column, a window, a wrench, another activation) as its header's; what it can't fly is refused. It flies the controllers that one ships: what a bias
+that learns in flight is worth."""
 import json
 import re
 from pathlib import Path
@@ -127,3 +128,66 @@ def test_loses_another_vehicle(pinnquad):
     for trajectory in "eight", "yaw_eight", "circle":
         flown = flown_by(pinnquad, f"loop {MODELS}/structured_quadrotor.block --trajectory {trajectory}")
         assert flown["model"]["answered_share"] > 0.99 and flown["model"]["rmse_m"] < 0.02, trajectory
+
+
+def errors_of(pinnquad, *words, model="structured_quadrotor"):
+    """By condition and controller, cm."""
+    flown = json.loads(pinnquad(f"loop {MODELS}/{model}.block --json", *words).out)
+    errors = {}
+    for row in flown["rows"]:
+        assert not row["crashed"], row
+        errors.setdefault(row["condition"], {})[row["controller"]] = row["rmse_cm"]
+    return errors, flown["rows"]
+
+
+def test_the_bias_carries_what_the_model_does_not_know(pinnquad):
+    """The aims: a payload of 20 % and a rotor at 85 % within 1.2 cm on the figure-eight, in calm air 0.8."""
+    errors, rows = errors_of(pinnquad, "--controllers=pid,formula,indi,structured,adaptive,formula_adaptive",
+                             "--conditions=calm,payload,weak_rotor,wind_8")
+    assert len(rows) == 24
+    calm, payload, weak, wind = (errors[name] for name in ("calm", "payload", "weak_rotor", "wind_8"))
+    for learns in "adaptive", "formula_adaptive":
+        assert calm[learns] <= 0.8 and payload[learns] <= 1.2 and weak[learns] <= 1.2, rows
+    for does_not in "formula", "structured":
+        assert payload[does_not] > 20 and weak[does_not] > 10
+    assert wind["adaptive"] < 0.5 * wind["structured"] and wind["indi"] < wind["adaptive"]
+    assert all(row["answered_share"] == pytest.approx(1, abs=0.05) for row in rows if row["controller"] == "structured")
+
+
+def test_the_table_of_controllers(pinnquad):
+    """Their default, with the conditions as columns; the figures are those of --json."""
+    words = ("--conditions=calm,payload_half", "--trajectory=circle")
+    said = pinnquad(f"loop {MODELS}/structured_quadrotor.block", *words)
+    errors, _ = errors_of(pinnquad, *words)
+    for controller, calm in errors["calm"].items():
+        assert re.search(rf"^  {controller} +{calm:.2f} +{errors['payload_half'][controller]:.2f}$", said.out, re.M), said.out
+    assert list(errors["calm"]) == ["pid", "formula", "indi", "structured", "adaptive"]
+
+
+def test_no_cliff_with_mass(pinnquad):
+    """A model of 1.5 kg on vehicles of up to half more: incremental inversion by it flies them as INDI by the airframe
+    does."""
+    pinnquad("airframe convert paper_quadrotor --out usual.toml")
+    for percent in 0, 30, 35, 40, 50:
+        replaced("usual.toml", "heavy.toml", ("^mass_kg = .*", f"mass_kg = {1.5 * (1 + percent / 100)}"))
+        errors, rows = errors_of(pinnquad, "--airframe=heavy.toml", "--controllers=indi,structured_indi",
+                                 "--trajectory=circle")
+        calm = errors["calm"]
+        assert calm["structured_indi"] < 1.1 * calm["indi"] + 0.03, (percent, calm)
+        assert all(row["bias_at_bound_share"] == 0 for row in rows)
+
+
+def test_a_bias_at_its_bound_is_said(pinnquad):
+    """Adaptive, of a vehicle that hovers at 0.72 and is told so, in a payload of 20 %: more than 0.8 of the sum."""
+    replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "heavy.toml", ("^mass_kg = .*", "mass_kg = 2.05"))
+    words = (f"loop {MODELS}/structured_quadrotor.block --controllers=adaptive --conditions=payload",)
+    said = pinnquad(*words, "--airframe=heavy.toml").out
+    assert "warning: adaptive, payload: its bias stood at its bound" in said, said
+    assert "warning" not in pinnquad(*words).out
+
+
+@pytest.mark.parametrize("words, keyword", [
+    ("--controllers autopilot", "--controllers"), ("--controllers mppi", "--controllers"), ("--conditions snow", "--conditions"),
+    ("--controllers pid --guard none", "--guard")])
+def test_controllers_refused(pinnquad, words, keyword):
+    pinnquad.refused(f"loop {MODELS}/structured_quadrotor.block {words}", keyword=keyword)

@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""loop compares controllers under conditions: what a bias that learns in flight is worth, the rows of loop.json, the
-search for gains, a comparison that is interrupted and goes on, what it can't fly."""
+"""pinnquad-study loop compares controllers under conditions: the rows of loop.json, the search for gains, a comparison
+that is interrupted and goes on, a residual wrench, what it can't fly."""
 import json
-import math
 import signal
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, replaced, until
+from conftest import SOURCE, until
 
 MODEL = SOURCE / "examples/models/structured_quadrotor.block"
 ROW = {"controller", "condition", "trajectory", "gains", "seed", "rmse_cm", "worst_cm", "recovery_s", "crashed"}
 
 
-def compared(pinnquad, *words, out="c", code=0):
-    pinnquad("loop --model", MODEL, "--out", out, *words, code=code)
+def compared(study, *words, out="c", code=0):
+    study("loop --model", MODEL, "--out", out, *words, code=code)
     return json.loads((Path(out) / "loop.json").read_text())
 
 
@@ -28,35 +27,16 @@ def errors_of(result, condition, **others):
             if all(row[key] == value for key, value in wanted.items())}
 
 
-def test_the_bias_carries_what_the_model_does_not_know(pinnquad):
-    """The aims: a payload of 20 % and a rotor at 85 % within 1.2 cm on the figure-eight, in calm air 0.8."""
-    result = compared(pinnquad, "--controllers=pid,formula,indi,structured,adaptive,formula_adaptive",
-                      "--conditions=calm,payload,weak_rotor,wind_8", "--trajectories=eight", "--gains=equal", "--seeds=1",
-                      "--duration=20")
-    assert all(ROW <= set(row) and not row["crashed"] for row in result["rows"])
-    assert len(result["rows"]) == 24
-    calm, payload, weak, wind = (errors_of(result, name) for name in ("calm", "payload", "weak_rotor", "wind_8"))
-    for learns in "adaptive", "formula_adaptive":
-        assert calm[learns] <= 0.8 and payload[learns] <= 1.2 and weak[learns] <= 1.2, result["rows"]
-    for does_not in "formula", "structured":
-        assert payload[does_not] > 20 and weak[does_not] > 10
-    assert wind["adaptive"] < 0.5 * wind["structured"] and wind["indi"] < wind["adaptive"]
-    assert all(math.isclose(row["answered_share"], 1, abs_tol=0.05) for row in result["rows"]
-               if row["controller"] == "structured")
-    page = (Path("c") / "loop.html").read_text()
-    assert "Equal gains" in page and "<svg" in page and "{{" not in page
-
-
-def test_the_same_flights_whatever_the_threads(pinnquad):
+def test_the_same_flights_whatever_the_threads(study):
     words = ("--controllers=adaptive,pid", "--conditions=gusts,parameters", "--gains=equal", "--seeds=2", "--duration=15")
-    one = compared(pinnquad, *words, "--threads=1", out="one")
-    two = compared(pinnquad, *words, "--threads=2", out="two")
+    one = compared(study, *words, "--threads=1", out="one")
+    two = compared(study, *words, "--threads=2", out="two")
     assert without_times(one["rows"]) == without_times(two["rows"])
     assert len({row["rmse_cm"] for row in one["rows"]}) == len(one["rows"]), "seeds and conditions differ"
 
 
-def test_gains_are_searched_and_told(pinnquad):
-    result = compared(pinnquad, "--controllers=pid,structured", "--conditions=calm,payload_half", "--trajectories=eight",
+def test_gains_are_searched_and_told(study):
+    result = compared(study, "--controllers=pid,structured", "--conditions=calm,payload_half", "--trajectories=eight",
                       "--seeds=1", "--budget=8", "--duration=15")
     assert [found["tuned"] for found in result["tuning"]] == ["pid", "structured"]
     for found in result["tuning"]:
@@ -69,12 +49,15 @@ def test_gains_are_searched_and_told(pinnquad):
     ratios = [each for each in result["summary"] if each["condition"] == "calm" and each["controller"] == "structured"]
     assert all(each["over_pid"]["lower"] <= each["over_pid"]["mean"] <= each["over_pid"]["upper"] for each in ratios)
     assert all(each["over_indi"] is None for each in ratios)
+    assert all(ROW <= set(row) and not row["crashed"] for row in result["rows"])
+    page = (Path("c") / "loop.html").read_text()
+    assert "Equal gains" in page and "<svg" in page and "{{" not in page
 
 
-def test_goes_on_where_it_was_stopped(pinnquad):
+def test_goes_on_where_it_was_stopped(study):
     words = ("--controllers=adaptive,indi", "--conditions=calm,payload", "--gains=equal", "--seeds=2", "--duration=15")
-    whole = compared(pinnquad, *words, out="whole")
-    process = pinnquad.start("loop --model", MODEL, "--out=stopped", *words, "--threads=1")
+    whole = compared(study, *words, out="whole")
+    process = study.start("loop --model", MODEL, "--out=stopped", *words, "--threads=1")
     journal = Path("stopped/loop.journal")
     until(lambda: journal.exists() and journal.read_text().count("\n") > 3, process)
     process.send_signal(signal.SIGINT)
@@ -83,29 +66,29 @@ def test_goes_on_where_it_was_stopped(pinnquad):
     lines = journal.read_text().splitlines()
     assert 3 <= len(lines) - 1 < len(whole["rows"])
     journal.write_text("\n".join(lines) + '\n{"controller":"ada')  # the machine went down while it wrote
-    again = compared(pinnquad, *words, out="stopped")
+    again = compared(study, *words, out="stopped")
     assert without_times(again["rows"]) == without_times(whole["rows"])
     assert json.loads(lines[1]) in again["rows"], "what was flown is kept"
-    other = compared(pinnquad, *words, "--noise=2", out="stopped")
+    other = compared(study, *words, "--noise=2", out="stopped")
     assert errors_of(other, "calm") != errors_of(again, "calm"), "another plan flies anew"
 
 
-def test_harder_vehicle(pinnquad):
-    easy, hard = (errors_of(compared(pinnquad, "--controllers=structured,adaptive", "--conditions=calm", "--gains=equal",
+def test_harder_vehicle(study):
+    easy, hard = (errors_of(compared(study, "--controllers=structured,adaptive", "--conditions=calm", "--gains=equal",
                                      "--trajectories=eight", "--seeds=1", "--duration=15", f"--vehicle={vehicle}",
                                      out=vehicle), "calm") for vehicle in ("nominal", "harder"))
     assert hard["structured"] > 2 * easy["structured"] and hard["adaptive"] < 0.5 * hard["structured"]
 
 
-def test_a_residual_wrench_is_trained_and_flown(pinnquad):
+def test_a_residual_wrench_is_trained_and_flown(pinnquad, study):
     """From flight to block to loop: the full stack beside INDI, and beside itself without the network."""
     light = "--airframe=light_quadrotor"
     pinnquad("fly harder --interval=10 --samples=6000 --out=flight.csv", light)
-    pinnquad("train --flight=flight.csv --recipe=wrench --seeds=1 --epochs=40 --out=w", light)
+    study("wrench --flight=flight.csv --seeds=1 --epochs=40 --out=w", light)
     report = json.loads(Path("w/wrench.json").read_text())
     assert all(report["test_r_squared"][f"force_{axis}"] > 0.8 for axis in "xyz"), report
     assert "struct TrainedWrench" in Path("w/wrench.hpp").read_text()
-    result = compared(pinnquad, light, "--wrench=w/wrench.block", "--vehicle=harder", "--gains=equal", "--seeds=1",
+    result = compared(study, light, "--wrench=w/wrench.block", "--vehicle=harder", "--gains=equal", "--seeds=1",
                       "--controllers=indi,wrench_indi,full,full_nominal,full_bias,l1", "--conditions=calm,wind_4,payload",
                       "--trajectories=eight", "--duration=20")
     assert not any(row["crashed"] for row in result["rows"])
@@ -116,13 +99,13 @@ def test_a_residual_wrench_is_trained_and_flown(pinnquad):
     assert wind["full"] < wind["wrench_indi"], "the wind is found"
     assert payload["l1"] < 3 * calm["l1"], "a payload is found"
     flown = ("--controllers=full", "--seeds=1", "--out=d")
-    pinnquad.refused("loop --model", MODEL, light, "--wrench", MODEL, *flown, at=MODEL.name)
-    pinnquad.refused("loop --model", MODEL, "--wrench=w/wrench.block", *flown, at="w/wrench.block")
-    pinnquad.refused("loop w/wrench.block", at="w/wrench.block")
-    pinnquad.refused("loop --model", MODEL, *flown, keyword="--wrench")
+    study.refused("loop --model", MODEL, light, "--wrench", MODEL, *flown, at=MODEL.name)
+    study.refused("loop --model", MODEL, "--wrench=w/wrench.block", *flown, at="w/wrench.block")
+    study.refused("loop w/wrench.block", at="w/wrench.block")
+    study.refused("loop --model", MODEL, *flown, keyword="--wrench")
     pinnquad("fly harder --samples=3000 --out=slow.csv", light)
-    pinnquad.refused("train --flight=slow.csv --recipe=wrench --out=d", light, keyword="--interval")
-    pinnquad.refused("train --flight=flight.csv --recipe=wrench --loss=vanilla --out=d", light, keyword="--loss")
+    study.refused("wrench --flight=slow.csv --out=d", light, keyword="--interval")
+    study.refused("wrench --out=d", light, keyword="--flight")
     assert not Path("d").exists()
 
 
@@ -134,38 +117,12 @@ def test_a_residual_wrench_is_trained_and_flown(pinnquad):
     (("--duration=5", "--out=c"), "--duration"),
     (("--delay=-1", "--out=c"), "--delay"),
 ])
-def test_refused(pinnquad, words, keyword):
-    pinnquad.refused("loop --model", MODEL, *words, keyword=keyword)
+def test_refused(study, words, keyword):
+    study.refused("loop --model", MODEL, *words, keyword=keyword)
     assert not Path("c").exists()
 
 
-def test_a_folder_that_is_a_file(pinnquad):
+def test_a_folder_that_is_a_file(study):
     Path("c").write_text("mine")
-    pinnquad.refused("loop --model", MODEL, "--out=c", "--seeds=1", keyword="c")
+    study.refused("loop --model", MODEL, "--out=c", "--seeds=1", keyword="c")
     assert Path("c").read_text() == "mine"
-
-
-def test_no_cliff_with_mass(pinnquad):
-    """A model of 1.5 kg on vehicles of up to half more: incremental inversion by it flies them as INDI by the airframe
-    does."""
-    pinnquad("airframe convert paper_quadrotor --out usual.toml")
-    for percent in 0, 30, 35, 40, 50:
-        replaced("usual.toml", "heavy.toml", ("^mass_kg = .*", f"mass_kg = {1.5 * (1 + percent / 100)}"))
-        result = compared(pinnquad, "--airframe=heavy.toml", "--controllers=indi,structured_indi", "--conditions=calm",
-                          "--trajectories=circle", "--gains=equal", "--seeds=1", "--duration=22", out=f"at{percent}")
-        errors = errors_of(result, "calm")
-        assert errors["structured_indi"] < 1.1 * errors["indi"] + 0.03, (percent, errors)
-        assert all(row["bias_at_bound_share"] == 0 for row in result["rows"])
-
-
-def test_a_bias_at_its_bound_is_said(pinnquad):
-    """Adaptive, of a vehicle that hovers at 0.72 and is told so, in a payload of 20 %: more than 0.8 of the sum."""
-    replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "heavy.toml", ("^mass_kg = .*", "mass_kg = 2.05"))
-    words = ("--airframe=heavy.toml", "--controllers=adaptive", "--trajectories=eight", "--gains=equal", "--seeds=1",
-             "--duration=15", "--conditions=payload")
-    said = pinnquad("loop --model", MODEL, "--out=heavy", *words).out
-    row = json.loads(Path("heavy/loop.json").read_text())["rows"][0]
-    assert row["bias_at_bound_share"] > 0.01, row
-    assert "warning: adaptive, payload: its bias stood at its bound" in said, said
-    said = pinnquad("loop --model", MODEL, "--out=usual", *words[1:]).out
-    assert "warning" not in said, said

@@ -7,8 +7,8 @@
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/outputs/rigid_body_base.hpp"
-#include "pinnquad/training/structured/path_bounded_fit.hpp"
 #include "study/beyond_models.hpp"
+#include "study/path_bounded_fit.hpp"
 
 namespace study {
 
@@ -70,8 +70,7 @@ BeyondTraining train_path_bounded(const BeyondTask& task) {
   return train_structured<Features, pinnquad::AxisCommandOutputs, pinnquad::Saturated<pinnquad::PathBounded<Network>>>(
       task, Slopes::learnt,
       [&task](const auto& context, const auto& map, const auto& how, auto& engine, const auto& goes_on) {
-        return pinnquad::fit_path_bounded<Network>(context, task.split.train, task.split.validation, map, how, engine,
-                                                   goes_on);
+        return fit_path_bounded<Network>(context, task.split.train, task.split.validation, map, how, engine, goes_on);
       });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The program pinnquad-study: the paper's campaign (the 14 models of Table 2 on three flights, 20 seeds each, as rows
-// for Table 3), the ablation, and what goes beyond the paper. report.py writes the report.
+// for Table 3), the ablation, what goes beyond the paper, and controllers compared in the loop. report.py writes the
+// report.
 //   pinnquad-study paper --seeds 20 --out DIR
 //   pinnquad-study merge DIR... --out DIR
 #include <cstdint>
@@ -21,9 +22,11 @@
 #include "study/beyond_command.hpp"
 #include "study/campaign.hpp"
 #include "study/flights.hpp"
+#include "study/loop_command.hpp"
 #include "study/merge.hpp"
 #include "study/summary.hpp"
 #include "study/table.hpp"
+#include "study/wrench_command.hpp"
 
 namespace {
 
@@ -139,13 +142,15 @@ programs::Command merge_command(CLI::App& program) {
 int run(int argument_count, char** arguments, std::string& name) {
   CLI::App program("The paper's campaign: its models trained and judged, seed by seed", name);
   program.fallthrough();  // --config may stand anywhere
-  const std::vector<programs::Command> commands = {paper_command(program), ablation_command(program),
-                                                   programs::beyond_command(program), merge_command(program)};
+  const std::vector<programs::Command> commands = {
+      paper_command(program),       ablation_command(program),      programs::beyond_command(program),
+      study::loop_command(program), study::wrench_command(program), merge_command(program)};
   program.footer(
       std::string("Examples:\n"
                   "  pinnquad-study paper --seeds 20 --out study       the study; then its report:\n"
                   "  pinnquad-study-report study\n"
                   "  pinnquad-study beyond --seeds 10 --out beyond     structured models beside its network\n"
+                  "  pinnquad-study loop model.block --out compared    controllers beside each other\n"
                   "pinnquad-study COMMAND --help says more.\n") +
       study::exit_codes + " 70 is a fault of the program, to be reported.");
   if (const std::optional<int> code = programs::choose_command(program, argument_count, arguments, name)) return *code;

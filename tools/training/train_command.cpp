@@ -18,7 +18,6 @@
 #include "training/network_kinds.hpp"
 #include "training/recipe.hpp"
 #include "training/train_run.hpp"
-#include "training/wrench_run.hpp"
 
 namespace {
 
@@ -62,7 +61,7 @@ void add_kinds(CLI::App& app, TrainOptions& options, GivenWords& words) {
   app.add_option(
          "--recipe", words.recipe,
          "kinds of models to compare, by a name, and the one to export; of flights, where --models names none. " +
-             recipes + "; wrench: the residual wrench of the vehicle, for pinnquad loop --wrench (docs/loop.md), alone")
+             recipes)
       ->capture_default_str();
   app.add_option("--loss", words.losses,
                  "what the networks of a recipe are trained under, any of: " + programs::listed(programs::loss_names) +
@@ -180,13 +179,6 @@ programs::Command programs::train_command(CLI::App& program) {
             options.pinned_slopes = words.slopes == "pinned";
             if (given("--airframe")) options.airframe = words.airframe;
             if (given("--epochs")) options.epochs = words.epochs;
-            if (options.recipe == programs::wrench_recipe) {
-              for (const char* of_inverses : {"--loss", "--export", "--altitude", "--slopes"}) {
-                if (!given(of_inverses)) continue;
-                throw std::invalid_argument(std::string(of_inverses) + " does not go with --recipe wrench");
-              }
-              if (!given("--name")) options.model_name = programs::wrench_model_name;
-            }
             return train(options);
           }};
 }

@@ -32,7 +32,6 @@
 #include "training/training_report.hpp"
 #include "training/training_table.hpp"
 #include "training/watched_flight.hpp"
-#include "training/wrench_run.hpp"
 
 namespace {
 
@@ -195,9 +194,8 @@ class Training {
   void warn_of_the_setting() {
     if (!vehicle_.is_known()) {
       report_.warn("no --airframe, and the flights do not identify their vehicle: " + vehicle_.asked->why_not +
-                   "; in the airframe of the header, " + plan_.airframe.name +
-                   ", these are not the vehicle's: " + programs::listed(vehicle_.unknown) +
-                   "; --airframe FILE.toml says what flew");
+                   "; in the airframe of the header, " + plan_.airframe.name + ", these are not the vehicle's: " +
+                   programs::listed(vehicle_.unknown) + "; --airframe FILE.toml says what flew");
     }
     const std::string unlike = vehicle_.asked ? programs::unlike_axes_in_words(vehicle_.asked->found) : "";
     if (!unlike.empty()) report_.warn(unlike);
@@ -531,8 +529,7 @@ class Training {
         "  flown on the vehicle that %s, figure-eight of %.1f s: %s cm off; by the analytic inverse %s, "
         "without feed-forward %s\n",
         vehicle_.asked ? "was identified" : "was given", flown["period_s"].get<double>(), centimetres("model").c_str(),
-        centimetres("formula").c_str(),
-        centimetres("hover_trim").c_str());
+        centimetres("formula").c_str(), centimetres("hover_trim").c_str());
     const std::string compared = programs::comparison_in_words(flown["against_formula"]);
     if (!compared.empty()) {
       std::printf("    its sums of commands beside the formula's there, slope (rms difference): %s\n",
@@ -632,7 +629,6 @@ class Training {
 
 int programs::train(const TrainOptions& options) {
   require_identifier("--name", options.model_name);
-  if (options.recipe == wrench_recipe) return train_wrench(options);
   const Selection selection = selection_of(options);
   if (!options.export_choice.empty()) require_known_export(options.export_choice, selection.kinds);
   std::optional<NamedAirframe> given;

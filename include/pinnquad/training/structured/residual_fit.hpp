@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The residual of a structured model: a network on what the monotone base leaves (closed_form.hpp), kept where it helps
-// on rows that it has not seen. It is not shown the angular acceleration; path_bounded_fit.hpp shows it.
+// on rows that it has not seen. It is not shown the angular acceleration.
 #pragma once
 
 #include <algorithm>

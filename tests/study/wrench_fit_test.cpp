@@ -8,9 +8,10 @@
 
 #include "pinnquad/dynamics/airframes/light_quadrotor.hpp"
 #include "pinnquad/simulation/flights.hpp"
-#include "pinnquad/training/wrench_fit.hpp"
+#include "study/wrench_fit.hpp"
 
 using namespace pinnquad;
+using namespace study;
 
 namespace {
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "training/wrench_run.hpp"
+#include "study/wrench_command.hpp"
 
 #include <array>
 #include <cstdio>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,14 +15,18 @@
 #include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"
 #include "command_line/interrupt.hpp"
+#include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
+#include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/deploy/export_model.hpp"
-#include "pinnquad/training/wrench_fit.hpp"
+#include "study/wrench_fit.hpp"
 #include "training/train_input.hpp"
+
+namespace study {
 
 namespace {
 
-using namespace pinnquad;
+using namespace programs;
 
 constexpr std::array<const char*, 3> wrench_files = {"wrench.hpp", "wrench.block", "wrench.json"};
 constexpr std::array<const char*, 6> component_names = {"force_x",  "force_y",  "force_z",
@@ -39,13 +45,11 @@ double left_share(const WrenchJudgement& judged) {
   return sum / static_cast<double>(judged.r_squared.size());
 }
 
-}  // namespace
-
-int programs::train_wrench(const TrainOptions& options) {
+int train_wrench(const TrainOptions& options) {
+  pinnquad::require_identifier("--name", options.model_name);
   const NamedAirframe airframe = chosen_airframe(options.airframe.empty() ? PaperQuadrotor::name : options.airframe);
   FileRoles roles;
   for (const std::string& path : options.flights) roles.reads("--flight", path);
-  for (const std::string& path : options.logs) roles.reads("--log", path);
   if (!options.dataset.empty()) roles.reads("--dataset", options.dataset);
   if (is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   for (const char* name : wrench_files) roles.writes("--out", options.out + "/" + name);
@@ -92,7 +96,7 @@ int programs::train_wrench(const TrainOptions& options) {
                 judged.deviation[k], AccelerationOutputs::units[k]);
   }
   if (!(left_share(judged) < 1) && !options.allow_poor) {
-    complain("train", "nothing exported: on the rows held out it is worse than the mean of their residual wrench");
+    complain("wrench", "nothing exported: on the rows held out it is worse than the mean of their residual wrench");
     return exit_failed;
   }
 
@@ -125,3 +129,48 @@ int programs::train_wrench(const TrainOptions& options) {
   for (const std::string& file : files) std::printf("  %s\n", printable(file).c_str());
   return 0;
 }
+
+}  // namespace
+
+programs::Command wrench_command(CLI::App& program) {
+  CLI::App* line = program.add_subcommand(
+      "wrench", "Trains the residual wrench of a vehicle: what its motion has beyond rotors and gravity");
+  struct Asked {
+    TrainOptions options;
+    std::string lag = "auto";
+  };
+  const auto asked = std::make_shared<Asked>();
+  TrainOptions& options = asked->options;
+  options.airframe = PaperQuadrotor::name;
+  options.model_name = "TrainedWrench";
+  add_paths(*line, "--flight", options.flights, "FILE.csv",
+            "recorded flights, CSV as `pinnquad fly` writes them, rows no further apart than the rotors lag");
+  add_path(*line, "--dataset", options.dataset, "DIR", "or the folder that `pinnquad import` wrote");
+  line->add_option("--hold-out", options.hold_out, "flights or trajectories that judge, held out together")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  line->add_option("--airframe", options.airframe, "what flew: a file FILE.toml, or one of: " + airframe_names())
+      ->capture_default_str();
+  line->add_option("--lag", asked->lag, "from command to motion, removed from the commands of flights")
+      ->type_name("auto|SECONDS")
+      ->capture_default_str();
+  add_path(*line, "--out", options.out, "DIR", "folder for wrench.block, wrench.hpp and wrench.json")->required();
+  line->add_option("--name", options.model_name, "name of the exported struct")->capture_default_str();
+  add_number(*line, "--seeds", options.seeds, 1, static_cast<int>(most_pairs), "trainings, of which the best is kept");
+  add_number(*line, "--epochs", options.epochs, 0, 100000, "training epochs; 0: the usual number");
+  add_number(*line, "--seed", options.seed, std::uint64_t{0}, most_seed, "first seed")->type_name("N");
+  line->add_flag("--allow-poor", options.allow_poor, "export it even if it is worse than the mean of the wrench");
+  line->footer("Exit codes: 0; 1 nothing exported: it is worse than the mean; 2 bad input; 130 interrupted.");
+  return {line, [asked, line] {
+            if (line->count("--flight") > 0 && line->count("--dataset") > 0) {
+              throw std::invalid_argument("--flight and --dataset can't be given together: expected one of them");
+            }
+            if (line->count("--flight") + line->count("--dataset") == 0) {
+              throw std::invalid_argument("--flight or --dataset is required");
+            }
+            asked->options.lag_s = lag_of(asked->lag);
+            return train_wrench(asked->options);
+          }};
+}
+
+}  // namespace study

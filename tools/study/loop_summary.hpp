@@ -16,9 +16,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "loop/controlled_loop.hpp"
 #include "pinnquad/core/random.hpp"
 
-namespace programs {
+namespace study {
 
 /// Controllers that the others are compared with.
 inline constexpr std::array<const char*, 2> loop_baselines = {"pid", "indi"};
@@ -100,33 +101,6 @@ inline nlohmann::json loop_summary(const nlohmann::json& rows) {
   return summary;
 }
 
-/// A line for each controller and condition whose bias stood at its bound: what it lacks there stays as an error.
-inline std::vector<std::string> bias_warnings(const nlohmann::json& rows) {
-  constexpr double least_share = 0.01;  // of a flight: a gust is over sooner
-  std::vector<std::pair<std::array<std::string, 2>, double>> most;
-  for (const nlohmann::json& row : rows) {
-    const double share = row.value("bias_at_bound_share", 0.0);  // a journal of before has none
-    if (share < least_share) continue;
-    const std::array<std::string, 2> flown = {row["controller"], row["condition"]};
-    const auto same = std::find_if(most.begin(), most.end(), [&](const auto& each) { return each.first == flown; });
-    if (same == most.end()) {
-      most.emplace_back(flown, share);
-    } else {
-      same->second = std::max(same->second, share);
-    }
-  }
-  std::vector<std::string> lines;
-  for (const auto& [flown, share] : most) {
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "%s, %s: its bias stood at its bound for up to %.0f %% of a flight, and what is beyond it stays as "
-                  "an error: tell it the mass and the rotors that fly (--airframe)",
-                  flown[0].c_str(), flown[1].c_str(), std::max(1.0, 100 * share));
-    lines.emplace_back(text);
-  }
-  return lines;
-}
-
 /// A table of each set of gains on the terminal: a line per controller, a column per condition.
 inline void print_loop_tables(const nlohmann::json& result) {
   std::string gains, controller;
@@ -159,7 +133,7 @@ inline void print_loop_tables(const nlohmann::json& result) {
     lines[name] += text;
   }
   finish();
-  for (const std::string& line : bias_warnings(result["rows"])) std::printf("warning: %s\n", line.c_str());
+  for (const std::string& line : programs::bias_warnings(result["rows"])) std::printf("warning: %s\n", line.c_str());
 }
 
-}  // namespace programs
+}  // namespace study

@@ -7,7 +7,9 @@
 #include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
-namespace pinnquad {
+namespace study {
+
+using namespace pinnquad;
 
 /// The other policy's commands. The acceleration across the thrust that the effects of `Vehicle` make, with its rotors
 /// as in hover, is taken from what is asked for.
@@ -28,7 +30,7 @@ class KnownDrag<FeedForward, Quadrotor<Scalar, Effects...>> {
   /// The other's own answer to a motion that was flown (NetworkInverse::observed()).
   Status observed(const State<Scalar>& state, const Accelerations<Scalar>& flown, std::uint64_t time_us,
                   Commands<Scalar>& commands) noexcept {
-    if constexpr (is_detected<detail::ObservedCall, FeedForward, Scalar>) {
+    if constexpr (is_detected<pinnquad::detail::ObservedCall, FeedForward, Scalar>) {
       return inverse_.observed(state, flown, time_us, commands);
     } else {
       return inverse_(state, flown, time_us, commands);
@@ -50,4 +52,4 @@ class KnownDrag<FeedForward, Quadrotor<Scalar, Effects...>> {
   Quadrotor<Scalar, Effects...> vehicle_;
 };
 
-}  // namespace pinnquad
+}  // namespace study

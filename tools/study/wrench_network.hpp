@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A residual wrench that was learnt (training/wrench_fit.hpp): a small network from the air's velocity, body rates and
+// A residual wrench that was learnt (study/wrench_fit.hpp): a small network from the air's velocity, body rates and
 // rotor state to force / mass and angular acceleration. An ordinary exported model: features as below, and as outputs
 // what the rotors would have to make against it (AccelerationOutputs), so that its block and header are as any other's.
 #pragma once
@@ -7,15 +7,17 @@
 #include <array>
 #include <cstddef>
 
-#include "pinnquad/control/wrench_inverse.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/inference/pipeline.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/outputs/wrench_outputs.hpp"
+#include "study/wrench_inverse.hpp"
 
-namespace pinnquad {
+namespace study {
+
+using namespace pinnquad;
 
 /// The commands of a rotor behind its lag, in the order of the commands.
 struct RotorState1 {
@@ -45,7 +47,7 @@ using WrenchFeatures = WithColumns<Joined<BodyVelocity, BodyRates>, RotorState1,
 using WrenchNet =
     Mlp<float, InputSize<WrenchFeatures::size>, Hidden<2, 32>, OutputSize<AccelerationOutputs::size>, Tanh>;
 
-/// A residual wrench (control/wrench_inverse.hpp) by a model's numbers, which must stay where they are. Inputs are
+/// A residual wrench (study/wrench_inverse.hpp) by a model's numbers, which must stay where they are. Inputs are
 /// moved into the envelope of the training rows.
 template <class Network>
 class WrenchNetwork {
@@ -55,17 +57,8 @@ class WrenchNetwork {
                 "pinnquad: a wrench network has the inputs of WrenchFeatures and the outputs of AccelerationOutputs");
 
  public:
-  WrenchNetwork(const detail::Scales<Number>& scales, const Number* parameters) noexcept
+  WrenchNetwork(const pinnquad::detail::Scales<Number>& scales, const Number* parameters) noexcept
       : scales_(scales), parameters_(parameters) {}
-  /// Of an exported header.
-  template <class Model>
-  static WrenchNetwork of() noexcept {
-    static_assert(std::is_same_v<typename Model::Network, Network> &&
-                      std::is_same_v<typename Model::Features, WrenchFeatures> &&
-                      std::is_same_v<typename Model::Outputs, AccelerationOutputs>,
-                  "pinnquad: this model is no wrench network (training/wrench_fit.hpp)");
-    return WrenchNetwork(detail::scales_of(Model{}), Model::parameters.data());
-  }
 
   template <class Scalar>
   Accelerations<Scalar> operator()(const WrenchInputs<Scalar>& in) const noexcept {
@@ -114,11 +107,11 @@ class WrenchNetwork {
     if constexpr (is_elementwise<Layer>) {
       for (int i = 0; i < Layer::outputs; ++i) {
         const Number value = from[i].of[0], made = Layer::activate(value);
-        const Number slope = detail::slope_at<Layer>(slopes_from_input<Layer> ? value : made);
+        const Number slope = pinnquad::detail::slope_at<Layer>(slopes_from_input<Layer> ? value : made);
         to[i] = {{made, slope * from[i].of[1], slope * from[i].of[2], slope * from[i].of[3]}};
       }
     } else {
-      static_assert(detail::is_dense_with_bias<Layer>,
+      static_assert(pinnquad::detail::is_dense_with_bias<Layer>,
                     "pinnquad: a wrench network has dense layers and activations alone");
       const Number* const weights = parameters_ + Network::Sizes::offset(Index);
       const Number* const biases = weights + Layer::inputs * Layer::outputs;
@@ -153,7 +146,7 @@ class WrenchNetwork {
     unsigned moved = 0;
     for (int i = 0; i < inputs; ++i) {
       const Number asked = (x[i] - scales_.input_mean[i]) / scales_.input_deviation[i];
-      x[i] = detail::saturated(scales_, i, asked);
+      x[i] = pinnquad::detail::saturated(scales_, i, asked);
       if (x[i] < asked || asked < x[i]) moved |= 1u << static_cast<unsigned>(i);
     }
     return moved;
@@ -163,8 +156,8 @@ class WrenchNetwork {
     return Scalar(y[i] * scales_.output_deviation[i] + scales_.output_mean[i]);
   }
 
-  detail::Scales<Number> scales_;
+  pinnquad::detail::Scales<Number> scales_;
   const Number* parameters_;
 };
 
-}  // namespace pinnquad
+}  // namespace study

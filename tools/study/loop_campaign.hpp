@@ -10,29 +10,22 @@
 
 #include <nlohmann/json.hpp>
 
-#include "loop/conditions.hpp"
-#include "pinnquad/deploy/block_model.hpp"
+#include "loop/controlled_loop.hpp"
 
-namespace programs {
+namespace study {
 
 inline constexpr std::array<const char*, 4> campaign_trajectories = {"eight", "circle", "random", "step"};
-/// The vehicle that flies: with the drag that the controllers know of; with the effects of
-/// simulation/harder_quadrotor.hpp, of which they know the drag alone.
+/// LoopSetting::harder: no, yes.
 inline constexpr std::array<const char*, 2> campaign_vehicles = {"nominal", "harder"};
 inline constexpr std::array<const char*, 2> campaign_gains = {"equal", "tuned"};
 
 struct LoopCampaign {
-  const pinnquad::BlockModel& model;
-  std::vector<double> columns;            ///< of the model, in their order
-  pinnquad::Airframe<double> airframe{};  ///< that the controllers are told
+  programs::LoopSetting setting;
   std::string airframe_name{};
   std::vector<std::string> controllers{}, conditions{}, trajectories{}, gains{};
-  std::string vehicle = "nominal";
-  const pinnquad::BlockModel* wrench = nullptr;  ///< a residual wrench of this airframe (loop/wrench_block.hpp)
+  const pinnquad::BlockModel* wrench = nullptr;  ///< a residual wrench of this airframe (study/wrench_block.hpp)
   int seeds = 5;
   int budget = 40;  ///< evaluations of the search, for each controller
-  double duration_s = 40;
-  LoopSensors sensors{};
   std::size_t threads = 1;
   std::string out{};  ///< a folder
 };
@@ -42,4 +35,4 @@ struct LoopCampaign {
 /// flight; Interrupted; OutputError.
 nlohmann::json run_campaign(const LoopCampaign& plan);
 
-}  // namespace programs
+}  // namespace study

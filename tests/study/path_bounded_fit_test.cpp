@@ -2,7 +2,7 @@
 // A network that is shown the angular acceleration, trained beside a base: what it may not do, however much the rows
 // ask for it; what it learns that one which is not shown it can't; and what a projection leaves alone. Rows that say
 // what a derivative should be.
-#include "pinnquad/training/structured/path_bounded_fit.hpp"
+#include "study/path_bounded_fit.hpp"
 
 #include <doctest/doctest.h>
 
@@ -15,6 +15,7 @@
 #include "pinnquad/nn/relu.hpp"
 
 using namespace pinnquad;
+using namespace study;
 
 namespace {
 

@@ -8,12 +8,13 @@
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
-#include "pinnquad/control/known_drag.hpp"
-#include "pinnquad/control/l1_adaptive.hpp"
 #include "pinnquad/dynamics/airframes/light_quadrotor.hpp"
 #include "pinnquad/simulation/tracking.hpp"
+#include "study/known_drag.hpp"
+#include "study/l1_adaptive.hpp"
 
 using namespace pinnquad;
+using namespace study;
 
 namespace {
 

@@ -13,12 +13,13 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/flapping.hpp"
 #include "pinnquad/control/tracking_controller.hpp"
-#include "pinnquad/control/wrench_network.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframes/light_quadrotor.hpp"
 #include "pinnquad/simulation/tracking.hpp"
+#include "study/wrench_network.hpp"
 
 using namespace pinnquad;
+using namespace study;
 
 namespace {
 

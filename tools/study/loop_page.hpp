@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page of a campaign: errors by controller and condition, their ratios, gains found, recoveries.
+// The page of a comparison of controllers: errors by controller and condition, their ratios, gains found, recoveries.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,17 @@
 #include <nlohmann/json.hpp>
 
 #include "loop/conditions.hpp"
-#include "loop/controllers.hpp"
-#include "loop/summary.hpp"
 #include "page/chart.hpp"
 #include "page/page.hpp"
+#include "study/loop_controllers.hpp"
+#include "study/loop_summary.hpp"
 
-namespace programs {
+namespace study {
 
 namespace detail {
+
+namespace colour = programs::colour;
+using programs::Chart, programs::Panel, programs::Series, programs::Shape;
 
 inline std::vector<std::string> named_in(const nlohmann::json& entries, const char* key) {
   std::vector<std::string> names;
@@ -160,15 +163,15 @@ inline std::string loop_page(const nlohmann::json& result) {
         {{"name", gains == "equal" ? "Equal gains" : "Tuned gains"},
          {"words", gains == "equal" ? "Moderate gains, the same for all."
                                     : "Found for each by the same search on other trajectories and seeds."},
-         {"picture", inline_svg(detail::loop_chart(summary, gains))},
+         {"picture", programs::inline_svg(detail::loop_chart(summary, gains))},
          {"tables", tables}});
   }
   content["recoveries"] = nlohmann::json::array();
   for (const std::string& condition : detail::named_in(result["series"], "condition")) {
     content["recoveries"].push_back(
         {{"name", "Recovery: " + condition},
-         {"picture",
-          inline_svg(detail::recovery_chart(result["series"], condition, 0.5 * result["duration_s"].get<double>()))}});
+         {"picture", programs::inline_svg(detail::recovery_chart(result["series"], condition,
+                                                                 0.5 * result["duration_s"].get<double>()))}});
   }
   const auto described = [&content](const char* key, const auto& all, const std::vector<std::string>& names) {
     content[key] = nlohmann::json::array();
@@ -177,9 +180,9 @@ inline std::string loop_page(const nlohmann::json& result) {
       content[key].push_back({{"name", each.name}, {"summary", each.summary}});
     }
   };
-  described("controllers", loop_controllers, controllers);
-  described("conditions", loop_conditions, conditions);
-  return text_page(loop_page_template, content);
+  described("controllers", studied_controllers(), controllers);
+  described("conditions", programs::loop_conditions, conditions);
+  return programs::text_page(programs::loop_page_template, content);
 }
 
-}  // namespace programs
+}  // namespace study

@@ -12,7 +12,9 @@
 #include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/training/structured/residual_fit.hpp"
 
-namespace pinnquad {
+namespace study {
+
+using namespace pinnquad;
 
 namespace detail {
 
@@ -70,7 +72,7 @@ class PathProjection {
   }
 
  private:
-  double danger(const detail::PathBound<4>& bound, int axis) const noexcept {
+  double danger(const pinnquad::detail::PathBound<4>& bound, int axis) const noexcept {
     double sum = 0;
     for (int k = 0; k < 4; ++k) {
       const double below = -bound.lower[k], worst = std::max(below, bound.upper[k]);
@@ -95,12 +97,12 @@ auto fit_path_bounded(const ContextType& context, const RowSet& training, const 
                       double share = 0.9) {
   using Features = typename ContextType::Features;
   using Predictor = PathBoundedPredictor<Features, Residual>;
-  const ResidualKind kind = detail::residual_kind<Residual, Residual, Predictor, MonotoneBase<Features>>(
+  const ResidualKind kind = pinnquad::detail::residual_kind<Residual, Residual, Predictor, MonotoneBase<Features>>(
       true, [projection = detail::PathProjection<ContextType, Residual>(context, map, share)](auto& trained) {
         trained.project(projection);
       });
-  return detail::with_types<Features, Predictor>(
-      detail::fit_residual(fit_context(context), kind, training, validation, map, how, engine, goes_on));
+  return pinnquad::detail::with_types<Features, Predictor>(
+      pinnquad::detail::fit_residual(fit_context(context), kind, training, validation, map, how, engine, goes_on));
 }
 
-}  // namespace pinnquad
+}  // namespace study

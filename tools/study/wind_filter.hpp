@@ -8,13 +8,15 @@
 
 #include "pinnquad/control/flown_motion.hpp"
 #include "pinnquad/control/tick_clock.hpp"
-#include "pinnquad/control/wrench_inverse.hpp"
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/features/motion_parts.hpp"
+#include "study/wrench_inverse.hpp"
 
-namespace pinnquad {
+namespace study {
+
+using namespace pinnquad;
 
 /// Settings of a WindFilter. Standard deviations; those of a walk are after one second.
 template <class Scalar>
@@ -237,9 +239,9 @@ class WindInverse {
   Inverse inverse_;
   WindFilter<Scalar> filter_;
   FlownMotion<Scalar> motion_;
-  detail::TickClock<Scalar> clock_;
+  pinnquad::detail::TickClock<Scalar> clock_;
   Scalar waited_s_{0};
   Status status_ = Status::warming_up;
 };
 
-}  // namespace pinnquad
+}  // namespace study

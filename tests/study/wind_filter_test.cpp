@@ -12,12 +12,13 @@
 #include "pinnquad/aero/battery_sag.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/wind.hpp"
-#include "pinnquad/control/wind_filter.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframes/light_quadrotor.hpp"
 #include "pinnquad/simulation/tracking.hpp"
+#include "study/wind_filter.hpp"
 
 using namespace pinnquad;
+using namespace study;
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A residual wrench from its block, which `train --recipe wrench` writes.
+// A residual wrench from its block, which `pinnquad-study wrench` writes.
 #pragma once
 
 #include <cstddef>
@@ -8,19 +8,19 @@
 #include <type_traits>
 
 #include "logs/airframe_file.hpp"
-#include "pinnquad/control/wrench_network.hpp"
 #include "pinnquad/deploy/block_model.hpp"
+#include "study/wrench_network.hpp"
 
-namespace programs {
+namespace study {
 
-using BlockWrench = pinnquad::WrenchNetwork<pinnquad::WrenchNet>;
+using BlockWrench = WrenchNetwork<WrenchNet>;
 
-/// True for a block that train --recipe wrench wrote.
+/// True for a block that pinnquad-study wrench wrote.
 inline bool is_wrench(const pinnquad::BlockModel& block) {
-  using Features = pinnquad::WrenchFeatures;
+  using Features = WrenchFeatures;
   bool fits = !block.is_double() && block.features().size() == Features::size &&
               pinnquad::detail::describes<pinnquad::AccelerationOutputs>(block.schema()) &&
-              pinnquad::detail::describes<pinnquad::WrenchNet>(block.answer());
+              pinnquad::detail::describes<WrenchNet>(block.answer());
   for (std::size_t i = 0; fits && i < std::size_t(Features::size); ++i) {
     fits = block.features()[static_cast<int>(i)].name == Features::names[i];
   }
@@ -31,7 +31,7 @@ inline bool is_wrench(const pinnquad::BlockModel& block) {
 inline void require_wrench(const pinnquad::BlockModel& block, const pinnquad::Airframe<double>& airframe,
                            const std::string& airframe_name) {
   if (!is_wrench(block)) {
-    throw pinnquad::InputError(block.path(), 0, 0, "a residual wrench, as train --recipe wrench writes it",
+    throw pinnquad::InputError(block.path(), 0, 0, "a residual wrench, as pinnquad-study wrench writes it",
                                "a model of another kind: " + block.answer());
   }
   if (!pinnquad::logs::same_numbers(block.airframe(), airframe)) {
@@ -51,4 +51,4 @@ inline BlockWrench wrench_of(const pinnquad::BlockModel& block) {
   });
 }
 
-}  // namespace programs
+}  // namespace study

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The inverse of a rigid body with a residual wrench: force and torque that its rotors do not account for, from the
 // air's velocity past the vehicle, its body rates and the state of its rotors.
-// Contract of a residual wrench, learnt (control/wrench_network.hpp) or nominal (NominalWrench):
+// Contract of a residual wrench, learnt (study/wrench_network.hpp) or nominal (NominalWrench):
 //   Accelerations<S> operator()(const WrenchInputs<S>&) const noexcept
 // force / mass and angular acceleration, body frame, of everything but rotors and gravity.
 #pragma once
@@ -15,7 +15,9 @@
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
-namespace pinnquad {
+namespace study {
+
+using namespace pinnquad;
 
 /// The inputs of a residual wrench, body frame FRD.
 template <class Scalar>
@@ -40,7 +42,7 @@ class NominalWrench<Quadrotor<Scalar, Effects...>> {
     state.body_rates_rad_s = in.body_rates_rad_s;
     const Wrench<Scalar> wrench = vehicle_.aerodynamic_wrench(state, vehicle_.surroundings(state, Scalar(0)),
                                                               vehicle_.rotors().fractions(in.rotors));
-    const Airframe<Scalar>& airframe = vehicle_.airframe();
+    const pinnquad::Airframe<Scalar>& airframe = vehicle_.airframe();
     return {wrench.force_N / airframe.mass_kg, inertia_solved(airframe, wrench.torque_N_m)};
   }
 
@@ -62,7 +64,7 @@ template <class Scalar, class Residual>
 class WrenchInverse {
  public:
   /// `rotor_scale` of the place (Quadrotor::rotor_scale).
-  WrenchInverse(const Airframe<Scalar>& airframe, const Residual& residual, Scalar rotor_scale = Scalar(1),
+  WrenchInverse(const pinnquad::Airframe<Scalar>& airframe, const Residual& residual, Scalar rotor_scale = Scalar(1),
                 Scalar gravity_m_s2 = standard_gravity_m_s2<Scalar>) noexcept
       : airframe_(airframe),
         mount_(airframe),
@@ -76,7 +78,7 @@ class WrenchInverse {
   }
 
   const Residual& residual() const noexcept { return residual_; }
-  const Airframe<Scalar>& airframe() const noexcept { return airframe_; }
+  const pinnquad::Airframe<Scalar>& airframe() const noexcept { return airframe_; }
   void tell(const WindAndThrust<Scalar>& told) noexcept { told_ = told; }
   const WindAndThrust<Scalar>& told() const noexcept { return told_; }
 
@@ -122,14 +124,14 @@ class WrenchInverse {
   }
 
  private:
-  Airframe<Scalar> airframe_;
+  pinnquad::Airframe<Scalar> airframe_;
   Rotors<Scalar> mount_;
   Residual residual_;
   Scalar rotor_scale_, gravity_m_s2_;
   RotorFollower<Scalar> follower_;
-  detail::TickClock<Scalar> clock_;
+  pinnquad::detail::TickClock<Scalar> clock_;
   Commands<Scalar> rotors_{};
   WindAndThrust<Scalar> told_{};
 };
 
-}  // namespace pinnquad
+}  // namespace study

@@ -13,7 +13,9 @@
 #include "pinnquad/control/tick_clock.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
-namespace pinnquad {
+namespace study {
+
+using namespace pinnquad;
 
 /// One state z with z' = known + d, d unknown: a predictor p with p' = known + s - a (p - z), the law
 ///   s = -a / (exp(a T) - 1) (p - z)
@@ -119,9 +121,9 @@ class L1Adaptive {
   Vehicle vehicle_;
   L1Settings<Scalar> settings_;
   RotorFollower<Scalar> rotors_;
-  detail::TickClock<Scalar> clock_;
+  pinnquad::detail::TickClock<Scalar> clock_;
   std::array<L1Observer<Scalar>, 6> of_{};  ///< velocity NED, body rates FRD
   bool runs_ = false;
 };
 
-}  // namespace pinnquad
+}  // namespace study

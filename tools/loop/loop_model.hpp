@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// The model that flies in a loop: its block, the columns at which it is held, its airframe or another one.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "airframe/choice.hpp"
+#include "command_line/held_columns.hpp"
+#include "flight/block_loop.hpp"
+#include "model/given_model.hpp"
+
+namespace programs {
+
+struct LoopModelOptions {
+  std::string model;
+  std::string airframe;
+  std::vector<std::string> columns;
+};
+
+struct LoopModel {
+  pinnquad::BlockModel model;
+  std::vector<double> columns{};  ///< in the model's order
+  NamedAirframe airframe{};
+};
+
+inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
+  add_model(line, options.model);
+  line.add_option("--column", options.columns,
+                  "the value at which a column that the model asks for is held, in place of the middle of its "
+                  "training envelope: --column battery_voltage=15.2")
+      ->type_name("NAME=VALUE");
+  line.add_option(
+      "--airframe", options.airframe,
+      "what flies in place of the model's own airframe, its motors as there: a file, or one of: " + airframe_names());
+}
+
+/// Throws InputError and std::invalid_argument, one line, for what can't fly.
+inline LoopModel read_loop_model(const LoopModelOptions& options) {
+  LoopModel result{read_model(options.model)};
+  const pinnquad::BlockModel& model = result.model;
+  if (model.features().window().latest_s > 0) {
+    throw std::invalid_argument(model.path() + ": its window looks ahead of the present, which no loop can");
+  }
+  result.columns = held_columns(range_of(model).columns(), options.columns);
+  if (options.airframe.empty()) {
+    result.airframe = {model.airframe_name(), model.airframe()};
+    return result;
+  }
+  result.airframe = chosen_airframe(options.airframe);
+  if (motor_torque_signs(result.airframe.value) != motor_torque_signs(model.airframe())) {
+    throw std::invalid_argument("--airframe: the motors of " + pinnquad::printable(result.airframe.name) +
+                                " stand or turn otherwise than those of " + model.airframe_name() +
+                                ", which the model commands");
+  }
+  return result;
+}
+
+/// Lines of a help: each name with what it is.
+template <class Named>
+std::string described(const char* title, const Named& all) {
+  std::string result = title;
+  for (const auto& each : all) {
+    std::string name = each.name;
+    name.resize(20, ' ');
+    result += "\n  " + name + each.summary;
+  }
+  return result + "\n";
+}
+
+/// An option that takes names of `all`, parted by commas.
+template <class Named>
+CLI::Option* add_names(CLI::App& line, const char* option, std::vector<std::string>& value, const Named& all,
+                       const std::string& text) {
+  std::vector<std::string> names;
+  for (const auto& each : all) names.emplace_back(each.name);
+  CLI::IsMember known(names);
+  known.description("");  // the names are in the footer
+  return line.add_option(option, value, text)->delimiter(',')->type_name("NAME,...")->check(known);
+}
+
+/// Each name once; `usual` where none is given.
+inline std::vector<std::string> names_or(const std::vector<std::string>& named, std::vector<std::string> usual) {
+  std::vector<std::string> once;
+  for (const std::string& name : named.empty() ? usual : named) {
+    if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
+  }
+  return once;
+}
+
+}  // namespace programs

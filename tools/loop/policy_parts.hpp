@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Parts of which controllers in the loop are composed: inverses, what they see of the flown motion, how they learn.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+
+#include "flight/block_feed_forward.hpp"
+#include "loop/controllers.hpp"
+#include "pinnquad/control/filtered_motion.hpp"
+
+namespace programs {
+
+struct PolicyParts {
+  using Formula = pinnquad::AnalyticInverse<pinnquad::SwitchedQuadrotor>;
+
+  PolicyParts(const LoopKnowledge& told, const LoopGains& gains)
+      : known(told),
+        body(quadrotor_with(pinnquad::switched_effects<pinnquad::Quadrotor<double, pinnquad::StandardAtmosphere>>(),
+                            told.vehicle.airframe(), told.vehicle.site())),
+        rigid_body(body),
+        formula(told.vehicle),
+        lag_s(told.vehicle.airframe().rise_time_constant_s(0)),
+        bias(told.bias),
+        at_once(told.bias),
+        slower(told.bias),
+        filtered_(low_pass(gains)) {
+    for (std::size_t i = 0; i < bias.time_constants_s.size(); ++i) {
+      bias.time_constants_s[i] /= gains.learning;
+      at_once.time_constants_s[i] = 0;
+      at_once.most[i] = std::numeric_limits<double>::infinity();  // an increment from tick to tick, not a bias learnt
+      slower.time_constants_s[i] = 0.05 / gains.learning;
+    }
+    bias.across_time_constant_s /= gains.learning;
+    at_once.across_time_constant_s = 0;
+    slower.across_time_constant_s = 0.05 / gains.learning;
+  }
+
+  template <class Inverse>
+  auto adaptive(const Inverse& inverse) const {
+    return pinnquad::AdaptiveInverse<double, Inverse>(inverse, known.vehicle.airframe(), bias,
+                                                      pinnquad::FlownMotion<double>({25'000, lag_s, known.delay_s}));
+  }
+  template <class Inverse>
+  auto incremental(const Inverse& inverse, const pinnquad::BiasSettings<double>& settings) const {
+    return pinnquad::AdaptiveInverse<double, Inverse, pinnquad::FilteredMotion<double>>(
+        inverse, known.vehicle.airframe(), settings, filtered_);
+  }
+  template <class First, class Second>
+  static AnyPolicy handing_over(const First& first, const Second& second) {
+    return AnyPolicy(pinnquad::HandsOver<double, First, Second>(first, second));
+  }
+  template <class Guard, class Compose>
+  AnyPolicy of_model(const Guard& guard, const Compose& compose) const {
+    return with_feed_forward(known.model, guard, known.vehicle.site().ground_z_m, known.columns, compose);
+  }
+  /// Where the model declines, the analytic inverse answers.
+  pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::Fallback<Formula>> falls_back() const { return {formula}; }
+
+  const LoopKnowledge& known;
+  const pinnquad::SwitchedQuadrotor body;  ///< without drag
+  const Formula rigid_body, formula;
+  const double lag_s;
+  pinnquad::BiasSettings<double> bias, at_once, slower;
+
+ private:
+  pinnquad::FilteredMotionSettings<double> low_pass(const LoopGains& gains) const {
+    pinnquad::FilteredMotionSettings<double> result;
+    result.cutoff_rad_s *= gains.learning;
+    result.rotor_lag_s = lag_s;
+    result.delay_s = known.delay_s;
+    return result;
+  }
+
+  pinnquad::FilteredMotion<double> filtered_;
+};
+
+}  // namespace programs
