@@ -14,10 +14,10 @@
 #include "pinnquad/aero/inflow.hpp"
 #include "pinnquad/aero/wake.hpp"
 #include "pinnquad/aero/wind.hpp"
+#include "pinnquad/control/mppi.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/harder_quadrotor.hpp"
 #include "pinnquad/vehicle/lanes_of_vehicles.hpp"
-#include "study/mppi.hpp"
 #include "support/naive_eigen_network.hpp"
 #include "support/program.hpp"
 
@@ -113,8 +113,8 @@ void harder_step(benchmark::State& state) {
 
 /// Improvements of the plan on the way along the figure-eight: 512 flights of 40 steps each.
 void mppi(benchmark::State& state) {
-  study::Mppi<Quadrotor<float, StandardAtmosphere, QuadraticDrag>> controller(airframe_value<PaperQuadrotor, float>(),
-                                                                              paper_site<float>());
+  Mppi<Quadrotor<float, StandardAtmosphere, QuadraticDrag>> controller(airframe_value<PaperQuadrotor, float>(),
+                                                                       paper_site<float>());
   const FigureEight<float> eight;
   const auto sample = [&eight](double time_s) { return eight.sample(static_cast<float>(time_s)); };
   VehicleState<float> vehicle;

@@ -16,9 +16,7 @@
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/vehicle/lanes_of_vehicles.hpp"
 
-namespace study {
-
-using namespace pinnquad;
+namespace pinnquad {
 
 /// Costs are per step, of squares; the values are ours.
 struct MppiSettings {
@@ -55,10 +53,10 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
 
  public:
   /// Effects as they are by default.
-  explicit Mppi(const pinnquad::Airframe<float>& airframe, const Site<float>& site = {},
+  explicit Mppi(const Airframe<float>& airframe, const Site<float>& site = {},
                 const MppiSettings& settings = {}) noexcept
       : Mppi(std::tuple<Effects...>{}, airframe, site, settings, std::index_sequence_for<Effects...>{}) {}
-  Mppi(const pinnquad::Airframe<float>& airframe, const Site<float>& site, const MppiSettings& settings,
+  Mppi(const Airframe<float>& airframe, const Site<float>& site, const MppiSettings& settings,
        const std::tuple<Effects...>& effects) noexcept
       : Mppi(effects, airframe, site, settings, std::index_sequence_for<Effects...>{}) {}
 
@@ -68,11 +66,11 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
     bool holds = true;
     for (const float positive :
          {s.step_s, s.temperature, s.thrust_deviation_m_s2, s.rate_deviation_rad_s, s.most_off_m}) {
-      holds = holds && pinnquad::detail::plausible(positive);
+      holds = holds && detail::plausible(positive);
     }
     for (const float cost : {s.position_cost_1_m2, s.velocity_cost_s2_m2, s.attitude_cost, s.rate_cost_s2,
                              s.thrust_cost_s4_m2, s.rate_gain_1_s, s.yaw_rate_gain_1_s}) {
-      holds = holds && pinnquad::detail::plausible_or_zero(cost);
+      holds = holds && detail::plausible_or_zero(cost);
     }
     return holds ? vehicle_.status() : Status::out_of_range;
   }
@@ -104,7 +102,7 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
 
  private:
   template <std::size_t... Index>
-  Mppi(const std::tuple<Effects...>& effects, const pinnquad::Airframe<float>& airframe, const Site<float>& site,
+  Mppi(const std::tuple<Effects...>& effects, const Airframe<float>& airframe, const Site<float>& site,
        const MppiSettings& settings, std::index_sequence<Index...>) noexcept
       : settings_(settings),
         vehicle_(airframe, site, std::get<Index>(effects)...),
@@ -156,7 +154,7 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
       const Number rate = Number(wanted.body_rates_rad_s[i]) + change[static_cast<std::size_t>(i) + 1];
       turning[i] = Number(wanted.angular_acceleration_rad_s2[i]) + gain * (rate - rates[i]);
     }
-    const pinnquad::Airframe<Number>& airframe = vehicle.airframe();
+    const Airframe<Number>& airframe = vehicle.airframe();
     Wrench<Number> wrench;
     wrench.force_N[2] = -(Number(wanted.specific_thrust_m_s2) + change[0]) * airframe.mass_kg;
     wrench.torque_N_m =
@@ -176,7 +174,7 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
       if (flat != Status::ok) return flat;
     }
     const Vector3<float> off = start.body.position_m - sample(start.time_s).position_m;
-    const float off_m = pinnquad::detail::square_root(off.squaredNorm());
+    const float off_m = detail::square_root(off.squaredNorm());
     if (off_m > settings_.most_off_m) {
       for (TrajectoryPoint<float>& point : points_) point.position_m += off * (1 - settings_.most_off_m / off_m);
     }
@@ -203,7 +201,7 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
       if (!(cost_[rollout] < std::numeric_limits<float>::max())) continue;
       const float exponent = temperature > 0 ? (cost_[rollout] - least) / temperature : 0.0f;
       if (exponent > 20) continue;
-      const float weight = pinnquad::detail::exponential(-exponent);
+      const float weight = detail::exponential(-exponent);
       whole += weight;
       for (std::size_t stretch = 0; stretch < mean.size(); ++stretch) {
         const Change<float> tried = disturbance(rollout, stretch);
@@ -271,4 +269,4 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
   bool begun_ = false;
 };
 
-}  // namespace study
+}  // namespace pinnquad
