@@ -9,8 +9,6 @@
 #include <vector>
 
 #include "pinnquad/aero/air_density.hpp"
-#include "pinnquad/aero/drag.hpp"
-#include "pinnquad/aero/wind.hpp"
 #include "pinnquad/control/integral_inverse.hpp"
 #include "pinnquad/control/rotor_follower.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"

@@ -99,7 +99,7 @@ TEST_CASE("without a projection the same rows do turn it; with one a network tha
   const RowSet rows(flight, {0, flight.size()});
   const auto context = make_context<Setting>(rows);
   const AffineMap map = fit_monotone_base(context, rows);
-  const detail::PathProjection<Setting, Seeing> projection(context, map);
+  const study::detail::PathProjection<Setting, Seeing> projection(context, map);
   std::mt19937_64 engine(2);
   auto network = initialised<Seeing>(engine);
   const auto before = network.parameters;
@@ -115,7 +115,7 @@ TEST_CASE("without a projection the same rows do turn it; with one a network tha
   }
   CHECK(changed >= 16);
   const auto projected = network.parameters;
-  detail::PathProjection<Setting, Seeing>(context, map, 0.91)(network.parameters);  // a little more is allowed
+  study::detail::PathProjection<Setting, Seeing>(context, map, 0.91)(network.parameters);  // a little more is allowed
   CHECK(network.parameters == projected);
 
   const auto answer_of = [&](const Seeing& trained) {
@@ -132,7 +132,7 @@ TEST_CASE("without a projection the same rows do turn it; with one a network tha
   free.parameters = before;
   CHECK(answer_of(network).proven());
   CHECK(!answer_of(free).proven());
-  CHECK_THROWS_AS((detail::PathProjection<Setting, Seeing>(context, map, 1.0)), std::invalid_argument);
+  CHECK_THROWS_AS((study::detail::PathProjection<Setting, Seeing>(context, map, 1.0)), std::invalid_argument);
 }
 
 TEST_CASE("project() changes the trainer's network and nothing else") {
