@@ -27,7 +27,7 @@ struct StructuredExport {
   int thrusts_of_present = 0;
 };
 
-/// What fits and exports structured models of `Features` for an airframe.
+/// Fits and exports of structured models of `Features` for an airframe.
 template <class Features>
 StructuredExport structured_export(const GivenAirframe& airframe) {
   using Base = detail::StructuredBase<Features>;
