@@ -11,12 +11,13 @@
 // CASE CENTRED_PART: pinnquad: a centred window looks ahead, and no loop can
 // CASE JOINED_TWICE: pinnquad: feature sets that are Joined have a feature in common
 // CASE JOINED_INPUTS: pinnquad: feature sets that are Joined have the same Inputs
+// CASE COLUMN_NOT_CHOSEN: pinnquad: Chosen leaves out a column that its inputs hold
 // CASE CENTRED_HISTORY: pinnquad: a centred window looks ahead, and no loop can
 // CASE UNMEASURED_INPUT: pinnquad: this model asks for more than MotionInputs; NetworkInverse needs a second argument
 // CASE MEASURING_IN_SECONDS: pinnquad: what measures for NetworkInverse is called .*; time is a std::uint64_t of microseconds
 // CASE MEASURING_MAY_THROW: pinnquad: what measures for NetworkInverse is called with state, time and inputs, and must be noexcept
 #include "pinnquad/control/feed_forward.hpp"
-#include "pinnquad/features/motion_parts.hpp"
+#include "pinnquad/features/chosen_features.hpp"
 
 namespace {
 
@@ -53,6 +54,8 @@ using Past = PartlyWindowed<Measured, PaperFeaturesWithAltitude, 3, PeriodMicros
 using Past = PartlyWindowed<Measured, AccelerationFeatures, 3, PeriodMicroseconds<20000>, Centred>;
 #elif defined(JOINED_TWICE)
 using Past = Windowed<Joined<BodyRates, DownVector, BodyRates>, 3, PeriodMicroseconds<20000>>;
+#elif defined(COLUMN_NOT_CHOSEN)
+using Past = Windowed<Chosen<Measured, 3, 4, 5>, 3, PeriodMicroseconds<20000>>;
 #elif defined(JOINED_INPUTS)
 using Past = Windowed<Joined<BodyRates, PaperFeaturesWithAltitude>, 3, PeriodMicroseconds<20000>>;
 #else

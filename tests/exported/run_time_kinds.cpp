@@ -179,6 +179,7 @@ struct Load {
 using WithTwo = WithColumns<PaperFeatures, BatteryVoltage, Load>;
 using WithTwoByTwo = WithColumns<WithColumns<PaperFeatures, Load>, BatteryVoltage>;
 using AltitudeAndColumn = WithColumns<InverseFeaturesWithAltitude, BatteryVoltage>;
+using ColumnsInFront = Chosen<WithTwo, 17, 16, 5, 3, 4, 0, 9>;
 using CausalWindow = Windowed<WithTwo, 4, Period>;
 using CentredWindow = Windowed<PaperFeaturesWithAltitude, 5, Period, Centred>;
 using PartlyCentred = PartlyWindowed<AltitudeAndColumn, AngularAcceleration, 3, Period, Centred>;
@@ -385,9 +386,9 @@ TEST_CASE_TEMPLATE("commands to the bit: sums, monotone and path-bounded models"
 }
 
 TEST_CASE_TEMPLATE("commands to the bit: columns, altitude, windows, features of a user's own", Model,
-                   OfFeatures<WithTwo>, OfFeatures<WithTwoByTwo>, OfFeatures<AltitudeAndColumn, double>,
-                   OfFeatures<CausalWindow>, OfFeatures<CentredWindow>, OfFeatures<PartlyCentred>,
-                   OfFeatures<WindFeatures>) {
+                   OfFeatures<WithTwo>, OfFeatures<ColumnsInFront>, OfFeatures<WithTwoByTwo>,
+                   OfFeatures<AltitudeAndColumn, double>, OfFeatures<CausalWindow>, OfFeatures<CentredWindow>,
+                   OfFeatures<PartlyCentred>, OfFeatures<WindFeatures>) {
   commands_are_the_same<Model>(4);
 }
 

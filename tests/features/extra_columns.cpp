@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "pinnquad/features/chosen_features.hpp"
+#include "pinnquad/features/windowed.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "support/random_states.hpp"
 
@@ -72,6 +74,27 @@ TEST_CASE("a set of columns around another one has the columns of both") {
   CHECK(Both::size == 18);
   CHECK(std::string(extra_column_names<Both>[0]) == "battery_voltage");
   CHECK(std::string(extra_column_names<Both>[1]) == "pack_current");
+}
+
+TEST_CASE("whatever is made of a set with columns asks for what its inputs hold, and has it where it says") {
+  // Measured: 17 features, then the three columns
+  using Some = Chosen<Measured, 19, 2, 17, 18>;
+  using Alone = Joined<Measured>;
+  CHECK(extra_column_names<Some> == extra_column_names<Measured>);
+  CHECK(extra_column_units<Some> == extra_column_units<Measured>);
+  CHECK(extra_column_names<Alone> == extra_column_names<Measured>);
+  CHECK(extra_column_names<Windowed<Some, 2, PeriodMicroseconds<20000>>> == extra_column_names<Measured>);
+  const std::array<float, 3> values = {15.5F, 101, 22};
+  MeasuredInputs inputs = sound_inputs(3);
+  inputs.columns = {};
+  CHECK(set_columns(inputs, values.data()) == values.data() + extra_column_names<Some>.size());
+  std::array<float, 20> whole{};
+  std::array<float, 4> x{};
+  Measured::extract(inputs, whole.data());
+  Some::extract(inputs, x.data());
+  CHECK(x == std::array<float, 4>{22, whole[2], 15.5F, 101});
+  for (int i = 0; i < Some::size; ++i) CHECK(detail::is_column<Some>(i) == (i != 1));
+  for (int i = 0; i < Alone::size; ++i) CHECK(detail::is_column<Alone>(i) == (i > 16));
 }
 
 TEST_CASE("a column that is not finite is refused, and so is one that was never set; motion and attitude as ever") {

@@ -109,6 +109,10 @@ class BlockBytes {
     }
     set_u32(at + 8, static_cast<std::uint32_t>(hash));
     set_u32(at + 12, static_cast<std::uint32_t>(hash >> 32));
+    if (records.records_hash == nullptr) return;
+    const std::uint64_t whole = detail::hash_of_records(records.whole, records.whole_bytes, records.records_hash);
+    set_u32(at + 16, static_cast<std::uint32_t>(whole));
+    set_u32(at + 20, static_cast<std::uint32_t>(whole >> 32));
   }
 
   std::size_t size_;

@@ -3,6 +3,7 @@
 // (deploy/weight_file.hpp), or its text. Layout: exported/model_block.hpp; the same bytes on every machine.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -15,6 +16,7 @@
 
 #include "pinnquad/core/body.hpp"
 #include "pinnquad/deploy/provenance.hpp"
+#include "pinnquad/exported/block_contents.hpp"
 #include "pinnquad/exported/model_block.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/version.hpp"
@@ -136,7 +138,8 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
   std::vector<std::uint64_t> airframe;
   each_number(records.airframe, [&](auto number) { airframe.push_back(double_bits(static_cast<double>(number))); });
   record(BlockRecord::vehicle, mandatory, airframe, records.flown_airframe, records.vehicle_name);
-  record(BlockRecord::contents, mandatory, records.contents_hash);
+  record(BlockRecord::contents, mandatory, records.contents_hash, std::uint64_t{0});
+  const std::size_t own = out.bytes.size() - 8;  // of the hash over all records, when they are there
   if (!records.affine.empty()) record(BlockRecord::affine, optional, records.affine);
   if (const auto& trust = records.trust) {
     record(BlockRecord::trust, optional, double_bits(trust->squared_distance_limit),
@@ -163,6 +166,9 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
     throw std::invalid_argument("export: name, training data and loss of a model are too long together");
   }
   record(BlockRecord::provenance, optional, provenance);
+  Bytes hash;
+  hash.add(hash_of_records(out.bytes.data(), out.bytes.size(), out.bytes.data() + own));
+  std::copy(hash.bytes.begin(), hash.bytes.end(), out.bytes.begin() + static_cast<std::ptrdiff_t>(own));
   Bytes all;
   all.add(count);
   all.add(static_cast<std::uint32_t>(out.bytes.size()));

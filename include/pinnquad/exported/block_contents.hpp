@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One check over all that a block states beside its shape, for whoever opens it (exported/model_view.hpp,
-// exported/run_time_model.hpp): its numbers against each other, and its contents_hash, which is computed again from its
-// own bytes. An edited block is refused, though its checksum was made again.
+// exported/run_time_model.hpp): its numbers against each other, and two hashes, which are computed again from its own
+// bytes: that of the header beside it, and one of all records. An edited block is refused, though its checksum was made
+// again.
 #pragma once
 
 #include <cstddef>
@@ -103,6 +104,17 @@ struct RunTimeHash {
     }
   }
 };
+
+/// A hash over the bytes of all records, but for its own eight at `own`. contents_hash leaves out limits of trust,
+/// bias, certificate, numbers of a schema, the airframe as it flies, provenance.
+inline std::uint64_t hash_of_records(const unsigned char* first, std::size_t bytes, const unsigned char* own) noexcept {
+  constexpr std::uint64_t seed = seed_of("block records");
+  RunTimeHash hash{seed};
+  const auto before = static_cast<std::size_t>(own - first);
+  hash.add_bytes(first, before / 4);
+  hash.add_bytes(own + 8, (bytes - before - 8) / 4);
+  return hash.hash;
+}
 
 /// The hash of the header beside a block, of what the block says.
 template <class Scalar>
@@ -317,7 +329,9 @@ StatedNumber fault_of_block(const BlockRecords<Scalar>& said, const BlockNumbers
   }
   const BlockContents<Scalar> contents(said, numbers, vehicle);
   if (!contents.rounds()) return StatedNumber::unrounded;
-  return contents.hash() == said.contents_hash ? StatedNumber::none : StatedNumber::contents;
+  const unsigned char* own = said.records_hash;
+  const bool same_records = own == nullptr || hash_of_records(said.whole, said.whole_bytes, own) == read_u64(own);
+  return contents.hash() == said.contents_hash && same_records ? StatedNumber::none : StatedNumber::contents;
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

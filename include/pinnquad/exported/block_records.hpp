@@ -63,12 +63,15 @@ struct BlockRecords : ModelRecords<Scalar> {
   const unsigned char* airframe = nullptr;  ///< f64
   const Scalar* flown_airframe = nullptr;
   std::uint64_t contents_hash = 0;
-  const unsigned char* trust = nullptr;        ///< five f64
-  const unsigned char* certificate = nullptr;  ///< twelve f64
+  const unsigned char* records_hash = nullptr;  ///< u64, of all records
+  const unsigned char* trust = nullptr;         ///< five f64
+  const unsigned char* certificate = nullptr;   ///< twelve f64
   const Scalar* affine = nullptr;
   const unsigned char* unrounded = nullptr;  ///< twenty f64
-  std::uint32_t seen = 0;                    ///< a bit per type
-  StatedFault fault{};                       ///< where take() refuses
+  const unsigned char* whole = nullptr;      ///< the first record
+  std::size_t whole_bytes = 0;
+  std::uint32_t seen = 0;  ///< a bit per type
+  StatedFault fault{};     ///< where take() refuses
 
   constexpr bool said(BlockRecord record) const noexcept { return (seen >> static_cast<unsigned>(record) & 1u) != 0; }
   /// Says all that a block must.
@@ -89,7 +92,8 @@ struct BlockRecords : ModelRecords<Scalar> {
         record_lengths(sizeof(Scalar), static_cast<std::uint32_t>(inputs), static_cast<std::uint32_t>(outputs_count));
     const std::uint32_t sized = lengths.of[static_cast<unsigned>(type)];
     fault = {StatedNumber::layout};
-    if (sized != 0 && length != sized) return Status::block_corrupt;
+    const bool is_older = type == BlockRecord::contents && length == 8;
+    if (sized != 0 && length != sized && !is_older) return Status::block_corrupt;
     const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes));  // at a multiple of 8
     const BlockText text{bytes, length};
     const FiniteNumber finite{};
@@ -170,7 +174,10 @@ struct BlockRecords : ModelRecords<Scalar> {
         vehicle_name = {bytes + exact + flown, length - exact - flown};
         break;
       }
-      case BlockRecord::contents: contents_hash = read_u64(bytes); break;
+      case BlockRecord::contents:
+        contents_hash = read_u64(bytes);
+        if (!is_older) records_hash = bytes + 8;
+        break;
       case BlockRecord::trust: {
         double limits[5];
         std::memcpy(static_cast<double*>(limits), bytes, sizeof limits);
@@ -231,6 +238,8 @@ Status read_records(const unsigned char* first, std::size_t available, std::size
   if (bytes % 8 != 0 || bytes > available - Header::record_counts) return Status::block_corrupt;
   const unsigned char* at = first + Header::record_counts;
   std::size_t left = bytes;
+  records.whole = at;
+  records.whole_bytes = bytes;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (left < Header::record_head) return Status::block_corrupt;
     const std::uint32_t word = read_u32(at);

@@ -71,7 +71,8 @@ enum class BlockRecord : std::uint16_t {
   features = 12,  ///< name and unit of each feature, every text closed by a 0
   outputs = 13,   ///< description of the output schema, then name and unit of each output, every text closed by a 0
   vehicle = 14,   ///< each_number() of the airframe in f64, the same in scalars as it flies, its name
-  contents = 15,  ///< u64 contents_hash of the header beside it (exported/contents_hash.hpp)
+  contents = 15,  ///< u64 contents_hash of the header beside it (exported/contents_hash.hpp), u64 hash_of_records();
+                  ///< an older writer left the second one out
   trust = 16,  ///< f64 limit of the squared distance; factor, limit, cleared, period of the command residual; scalars:
                ///< means of all features, whitening triangle column by column; optional
   certificate = 17,  ///< f64 slope (3), held slope (3), thrust slope, held thrust slope, command bound (4); optional
@@ -130,7 +131,7 @@ constexpr RecordLengths record_lengths(std::uint32_t scalar, std::uint32_t input
            0,
            0,
            0,
-           8,
+           16,
            5 * 8 + distance,
            12 * 8,
            0,

@@ -37,6 +37,18 @@ struct Chosen {
   static constexpr std::array<const char*, sizeof...(Place)> names = {FeatureSet::names[std::size_t(Place)]...};
   static constexpr std::array<const char*, sizeof...(Place)> units = {FeatureSet::units[std::size_t(Place)]...};
   static_assert(detail::all_differ(names), "pinnquad: Chosen takes no place twice");
+  static_assert(
+      [] {
+        bool chosen = true;
+        for (const std::string_view column : extra_column_names<FeatureSet>) {
+          bool found = false;
+          for (const char* name : names) found = found || name == column;
+          chosen = chosen && found;
+        }
+        return chosen;
+      }(),
+      "pinnquad: Chosen leaves out a column that its inputs hold, so that flights would be asked for it in "
+      "vain: choose its place, or write WithColumns<Chosen<...>, ...>");
 
   /// As FeatureSet, of all its inputs.
   template <class AnyInputs>

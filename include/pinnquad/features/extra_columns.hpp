@@ -29,18 +29,25 @@ using ColumnMembers = std::enable_if_t<std::is_convertible_v<decltype(T::name), 
                                        std::is_convertible_v<decltype(T::unit), const char*>>;
 template <class T>
 using MeasuredColumnsOf = std::void_t<decltype(T::column_names), decltype(T::column_units)>;
+/// Columns that inputs hold.
+template <class Inputs>
+struct ColumnsInside {
+  static constexpr std::array<const char*, 0> names{}, units{};
+};
 template <class Features>
-constexpr auto extra_columns_of([[maybe_unused]] bool units) noexcept {
+constexpr auto extra_columns_of(bool units) noexcept {
   if constexpr (is_detected<MeasuredColumnsOf, Features>) {
     return units ? Features::column_units : Features::column_names;
   } else {
-    return std::array<const char*, 0>{};
+    using Columns = ColumnsInside<typename Features::template Inputs<double>>;
+    return units ? Columns::units : Columns::names;
   }
 }
 
 }  // namespace detail
 
-/// Names and units of the columns that a feature set asks for: none unless it is WithColumns, or has one inside.
+/// Names and units of the columns that a feature set asks for: all that its inputs hold, or those that it names
+/// (`column_names`, `column_units`) where its inputs are of another type. set_columns() sets them in this order.
 template <class Features>
 inline constexpr auto extra_column_names = detail::extra_columns_of<Features>(false);
 template <class Features>
@@ -112,6 +119,13 @@ struct InputsWithColumns : Base {
     return at;
   }
 };
+
+template <class Base, class Scalar, class... Column>
+struct ColumnsInside<InputsWithColumns<Base, Scalar, Column...>> {
+  using Texts = std::array<const char*, sizeof...(Column)>;
+  static constexpr auto names = joined_texts(ColumnsInside<Base>::names, Texts{Column::name...});
+  static constexpr auto units = joined_texts(ColumnsInside<Base>::units, Texts{Column::unit...});
+};
 }  // namespace detail
 
 /// Sets every column of a model's inputs, from `values` in the order of extra_column_names; what follows is returned.
@@ -150,10 +164,6 @@ struct WithColumns {
   static constexpr auto names = detail::joined_texts(FeatureSet::names, Texts{Column::name...});
   static constexpr auto units = detail::joined_texts(FeatureSet::units, Texts{Column::unit...});
   static_assert(detail::all_differ(names), "pinnquad: a column of WithColumns has a name that is taken");
-
-  /// Columns that flights must have measured, those of `FeatureSet` first.
-  static constexpr auto column_names = detail::joined_texts(extra_column_names<FeatureSet>, Texts{Column::name...});
-  static constexpr auto column_units = detail::joined_texts(extra_column_units<FeatureSet>, Texts{Column::unit...});
 
   /// As `FeatureSet`; `not_finite` for a column too.
   template <class Scalar, class Base>

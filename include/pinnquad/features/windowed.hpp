@@ -47,6 +47,8 @@ struct WindowInputs : Tap {
   std::array<Tap, static_cast<std::size_t>(Window::taps - 1)> others{};  ///< in the order of Window::offset_s
   bool complete{false};  ///< all taps are set: else check() says `warming_up`
 };
+template <class Tap, class Scalar, class Window>
+struct ColumnsInside<WindowInputs<Tap, Scalar, Window>> : ColumnsInside<Tap> {};
 
 /// The instants of a window.
 template <int Taps, class Period, class Reach>
@@ -139,9 +141,6 @@ struct WindowFeatures {
   static constexpr auto names = window_names<FeatureSet, Part, Reach, Taps>(
       std::make_integer_sequence<int, FeatureSet::size + (Taps - 1) * Part::size>{});
   static constexpr auto units = window_units<FeatureSet, Part, names.size()>();
-  /// Columns that flights must have measured.
-  static constexpr auto column_names = extra_column_names<FeatureSet>;
-  static constexpr auto column_units = extra_column_units<FeatureSet>;
 
   /// As `FeatureSet` of the present and as `Part` of every other tap; `warming_up` where a tap is missing and the
   /// present inputs are sound.
