@@ -12,6 +12,7 @@
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/pinnquad.hpp"
+#include "pinnquad/training/structured/agreement.hpp"
 
 using namespace pinnquad;
 
