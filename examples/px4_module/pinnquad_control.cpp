@@ -163,7 +163,10 @@ void PinnquadControl::Run() {
   _stale_inputs = status.stale_inputs;
   if (_selected && _has_commands) publish(motors);
   if (_has_commands) _said_no_commands = false;
-  if (_selected && !_has_commands && !_armed) say_no_commands();
+  if (_selected && !_has_commands && !_armed) {
+    publish_stopped();
+    say_no_commands();
+  }
   if (_selected && (!_has_commands || should_exit() || _takeover.asking())) {
     ask_for_takeover();
   } else {
@@ -304,6 +307,15 @@ void PinnquadControl::publish(const pinnquad_px4::ActuatorMotors& motors) {
   torque.timestamp_sample = motors.timestamp_sample;
   memcpy(torque.xyz, wanted.torque, sizeof torque.xyz);
   _publications.torque.publish(torque);
+}
+
+/// Before arming nothing else writes this topic: PX4's simulated outputs follow it alone, and a simulator in lockstep
+/// that waits for them would stand still, so that the inputs that are missing never come.
+void PinnquadControl::publish_stopped() {
+  actuator_motors_s message{};
+  message.timestamp = message.timestamp_sample = hrt_absolute_time();
+  for (float& control : message.control) control = NAN;
+  _publications.actuator_motors.publish(message);
 }
 
 void PinnquadControl::publish(const pinnquad_px4::PinnquadStatus& status) {

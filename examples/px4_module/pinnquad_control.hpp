@@ -119,6 +119,7 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
   /// The set point of whoever asks for one: a trajectory, a place, the sticks.
   void take_set_point();
   void publish(const pinnquad_px4::ActuatorMotors& motors);
+  void publish_stopped();
   void publish(const pinnquad_px4::PinnquadStatus& status);
   /// The record of this tick, for pinnquad replay.
   void publish_record();
