@@ -35,7 +35,7 @@ def check_help(commands):
 
 def test_help_and_version_of_the_study(study):
     of_study = commands_of(study)
-    assert names_below(of_study, study) == ["paper", "ablation", "beyond", "merge"]
+    assert names_below(of_study, study) == ["paper", "ablation", "beyond", "loop", "wrench", "merge"]
     assert len(check_help(of_study)) <= 3
 
 
