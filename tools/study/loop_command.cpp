@@ -133,6 +133,8 @@ programs::Command loop_command(CLI::App& program) {
                    "folder of the comparison: loop.json, loop.html; the same command goes on in it")
       ->type_name("FOLDER");
   line->footer(described("Controllers:", studied_controllers()) + described("Conditions:", programs::loop_conditions) +
+               "Examples:\n"
+               "  pinnquad-study loop model.block --controllers pid,adaptive --seeds 2 --out compared\n"
                "Exit codes: 0; 2 bad input or a file that can't be read or written; 130 interrupted: the same command\n"
                "goes on.");
   return {line, [options] { return loop(*options); }};

@@ -160,7 +160,10 @@ programs::Command wrench_command(CLI::App& program) {
   add_number(*line, "--epochs", options.epochs, 0, 100000, "training epochs; 0: the usual number");
   add_number(*line, "--seed", options.seed, std::uint64_t{0}, most_seed, "first seed")->type_name("N");
   line->add_flag("--allow-poor", options.allow_poor, "export it even if it is worse than the mean of the wrench");
-  line->footer("Exit codes: 0; 1 nothing exported: it is worse than the mean; 2 bad input; 130 interrupted.");
+  line->footer(
+      "Examples:\n"
+      "  pinnquad-study wrench --flight hard10.csv --airframe light_quadrotor --out w\n"
+      "Exit codes: 0; 1 nothing exported: it is worse than the mean; 2 bad input; 130 interrupted.");
   return {line, [asked, line] {
             if (line->count("--flight") > 0 && line->count("--dataset") > 0) {
               throw std::invalid_argument("--flight and --dataset can't be given together: expected one of them");
