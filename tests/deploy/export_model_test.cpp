@@ -10,7 +10,6 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
-#include <variant>
 
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
@@ -58,7 +57,7 @@ TEST_CASE("header, block and limits of trust are of one model") {
   const pinnquad_test::TemporaryFolder folder;
   const fs::path out = fs::path(folder.path()) / "new" / "model";
   const Exported exported =
-      export_model(out.string(), "SomeModel", std::variant<Model>(made.model), made.split, made.from);
+      export_model(out.string(), "SomeModel", ground_model(made.model), made.split, made.from);
   CHECK(exported.no_trust_because == "");
   CHECK(!exported.certificate);
   const auto golden = golden_features(made.model, made.split.train);

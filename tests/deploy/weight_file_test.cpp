@@ -113,26 +113,27 @@ TEST_CASE("the bytes of a block are fixed") {
   const std::vector<unsigned char> expected = {
       'P',  'I',  'N',  'N',  'Q',  'U',  'A',  'D',               // magic
       4,    0,    0,    0,                                         // version
-      0xcc, 0x0b, 0,    0,                                         // length: 56 + 1504 + 4 (72 + 6 * 20 + 172) + 4
+      0xd4, 0x0b, 0,    0,                                         // length: 56 + 1512 + 4 (72 + 6 * 20 + 172) + 4
       4,    0,    0,    0,    16,   0,    0,    0,    4, 0, 0, 0,  // bytes of a scalar, inputs, outputs
       172,  0,    0,    0,    6,    0,    0,    0,                 // parameters, golden vectors
       0x70, 0x17, 0,    0,                                         // 6000 rows
       0x87, 0x3c, 0x5b, 0x04, 0x18, 0xb0, 0xf9, 0xf6,              // shape hash: see tests/exported/model_view.cpp
       0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01,              // training data
-      10,   0,    0,    0,    0xd8, 5,    0,    0,                 // 10 records of 1496 bytes
+      10,   0,    0,    0,    0xe0, 5,    0,    0,                 // 10 records of 1504 bytes
       1,    0x80, 0,    0,    16,   0,    0,    0,                 // commands, mandatory
       0,    0,    0,    0,    0,    0,    0,    0,                 // thrust
       0,    0,    0,    0,    0,    0,    0x80, 0x3f,              // 0 to 1
       2,    0x80, 0,    0,    8,    0,    0,    0,                 // clock
       0,    0,    0,    0,    0,    0,    0,    0,                 // not said
       3,    0x80, 0,    0,    8,    0,    0,    0};                // window
-  CHECK(block.size() == 3020);
+  CHECK(block.size() == 3028);
   CHECK(begin == expected);
   CHECK(crc32(block.data(), block.size()) == 0x2144df1cu);  // of anything that ends in its own CRC-32
-  // of the records up to the last one, which says the version of the library, and of the scalars
-  CHECK(crc32(block.data() + 64, 1312 - 64) == 0x3cbb7127u);
-  CHECK(detail::read_u32(block.data() + 1312) == static_cast<std::uint32_t>(BlockRecord::provenance));
-  CHECK(crc32(block.data() + 1560, 3020 - 4 - 1560) == 0x2d309b64u);
+  // of the records up to the hash over all of them and the last one, which says the version of the library, and of the
+  // scalars
+  CHECK(crc32(block.data() + 64, 1312 - 64) == 0x36afea25u);
+  CHECK(detail::read_u32(block.data() + 1320) == static_cast<std::uint32_t>(BlockRecord::provenance));
+  CHECK(crc32(block.data() + 1568, 3028 - 4 - 1568) == 0x2d309b64u);
 }
 
 TEST_CASE("a file holds the block, whole or not at all, and reads back") {
