@@ -25,9 +25,8 @@ BeyondTraining evaluated(const BeyondTask& task, Predict predict) {
 }
 
 using Sample = pinnquad::Sample;
-using Commands = pinnquad::Commands<double>;
-constexpr Commands no_commands = {pinnquad::not_a_number, pinnquad::not_a_number, pinnquad::not_a_number,
-                                  pinnquad::not_a_number};
+constexpr pinnquad::Commands<double> no_commands = {pinnquad::not_a_number, pinnquad::not_a_number,
+                                                    pinnquad::not_a_number, pinnquad::not_a_number};
 
 /// Commands of the hover at the begin of the paper's flight d1.
 BeyondTraining evaluate_none(const BeyondTask& task) {
@@ -56,7 +55,7 @@ BeyondTraining evaluate_inverse(const BeyondTask& task) {
         pinnquad::from_euler(pinnquad::EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
     state.velocity_m_s = pinnquad::body_to_world(state.attitude, sample.velocity_m_s);
     state.body_rates_rad_s = sample.body_rates_rad_s;
-    Commands commands = no_commands;
+    pinnquad::Commands<double> commands = no_commands;
     static_cast<void>(pinnquad::inverse_commands(
         vehicle, state, {sample.linear_acceleration_m_s2, sample.angular_acceleration_rad_s2}, 0.0, commands));
     return commands;

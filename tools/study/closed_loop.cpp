@@ -14,7 +14,6 @@ namespace study {
 namespace {
 
 using pinnquad::Status;
-using Commands = pinnquad::Commands<double>;
 
 /// A motion that is asked for, as a row. `ground_z_m`: NED, what the altitude counts from.
 pinnquad::Sample wanted_row(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired,
@@ -36,15 +35,15 @@ pinnquad::Sample wanted_row(const pinnquad::State<double>& state, const pinnquad
 /// The model asked row by row, as it is judged: formulas, which have no block, stand beside trained models here.
 class ModelFeedForward {
  public:
-  ModelFeedForward(const RowPredictions& model, const Commands& hover, double ground_z_m)
+  ModelFeedForward(const RowPredictions& model, const pinnquad::Commands<double>& hover, double ground_z_m)
       : model_(model), hover_(hover), ground_z_m_(ground_z_m) {}
 
   Status operator()(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired,
-                    std::uint64_t time_us, Commands& commands) noexcept {
+                    std::uint64_t time_us, pinnquad::Commands<double>& commands) noexcept {
     try {
       pinnquad::Flight row;
       row.push_back(wanted_row(state, desired, pinnquad::seconds_of(time_us), ground_z_m_));
-      const Commands made = model_(pinnquad::RowSet(row, {0, 1})).front();
+      const pinnquad::Commands<double> made = model_(pinnquad::RowSet(row, {0, 1})).front();
       const bool answered = pinnquad::all_finite(made);
       count_.add(answered ? Status::ok : Status::outside_envelope);
       commands = answered ? made : hover_;
@@ -58,7 +57,7 @@ class ModelFeedForward {
 
  private:
   const RowPredictions& model_;
-  Commands hover_;
+  pinnquad::Commands<double> hover_;
   double ground_z_m_;
   pinnquad::FallbackCount count_{};
 };
