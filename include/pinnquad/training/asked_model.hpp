@@ -18,7 +18,7 @@ namespace pinnquad {
 /// Numbers are doubles that hold the model's own scalar.
 struct AskedModel {
   AskedModel() = default;
-  /// Of a TrainedModel, or of a class of one's own with the same members.
+  /// Made of a TrainedModel, or of a class of one's own with the same members.
   template <class Model, class = typename Model::Features::template Inputs<double>>
   AskedModel(const Model& model);
 
