@@ -167,29 +167,10 @@ std::string taken(const Bytes& block) {
   return all;
 }
 
-/// Five outputs of a user's own.
-struct FiveOutputs {
-  static constexpr int size = 5;
-  static constexpr bool linear = true;
-  static constexpr bool takes_features = false;
-  static constexpr std::array<const char*, size> names = {"u1", "u2", "u3", "u4", "u5"};
-  static constexpr std::array<const char*, size> units = {"1", "1", "1", "1", "1"};
-
-  template <class Scalar>
-  static void commands(const Scalar*, const Scalar* y, const Airframe<Scalar>&, Scalar* u) noexcept {
-    for (int i = 0; i < rotor_count; ++i) u[i] = y[i] + y[4];
-  }
-  template <class Scalar>
-  static void from_commands(const Scalar*, const Scalar* u, const Airframe<Scalar>&, Scalar* y) noexcept {
-    for (int i = 0; i < rotor_count; ++i) y[i] = u[i];
-    y[4] = Scalar(0);
-  }
-};
-
 TEST_CASE("a bit of any byte: no reader takes the block, though its checksum was made again") {
   CHECK(taken<StructuredQuadModel>(whole()) == "");
   CHECK(taken<OwnRacer>(model_block<OwnRacer>()) == "");
-  using Five = test::ModelOf<Network<float, InputSize<16>, Dense<5>>, PaperFeatures, FiveOutputs>;
+  using Five = test::ModelOf<Network<float, InputSize<16>, Dense<5>>, PaperFeatures, test::FiveOutputs>;
   CHECK(taken<Five>(test::drawn_block(test::drawn_model<Five>(1))) == "");
 }
 

@@ -127,27 +127,9 @@ Bytes monotone() {
   return test::drawn_block(test::drawn_model<Model>(1));
 }
 
-/// Five outputs of a user's own.
-struct FiveOutputs {
-  static constexpr int size = 5;
-  static constexpr bool linear = true;
-  static constexpr bool takes_features = false;
-  static constexpr std::array<const char*, size> names = {"u1", "u2", "u3", "u4", "u5"};
-  static constexpr std::array<const char*, size> units = {"1", "1", "1", "1", "1"};
-
-  template <class Scalar>
-  static void commands(const Scalar*, const Scalar* y, const Airframe<Scalar>&, Scalar* u) noexcept {
-    for (int i = 0; i < rotor_count; ++i) u[i] = y[i] + y[4];
-  }
-  template <class Scalar>
-  static void from_commands(const Scalar*, const Scalar* u, const Airframe<Scalar>&, Scalar* y) noexcept {
-    for (int i = 0; i < rotor_count; ++i) y[i] = u[i];
-    y[4] = Scalar(0);
-  }
-};
 Bytes five() {
   using Net = Network<float, InputSize<16>, Dense<5>>;
-  return test::drawn_block(test::drawn_model<test::ModelOf<Net, PaperFeatures, FiveOutputs>>(1));
+  return test::drawn_block(test::drawn_model<test::ModelOf<Net, PaperFeatures, test::FiveOutputs>>(1));
 }
 
 }  // namespace

@@ -74,4 +74,23 @@ std::vector<unsigned char> drawn_block(const Model& model) {
   return model_block(model, golden, from, "Drawn");
 }
 
+/// Five outputs of a user's own.
+struct FiveOutputs {
+  static constexpr int size = 5;
+  static constexpr bool linear = true;
+  static constexpr bool takes_features = false;
+  static constexpr std::array<const char*, size> names = {"u1", "u2", "u3", "u4", "u5"};
+  static constexpr std::array<const char*, size> units = {"1", "1", "1", "1", "1"};
+
+  template <class Scalar>
+  static void commands(const Scalar*, const Scalar* y, const Airframe<Scalar>&, Scalar* u) noexcept {
+    for (int i = 0; i < rotor_count; ++i) u[i] = y[i] + y[4];
+  }
+  template <class Scalar>
+  static void from_commands(const Scalar*, const Scalar* u, const Airframe<Scalar>&, Scalar* y) noexcept {
+    for (int i = 0; i < rotor_count; ++i) y[i] = u[i];
+    y[4] = Scalar(0);
+  }
+};
+
 }  // namespace pinnquad::test

@@ -20,7 +20,7 @@ struct LoopController {
   bool learns = false;
 };
 
-/// Those that one ships.
+/// The controllers that one ships.
 inline constexpr std::array<LoopController, 7> loop_controllers = {{
     {"pid", "cascaded PID: the rigid body's allocation, integral of the feedback", true},
     {"formula", "the analytic inverse with nominal drag"},

@@ -30,7 +30,7 @@ inline constexpr std::array<StudiedController, 11> research_controllers = {{
     {{"structured_observer", "disturbance observer on the model, and the attitude leans against nominal drag", true}},
 }};
 
-/// Those that one ships, and these.
+/// programs::loop_controllers, then research_controllers.
 const std::vector<StudiedController>& studied_controllers();
 
 /// Throws std::out_of_range for a name that is none of them.

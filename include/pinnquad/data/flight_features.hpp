@@ -36,6 +36,16 @@ Inputs sample_inputs(const Sample& sample) {
   return inputs;
 }
 
+namespace detail {
+/// Commands of any scalar.
+template <class Scalar>
+Commands<double> in_double(const Commands<Scalar>& commands) {
+  Commands<double> result{};
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = static_cast<double>(commands[i]);
+  return result;
+}
+}  // namespace detail
+
 /// Feature vector X of a sample, physical units.
 template <class Features, class Scalar>
 std::array<Scalar, static_cast<std::size_t>(Features::size)> sample_features(const Sample& sample) {

@@ -184,14 +184,8 @@ class BlockModel {
   [[noreturn]] void refuse(const std::string& expected, const std::string& found) const;
 
   template <class Scalar>
-  static std::vector<double> in_double(const Scalar* numbers, int count) {
+  static std::vector<double> numbers_in_double(const Scalar* numbers, int count) {
     return {numbers, numbers + count};
-  }
-  template <class Scalar>
-  static Commands<double> in_double_commands(const Commands<Scalar>& own) {
-    Commands<double> commands{};
-    for (std::size_t i = 0; i < commands.size(); ++i) commands[i] = static_cast<double>(own[i]);
-    return commands;
   }
 
   std::string path_;

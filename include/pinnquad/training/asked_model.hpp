@@ -65,13 +65,6 @@ FeatureVector as_features(const double* x) {
   return own;
 }
 
-template <class Scalar>
-Commands<double> in_double(const Commands<Scalar>& commands) {
-  Commands<double> result{};
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = static_cast<double>(commands[i]);
-  return result;
-}
-
 /// Units and columns of a feature set.
 template <class Features>
 void take_features(AskedModel& asked) {

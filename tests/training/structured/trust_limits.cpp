@@ -61,7 +61,7 @@ struct Limits {
 };
 
 /// Says 0.5 always.
-AskedModel stub() {
+AskedModel half_always() {
   AskedModel model;
   model.units.assign(Features::units.begin(), Features::units.end());
   model.is_column.assign(6, false);
@@ -108,13 +108,13 @@ TEST_CASE("fitted limits: new flights of the same kind raise as many alarms as a
   const Flight training = noisy(2000, 21), validation = noisy(20000, 22), fresh = noisy(100000, 23);
   TrustSettings settings;
   settings.seconds_per_alarm = 100;
-  const auto trust =
-      fit_trust(stub(), RowSet(training, {0, training.size()}), RowSet(validation, {0, validation.size()}), settings);
+  const auto trust = fit_trust(half_always(), RowSet(training, {0, training.size()}),
+                               RowSet(validation, {0, validation.size()}), settings);
   CHECK(trust.update_period_s == doctest::Approx(0.05));
   CHECK(trust.command_residual_cleared < trust.command_residual_limit);
   CHECK(trust.command_residual_cleared > 0.0159);  // mean |error| = 0.02 sqrt(2 / pi)
   const auto alarms = [&](const Flight& flight) {
-    const auto series = trust_series(stub(), trust.distribution, RowSet(flight, {0, flight.size()}));
+    const auto series = trust_series(half_always(), trust.distribution, RowSet(flight, {0, flight.size()}));
     std::array<int, 2> count{};
     for (const double most : block_maxima(series.squared_distances, 200))
       count[0] += most > trust.squared_distance_limit ? 1 : 0;
@@ -141,7 +141,7 @@ namespace {
 /// The text of what fit_trust() throws; empty if it does not.
 std::string refusal(const Flight& training, const RowSet& validation) {
   try {
-    static_cast<void>(fit_trust(stub(), RowSet(training, {0, training.size()}), validation));
+    static_cast<void>(fit_trust(half_always(), RowSet(training, {0, training.size()}), validation));
     return {};
   } catch (const std::invalid_argument& error) {
     return error.what();
@@ -197,7 +197,7 @@ TEST_CASE(
   first.add(validation, {0, validation.size()});
   single.add(late, {0, 1});  // one row has no period
   for (const RowSet& rows : {last, first, single}) {
-    const auto trust = fit_trust(stub(), RowSet(training, {0, training.size()}), rows);
+    const auto trust = fit_trust(half_always(), RowSet(training, {0, training.size()}), rows);
     CHECK(trust.update_period_s == doctest::Approx(0.05).epsilon(1e-4));
   }
 }

@@ -119,11 +119,11 @@ PINNQUAD_BODY bool BlockModel::has_affine_schema() const {
 }
 
 PINNQUAD_BODY std::vector<double> BlockModel::envelope_lower() const {
-  return with([](const auto& m) { return in_double(m.scales().lower, m.features().size()); });
+  return with([](const auto& m) { return numbers_in_double(m.scales().lower, m.features().size()); });
 }
 
 PINNQUAD_BODY std::vector<double> BlockModel::envelope_upper() const {
-  return with([](const auto& m) { return in_double(m.scales().upper, m.features().size()); });
+  return with([](const auto& m) { return numbers_in_double(m.scales().upper, m.features().size()); });
 }
 
 PINNQUAD_BODY int BlockModel::golden_count() const {
@@ -131,7 +131,7 @@ PINNQUAD_BODY int BlockModel::golden_count() const {
 }
 
 PINNQUAD_BODY std::vector<double> BlockModel::golden_features(int vector) const {
-  return with([&](const auto& m) { return in_double(m.golden_features(vector), m.features().size()); });
+  return with([&](const auto& m) { return numbers_in_double(m.golden_features(vector), m.features().size()); });
 }
 
 PINNQUAD_BODY double BlockModel::golden_difference() const {
@@ -181,7 +181,7 @@ PINNQUAD_BODY Commands<double> BlockModel::commands(const std::vector<double>& x
     std::vector<Scalar> work(model.workspace());
     Commands<Scalar> u{};
     model.commands(own.data(), u.data(), work.data());
-    return in_double_commands(u);
+    return detail::in_double(u);
   });
 }
 
@@ -239,16 +239,16 @@ PINNQUAD_BODY void BlockModel::answer(const RowSet& rows,
     std::size_t first = 0;
     for (const FlightRows& piece : rows.pieces()) {
       const detail::RunTimeFlightInputs<Scalar> own(model.features(), piece);
-      const detail::RunTimeFlightInputs<double> in_double(model.features(), piece);
+      const detail::RunTimeFlightInputs<double> own_in_double(model.features(), piece);
       for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
         if (!own.read(row, inputs.data())) continue;
         model.features().extract(static_cast<const RunTimeInputs<Scalar>*>(inputs.data()), x.data());
         Commands<Scalar> u{};
         model.commands(x.data(), u.data(), work.data());
         answered.features.assign(x.begin(), x.end());
-        answered.commands = in_double_commands(u);
+        answered.commands = detail::in_double(u);
         answered.inside_envelope = model.inside_envelope(x.data());
-        if (with_derivatives && in_double.read(row, exact.data())) {
+        if (with_derivatives && own_in_double.read(row, exact.data())) {
           model.features().extract(static_cast<const RunTimeInputs<double>*>(exact.data()), exact_x.data());
           answered.derivatives = derivatives_(exact_x.data());
         }

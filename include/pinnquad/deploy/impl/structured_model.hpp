@@ -109,11 +109,11 @@ PINNQUAD_BODY StructuredFits fit_structured(const StructuredExport& lower, const
                                             const FitWork& work) {
   auto made = fit_structured(lower.set, higher != nullptr ? &higher->set : nullptr, split, settings, work);
   StructuredFits fits{made.altitude, {}};
+  if (made.models.empty()) return fits;
   const RowSet rows = detail::fitted_rows(split, settings);
-  for (const StructuredFit& fit : made.models) {
-    const StructuredExport& set = fit.with_altitude ? *higher : lower;
-    fits.models.push_back({fit, ground_model(set, fit, set.set.context(rows), rows)});
-  }
+  const StructuredExport& set = made.altitude.taken ? *higher : lower;  // of every seed
+  const FitContext context = set.set.context(rows);
+  for (const StructuredFit& fit : made.models) fits.models.push_back({fit, ground_model(set, fit, context, rows)});
   return fits;
 }
 

@@ -138,9 +138,6 @@ StructuredFitsIn<StructuredFit> fit_structured(const StructuredSet& without_alti
 
 namespace detail {
 
-/// All rows of some groups.
-RowSet rows_of(const std::vector<RowSet>& groups);
-
 /// The rows that a model is fitted to.
 RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings);
 

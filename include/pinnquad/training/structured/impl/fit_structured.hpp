@@ -18,6 +18,7 @@
 namespace pinnquad {
 namespace detail {
 
+/// All rows of some groups.
 PINNQUAD_BODY RowSet rows_of(const std::vector<RowSet>& groups) {
   RowSet rows;
   for (const RowSet& group : groups) {
