@@ -210,11 +210,11 @@ void write_block() {
   record(BlockRecord::clock, bytes_of(std::uint32_t{0}, std::uint32_t{0}));
   record(BlockRecord::window, bytes_of(std::uint32_t{1}, std::uint32_t{1}));
   record(BlockRecord::allocation, bytes_of(allocation(airframe_value<Vehicle, float>())));
-  record(BlockRecord::answer, letters(Model::answer_letters));
-  record(BlockRecord::features, texts({}, Model::feature_names, Model::feature_units));
+  record(BlockRecord::answer, letters(pinnquad::detail::description_letters<Model::Network>()));
+  record(BlockRecord::features, texts({}, Model::Features::names, Model::Features::units));
   auto schema = letters(pinnquad::detail::description_letters<Model::Outputs>());
   schema.push_back(0);
-  record(BlockRecord::outputs, texts(schema, Model::output_names, Model::output_units));
+  record(BlockRecord::outputs, texts(schema, OutputMap<Model::Outputs>::names, OutputMap<Model::Outputs>::units));
   std::vector<unsigned char> vehicle;
   const auto exact = airframe_value<Vehicle, double>();
   const auto flown = airframe_value<Vehicle, float>();

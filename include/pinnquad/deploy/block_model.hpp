@@ -19,7 +19,6 @@
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/deploy/exact_derivatives.hpp"
 #include "pinnquad/exported/run_time_certificate.hpp"
-#include "pinnquad/exported/stated_certificate.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/text_file.hpp"
 
@@ -74,8 +73,8 @@ bool is_affine(const RunTimeNetwork& network);
 
 /// The answer of a model to a row.
 struct AnsweredRow {
-  Commands<double> commands{};    ///< in the model's own scalar
-  AxisDerivatives derivatives{};  ///< in double; of a window by an acceleration that is held
+  Commands<double> commands{};  ///< in the model's own scalar
+  AxisSlopes derivatives{};     ///< in double; of a window by an acceleration that is held
   bool inside_envelope = true;
   std::vector<double> features{};  ///< in physical units, as the model's own scalar holds them
 };
@@ -90,7 +89,7 @@ enum class SignProof {
 /// s^2/rad: by the present angular acceleration alone, and by one that is held over the window.
 struct ProvenSigns {
   SignProof by = SignProof::structure;
-  AxisDerivatives slope{}, held_slope{};
+  AxisSlopes slope{}, held_slope{};
 };
 
 /// A block of a file, ready to predict: in float or double, as it was written.
@@ -158,7 +157,7 @@ class BlockModel {
 
   /// Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of all taps is
   /// moved; else the present alone.
-  AxisDerivatives derivatives(const std::vector<double>& x, bool held = true) const;
+  AxisSlopes derivatives(const std::vector<double>& x, bool held = true) const;
 
   /// Calls `take(row, AnsweredRow)` for the rows that have features, `row` counted through the set. Throws
   /// std::invalid_argument for a flight without a column that the model asks for.

@@ -96,7 +96,7 @@ PINNQUAD_BODY std::vector<bool> features_of_output(const MonotoneShape& shape, i
 
 PINNQUAD_BODY std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, int output,
                                                     const std::optional<AxisSlopes>& pinned) {
-  constexpr double least_share = 0.01;
+  constexpr double least_share = least_fitted_slope_share;
   const int axis = output - 1;
   const auto factor = [&](int place) {
     return shape.output_deviation[static_cast<std::size_t>(output)] /
