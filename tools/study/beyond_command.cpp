@@ -119,7 +119,7 @@ void write_found(const std::string& out, const study::Plan& plan, const std::vec
                                      {"tables", tables}});
   }
   pinnquad::AtomicFile page(out + "/beyond.html"), json(out + "/beyond.json");
-  page.stream() << programs::text_page(programs::beyond_page_template, content);
+  page.stream() << programs::text_page("beyond_page.html", content);
   json.stream() << found.dump(2) << '\n';
   page.commit();
   json.commit();

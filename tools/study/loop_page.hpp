@@ -182,7 +182,7 @@ inline std::string loop_page(const nlohmann::json& result) {
   };
   described("controllers", studied_controllers(), controllers);
   described("conditions", programs::loop_conditions, conditions);
-  return programs::text_page(programs::loop_page_template, content);
+  return programs::text_page("loop_page.html", content);
 }
 
 }  // namespace study
