@@ -13,8 +13,6 @@ extern const char* const page_template;           ///< page/page.html, in the la
 extern const char* const page_palette;            ///< page/palette.css
 extern const char* const text_style;              ///< page/text.css: a page of text, tables and charts
 extern const char* const training_page_template;  ///< training/training_page.html
-extern const char* const beyond_page_template;    ///< study/beyond_page.html
-extern const char* const loop_page_template;      ///< study/loop_page.html
 
 /// A page of its title as text, and its style and body as they are.
 std::string whole_page(const std::string& title, const std::string& style, const std::string& body);
