@@ -15,7 +15,7 @@ const char* page_file(const std::string& name);
 /// A page of its title as text, and its style and body as they are.
 std::string whole_page(const std::string& title, const std::string& style, const std::string& body);
 
-/// A page of text: the body of that name, such as "loop_page.html", filled with the content, whose "title" is the
+/// A page of text: the body of that name, such as "training_page.html", filled with the content, whose "title" is the
 /// page's. Text is escaped where the body, a template of mustache, has two braces. Throws as page_file().
 std::string text_page(const std::string& body, const nlohmann::json& content);
 
