@@ -22,7 +22,7 @@
 #include "pinnquad/exported/run_time_outputs.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
-#include "pinnquad/training/described_predictor.hpp"
+#include "pinnquad/training/ground_outputs.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"
 
 namespace pinnquad {
@@ -89,28 +89,6 @@ struct WrittenRecords : Provenance {
   std::optional<Trust> trust{};
 };
 
-/// Commands at outputs 0 and by each output, 4 + 4 x size, of a linear schema of a user's own; empty for another one.
-template <class Outputs, class Scalar>
-std::vector<double> affine_schema(const Airframe<Scalar>& airframe) {
-  std::vector<double> numbers;
-  using Map = OutputMap<Outputs>;
-  if constexpr (!Map::takes_features && !is_known_schema<Outputs> && is_detected<IsLinear, Outputs>) {
-    const auto setting = Map::setting(airframe);
-    Scalar outputs[Map::size]{}, commands[rotor_count]{}, slopes[Map::slope_count]{};
-    const Scalar* none = nullptr;
-    Map::commands(none, static_cast<const Scalar*>(outputs), setting, static_cast<Scalar*>(commands));
-    Map::slopes(none, static_cast<const Scalar*>(outputs), setting, static_cast<Scalar*>(slopes));
-    for (const Scalar command : commands) numbers.push_back(static_cast<double>(command));
-    for (int rotor = 0; rotor < rotor_count; ++rotor) {
-      for (int k = 0; k < Map::size; ++k) {
-        const bool reads = k >= Map::first_output(rotor) && k < Map::last_output(rotor);
-        numbers.push_back(reads ? static_cast<double>(slopes[Map::slope_index(rotor, k)]) : 0.0);
-      }
-    }
-  }
-  return numbers;
-}
-
 /// A figure of a judgement, rounded as far as sums over the test rows are the same on every machine.
 double stated_figure(double value);
 
@@ -124,7 +102,7 @@ void append_texts(std::vector<std::string>& to, const Names& names, const Units&
 }
 
 /// Adds an airframe as it is and as the model's Scalar has it.
-template <class Outputs, class Scalar>
+template <class Scalar>
 void take_airframe(WrittenRecords& records, const std::string& name, const Airframe<double>& airframe,
                    const Airframe<Scalar>& flown) {
   records.vehicle_name = name;
@@ -132,6 +110,12 @@ void take_airframe(WrittenRecords& records, const std::string& name, const Airfr
   records.flown_airframe.clear();
   each_number(flown, [&](auto number) { records.flown_airframe.push_back(static_cast<double>(number)); });
   records.allocation = allocation(airframe);
+}
+/// The same, and the schema's own map for it.
+template <class Outputs, class Scalar>
+void take_airframe(WrittenRecords& records, const std::string& name, const Airframe<double>& airframe,
+                   const Airframe<Scalar>& flown) {
+  take_airframe(records, name, airframe, flown);
   records.affine = affine_schema<Outputs>(flown);
 }
 

@@ -72,13 +72,13 @@ PINNQUAD_BODY std::vector<RegressionSums> regression_sums(const FitContext& cont
 PINNQUAD_BODY MonotoneShape monotone_shape(const FitContext& context) {
   MonotoneShape shape;
   shape.inputs = context.inputs();
-  shape.places = context.accelerations;
+  shape.places = context.features.accelerations;
   shape.input_deviation = context.input_deviation;
   shape.output_deviation = context.output_deviation;
   shape.airframe_slopes = hover_slopes(context.airframe);
-  shape.thrusts = context.thrusts;
+  shape.thrusts = context.features.thrusts();
   for (int i = 0; i < shape.inputs && !context.is_windowed(); ++i) {
-    const std::string_view unit = context.units[static_cast<std::size_t>(i)];
+    const std::string_view unit = context.features.units[static_cast<std::size_t>(i)];
     if (unit == "m/s^2" || unit == "rad/s" || unit == "rad/s^2" || unit == "rad^2/s^2") shape.noisy.push_back(i);
   }
   return shape;
