@@ -101,8 +101,8 @@ using StructuredResidual = Mlp<float, InputSize<Inputs>, Hidden<2, 32>, OutputSi
 /// features without the angular acceleration.
 StructuredSet structured_set(GroundFeatures features, const GivenAirframe& airframe, ResidualTrainer::Make trainer);
 
-/// The set of a type. The residual trains with its inputs filled up to a multiple of sixteen: few networks are compiled,
-/// whatever the features.
+/// The set of a type. The residual trains with its inputs filled up to a multiple of sixteen: few networks are
+/// compiled, whatever the features.
 template <class Features>
 StructuredSet structured_set(const GivenAirframe& airframe) {
   return structured_set(ground_features<Features>(), airframe,
