@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Models of logged flights that nobody trains: the mean of the commands and the last ones, the airframe's formula, linear
-// and ridge regression, physics with fitted parameters. They need no rows to stop by: all that are not held out are
-// fitted, the penalty by leaving out trajectories.
+// Models of logged flights that nobody trains: the mean of the commands and the last ones, the airframe's formula,
+// linear and ridge regression, physics with fitted parameters. They need no rows to stop by: all that are not held out
+// are fitted, the penalty by leaving out trajectories.
 #include <algorithm>
 #include <array>
 #include <memory>

@@ -31,7 +31,8 @@ struct StructuredModelFit : StructuredFit {
 using StructuredFits = StructuredFitsIn<StructuredModelFit>;
 
 /// Fits a structured model from each seed. The first seed tries both feature sets where the altitude is chosen
-/// by_validation; `higher` is null where there is no such choice. Throws std::invalid_argument for rows that are too few.
+/// by_validation; `higher` is null where there is no such choice. Throws std::invalid_argument for rows that are too
+/// few.
 StructuredFits fit_structured(const StructuredSet& without_altitude, const StructuredSet* higher, const RowSplit& split,
                               const StructuredSettings& settings = {}, const FitWork& work = FitWork());
 

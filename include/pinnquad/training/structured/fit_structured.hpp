@@ -96,13 +96,13 @@ struct StructuredFitsIn {
 template <int Inputs>
 using StructuredResidual = Mlp<float, InputSize<Inputs>, Hidden<2, 32>, OutputSize<4>, Relu>;
 
-/// A set of features, the angular acceleration among them. `trainer`: detail::residual_trainer() of a StructuredResidual
-/// of as many inputs as there are other features, or of more: the bits are the same. Throws std::invalid_argument for
-/// features without the angular acceleration.
+/// A set of features, the angular acceleration among them. `trainer`: detail::residual_trainer() of a
+/// StructuredResidual of as many inputs as there are other features, or of more: the bits are the same. Throws
+/// std::invalid_argument for features without the angular acceleration.
 StructuredSet structured_set(GroundFeatures features, const GivenAirframe& airframe, ResidualTrainer::Make trainer);
 
-/// The set of a type. The residual trains with its inputs filled up to a multiple of sixteen: few networks are compiled,
-/// whatever the features.
+/// The set of a type. The residual trains with its inputs filled up to a multiple of sixteen: few networks are
+/// compiled, whatever the features.
 template <class Features>
 StructuredSet structured_set(const GivenAirframe& airframe) {
   return structured_set(ground_features<Features>(), airframe,
