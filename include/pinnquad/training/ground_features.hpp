@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A feature set as a value: names, units, and how rows show it. Made of a type, or of names that are known when a
-// program runs alone. Code that takes one is compiled once for all feature sets.
+// A feature set as a value: names, units, and how rows show it. It is made of a type, or of names that are known when a
+// program runs. Code that takes one is compiled once for all feature sets.
 #pragma once
 
 #include <cstddef>
@@ -58,8 +58,8 @@ GroundFeatures::EachRow rows_of_features() {
   };
 }
 
-/// Motions of a flight's rows as features by name ask for them. Windows in a row share most of their rows: what was
-/// read of one is kept for the next, so one of these is for one thread. Throws std::invalid_argument for a flight
+/// Motions of a flight's rows as features by name ask for them. Windows in a row share most of their rows: a row that
+/// was read is kept for the next window, so one of these is for one thread. Throws std::invalid_argument for a flight
 /// without a column that is asked for.
 template <class Scalar>
 class RunTimeFlightInputs {

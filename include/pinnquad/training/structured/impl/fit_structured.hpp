@@ -263,8 +263,8 @@ PINNQUAD_BODY StructuredFitsIn<StructuredFit> fit_structured_sets(const Structur
   return fits;
 }
 
-/// The residual, the base, and both, of these features: as descriptions or as types of a header, of which one calls
-/// some words otherwise than the other.
+/// The residual, the base, and both, of these features: as descriptions, or as types of a header, which have other
+/// words for three things.
 PINNQUAD_BODY std::array<std::string, 3> monotone_texts(const GroundFeatures& features, std::string network,
                                                         const std::string& inputs, const std::string& bounded,
                                                         const std::string& masked) {
