@@ -90,12 +90,18 @@ constexpr void require_facts() noexcept {
   }
 }
 
+/// The first fault of an exported header's numbers.
 template <class M>
-constexpr void require_numbers() noexcept {
-  constexpr StatedNumber fault = fault_of_numbers(
+constexpr StatedNumber fault_of_header() noexcept {
+  return fault_of_numbers(
       FiniteConstant{}, scales_in_header<M>(), M::envelope_lower.size(), M::output.mean.size(), M::parameters.data(),
       M::parameters.size(), [](std::size_t i) { return M::golden_features[i].data(); },
       [](std::size_t i) { return M::golden_commands[i].data(); }, M::golden_features.size());
+}
+
+template <class M>
+constexpr void require_numbers() noexcept {
+  constexpr StatedNumber fault = fault_of_header<M>();
   static_assert(fault != StatedNumber::weight, "pinnquad: a weight of the model is NaN or infinite");
   static_assert(fault != StatedNumber::scaler, "pinnquad: a scaler's number is NaN or infinite");
   static_assert(fault != StatedNumber::border, "pinnquad: a border of the model's envelope is NaN or infinite");

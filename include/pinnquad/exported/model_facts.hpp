@@ -15,9 +15,9 @@ struct ModelFacts {
   CommandMeaning command_meaning = CommandMeaning::thrust;
   double command_lower = 0;  ///< the range that commands were given in
   double command_upper = 1;
-  double sample_period_s = 0;  ///< of the flights, that of the features' window where there is one; 0: not said
-  double lag_removed_s = 0;    ///< of the rotors, taken out of the commands before the training
-  bool has_verdict = false;    ///< the next two are said
+  double sample_period_s = 0;    ///< of the flights, that of the features' window where there is one; 0: not said
+  double lag_removed_s = 0;      ///< of the rotors, taken out of the commands before the training
+  bool has_verdict = false;      ///< the next two are said
   bool worse_than_mean = false;  ///< than the mean of the commands, and exported all the same
   bool beats_linear_regression = false;
   bool has_r_squared = false;  ///< the next one is said
@@ -44,7 +44,8 @@ constexpr StatedFault fault_of(const ModelFacts& facts, const IsFinite& finite) 
   if (!finite(facts.lag_removed_s) || !in_range<Number::lag_removed_s>(facts.lag_removed_s)) {
     return {Number::lag_removed_s, facts.lag_removed_s};
   }
-  for (const double figure : {facts.test_r_squared, facts.linear_regression_r_squared}) {
+  const double figures[] = {facts.test_r_squared, facts.linear_regression_r_squared};
+  for (const double figure : figures) {
     if (!finite(figure) || !in_range<Number::r_squared>(figure)) return {Number::r_squared, figure};
   }
   if (facts.has_verdict && facts.has_r_squared &&
