@@ -57,7 +57,7 @@ set(PINNQUAD_UNOPTIMISED "" CACHE STRING
   "Rooms whose tests are compiled with -O0: what takes longer to optimise than to run as it is")
 
 option(PINNQUAD_BUILD_AT_ONCE
-  "Compile the program for a build from nothing (scripts/test, scripts/demo): several sources at once, up to a third less. Off for
+  "Compile programs and tests for a build from nothing (scripts/test, scripts/demo): several sources at once, up to half less. Off for
   who edits: one changed source costs its neighbours too" OFF)
 # pinnquad_at_once(<target> <count>): so many of its sources are compiled together where PINNQUAD_BUILD_AT_ONCE says so.
 function(pinnquad_at_once target count)

@@ -4,7 +4,7 @@
 # The Python package of this tree in a fresh venv. Sourced, never run; needs stage.sh and packages.sh.
 
 # install_python_package: builds the wheel and installs it without network, for Debian's Python, whatever python3 comes first
-# in PATH: the packages are for this one. Sets venv. For any x86-64 alone, with the objects of the preset programs.
+# in PATH: the packages are for this one. Sets venv. For any x86-64 alone, with the objects of the preset dev.
 # PINNQUAD_INSTRUCTION_SETS adds what is shipped; then all is compiled from nothing, as for a user of pip.
 install_python_package() {
   require_packages g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libtomlplusplus-dev pybind11-dev python3-dev \
@@ -18,8 +18,8 @@ install_python_package() {
   CMAKE_BUILD_PARALLEL_LEVEL=$(parallel_jobs)
   export CMAKE_BUILD_PARALLEL_LEVEL
   if [ -z "$PINNQUAD_INSTRUCTION_SETS" ]; then
-    configure programs build/programs -DPINNQUAD_BUILD_PYTHON=ON -DPython_EXECUTABLE=/usr/bin/python3 >/dev/null
-    export PINNQUAD_BUILD_TREE=$PWD/build/programs
+    configure dev build/dev -DPINNQUAD_BUILD_PYTHON=ON -DPython_EXECUTABLE=/usr/bin/python3 >/dev/null
+    export PINNQUAD_BUILD_TREE=$PWD/build/dev
   fi
   "$venv/bin/pip" wheel --quiet --no-build-isolation --no-index --no-deps --wheel-dir "$build/wheels" .
   "$venv/bin/pip" install --quiet --no-index "$build"/wheels/pinnquad-*.whl

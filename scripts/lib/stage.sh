@@ -43,8 +43,8 @@ need_natural() {
   fi
 }
 
-# configure <preset> [<folder> <setting>...]: in the root of the repository, in build/<preset> or the folder. From nothing the
-# program's sources are compiled several at once; who has begun to edit keeps what was chosen.
+# configure <preset> [<folder> <setting>...]: in the root of the repository, in build/<preset> or the folder. From nothing
+# sources are compiled several at once; who has begun to edit keeps what was chosen.
 configure() {
   local preset=$1 folder=${2:-build/$1} at_once=()
   shift $(($# > 1 ? 2 : 1))
@@ -54,7 +54,7 @@ configure() {
 
 # build_program: in build/demo, optimised for this machine, the program alone.
 build_program() {
-  configure native build/demo -DPINNQUAD_BUILD_TESTS=OFF -DPINNQUAD_BUILD_BENCH=OFF
+  configure release build/demo -DCMAKE_CXX_FLAGS=-march=native -DPINNQUAD_INSTRUCTION_SETS=
   cmake --build build/demo -j "$(parallel_jobs)" --target pinnquad_program
 }
 

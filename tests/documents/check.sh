@@ -39,7 +39,7 @@ done
 printf '#include "pinnquad/flight.hpp"\nint main() {}\n' >"$tree/main.cpp" # the reader's own program
 mkdir "$work/home"
 export HOME=$work/home # what is installed there is the block's
-for preset in dev native demo release; do ln -s "$build" "$tree/build/$preset"; done
+for preset in dev demo release; do ln -s "$build" "$tree/build/$preset"; done
 export PATH="$build/bin:$build/examples:$PATH"
 
 # What a program says of its options; nothing for what is not ours.

@@ -83,17 +83,15 @@ else()
 endif()
 set_tests_properties(flight_stacks.px4_build.nuttx PROPERTIES LABELS flight_stacks SKIP_RETURN_CODE 77)
 find_package(Python3 COMPONENTS Interpreter)
-if(compiler_free_tests)
-  _pinnquad_add_stack_test(crazyflie -Os "pinnquad_flight_step;${crazyflie_step}") # as the firmware is built
-  _pinnquad_add_stack_test(crazyflie -Os "pinnquad_flight_step;${crazyflie_step}" crazyflie_trusting)
-  # a window of nine instants; what a block is tested on is what the core asks of the app's task, less what that task takes
-  _pinnquad_add_stack_test(crazyflie -Os
-    "pinnquad_flight_step;${crazyflie_step};pinnquad_flight_offer_model;${crazyflie_start}" crazyflie_past)
-  foreach(folder IN ITEMS px4 px4_past)
-    _pinnquad_add_stack_test(px4 -Os
-      "pinnquad_flight_px4_run_recorded;${px4_step};pinnquad_flight_px4_offer_model;${px4_start}" "${folder}")
-  endforeach()
-endif()
+_pinnquad_add_stack_test(crazyflie -Os "pinnquad_flight_step;${crazyflie_step}") # as the firmware is built
+_pinnquad_add_stack_test(crazyflie -Os "pinnquad_flight_step;${crazyflie_step}" crazyflie_trusting)
+# a window of nine instants; what a block is tested on is what the core asks of the app's task, less what that task takes
+_pinnquad_add_stack_test(crazyflie -Os
+  "pinnquad_flight_step;${crazyflie_step};pinnquad_flight_offer_model;${crazyflie_start}" crazyflie_past)
+foreach(folder IN ITEMS px4 px4_past)
+  _pinnquad_add_stack_test(px4 -Os
+    "pinnquad_flight_px4_run_recorded;${px4_step};pinnquad_flight_px4_offer_model;${px4_start}" "${folder}")
+endforeach()
 _pinnquad_add_stack_gate(flight_stacks.gate.crazyflie_past.host-O2 "${crazyflie_source}" "${CMAKE_CXX_COMPILER}" "${CMAKE_NM}"
   "-O2 ${crazyflie_flags} -I${CMAKE_CURRENT_SOURCE_DIR}/crazyflie_past")
 pinnquad_thorough(flight_stacks.gate.crazyflie_past.host-O2)
@@ -101,9 +99,6 @@ pinnquad_thorough(flight_stacks.gate.crazyflie_past.host-O2)
 foreach(stack IN ITEMS px4 crazyflie)
   _pinnquad_add_stack_gate("flight_stacks.gate.${stack}.host-O2" "${${stack}_source}" "${CMAKE_CXX_COMPILER}" "${CMAKE_NM}"
     "-O2 ${${stack}_flags}")
-  if(NOT compiler_free_tests)
-    continue()
-  endif()
   set(name "flight_stacks.gate.${stack}.cortex_m-Os")
   if(PINNQUAD_ARM_CXX AND PINNQUAD_ARM_NM)
     _pinnquad_add_stack_gate("${name}" "${${stack}_source}" "${PINNQUAD_ARM_CXX}" "${PINNQUAD_ARM_NM}"

@@ -77,7 +77,7 @@ def shipped(pinnquad):
     """The program and the sets it was built for, of those that run here."""
     libexec = Path(pinnquad).parent.parent / "libexec"
     built = [name for name in RUN if name == "x86-64" or (libexec / f"pinnquad-{name}").exists()]
-    return pinnquad, built if len(built) > 1 else pytest.skip("the program is built for one set (preset package)")
+    return pinnquad, built if len(built) > 1 else pytest.skip("the program is built for one set (preset release)")
 
 
 @pytest.fixture(scope="module")

@@ -8,6 +8,7 @@ root=$1 work=$2
 rm -rf -- "$work"
 mkdir -p "$work/repository/scripts/heavy"
 cp "$root/scripts/test" "$work/repository/scripts"
+cp "$root/CMakePresets.json" "$work/repository"
 cp -r "$root/scripts/lib" "$work/repository/scripts"
 echo 'require_packages() { :; }' >"$work/repository/scripts/lib/packages.sh"
 echo 'cmake() { echo "$*" >>calls; }; ctest() { mkdir -p build && echo passed; }; tee() { cat; }' >>"$work/repository/scripts/lib/packages.sh"

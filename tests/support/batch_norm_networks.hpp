@@ -11,7 +11,7 @@
 
 namespace pinnquad::test {
 
-namespace detail {
+namespace batch_norm {
 template <class Layer, class Scalar>
 void randomise_layer(Layer, Scalar* parameters, std::mt19937_64& engine) {
   const double limit = std::sqrt(3.0 / Layer::inputs);
@@ -27,14 +27,14 @@ void randomise_layer(pinnquad::BatchNorm::Bind<Scalar, Size>, Scalar* parameters
     parameters[3 * Size + i] = static_cast<Scalar>(uniform(engine, 0.25, 3.0));
   }
 }
-}  // namespace detail
+}  // namespace batch_norm
 
 template <class Net>
 Net random_batch_norm_network(std::mt19937_64& engine) {
   Net network;
   unroll<Net::layer_count>([&](auto index) {
     using Layer = typename Net::template Layer<decltype(index)::value>;
-    detail::randomise_layer(Layer{}, network.parameters.data() + Net::Sizes::offset(index), engine);
+    batch_norm::randomise_layer(Layer{}, network.parameters.data() + Net::Sizes::offset(index), engine);
   });
   return network;
 }

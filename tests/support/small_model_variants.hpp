@@ -6,7 +6,7 @@
 
 namespace pinnquad::test {
 
-namespace detail {
+namespace small_numbers {
 /// Float constants as doubles that no float is.
 template <std::size_t Size>
 constexpr std::array<double, Size> widened(const std::array<float, Size>& from) {
@@ -25,18 +25,18 @@ constexpr std::array<std::array<double, Columns>, Rows> widened(
   for (std::size_t i = 0; i < Rows; ++i) to[i] = widened(from[i]);
   return to;
 }
-}  // namespace detail
+}  // namespace small_numbers
 
 struct DoubleNumbers : SmallNumbers {
   using Scalar = double;
   using Network = SmallNumbers::Network::Rebind<double>;
-  static constexpr auto parameters = detail::widened(SmallNumbers::parameters);
-  static constexpr auto input = detail::widened(SmallNumbers::input);
-  static constexpr auto output = detail::widened(SmallNumbers::output);
-  static constexpr auto envelope_lower = detail::widened(SmallNumbers::envelope_lower);
-  static constexpr auto envelope_upper = detail::widened(SmallNumbers::envelope_upper);
-  static constexpr auto golden_features = detail::widened(SmallNumbers::golden_features);
-  static constexpr auto golden_commands = detail::widened(SmallNumbers::golden_commands);
+  static constexpr auto parameters = small_numbers::widened(SmallNumbers::parameters);
+  static constexpr auto input = small_numbers::widened(SmallNumbers::input);
+  static constexpr auto output = small_numbers::widened(SmallNumbers::output);
+  static constexpr auto envelope_lower = small_numbers::widened(SmallNumbers::envelope_lower);
+  static constexpr auto envelope_upper = small_numbers::widened(SmallNumbers::envelope_upper);
+  static constexpr auto golden_features = small_numbers::widened(SmallNumbers::golden_features);
+  static constexpr auto golden_commands = small_numbers::widened(SmallNumbers::golden_commands);
 };
 using DoubleModel = AsHeader<DoubleNumbers>;
 
