@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Matrix and vector aliases: the vocabulary of every interface.
-// The only file that includes Eigen, but for the decompositions of regression/ridge.hpp. Its vectors and matrices are
-// not over-aligned, and what is made of them may be copied into any buffer; the weights for a vector unit are
+// The only file that includes Eigen, but for the decompositions of regression/impl/ridge.hpp. Its vectors and matrices
+// are not over-aligned, and what is made of them may be copied into any buffer; the weights for a vector unit are
 // (PackedNetwork: 64 bytes).
 // Without exceptions, as firmware is built, Eigen's asserts are off: they print and abort, and flight code has neither.
 // To have them, define eigen_assert or include Eigen first.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The weights of a training that are kept: the best by an error on validation rows, or the mean of the last steps.
+// The weights of a training that are kept: the best by an error on validation rows.
 //   Checkpoint<Network> best;
 //   for (int epoch = 0; epoch < epochs && !best.is_stale(epoch, 30); ++epoch) {
 //     trainer.epoch(data, {epoch, epochs}, engine);
@@ -10,8 +10,6 @@
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
-
-#include "pinnquad/data/settings.hpp"
 
 namespace pinnquad {
 
@@ -46,40 +44,6 @@ class Checkpoint {
   NetworkType network_{};
   double error_ = std::numeric_limits<double>::infinity();
   int epoch_ = -1;
-};
-
-/// The moving mean of the weights over the last steps: less noise than any single step has, at no cost in flight.
-/// a <- k a + (1 - k) w after each step; k = decay, at first less: n / (n + 10) after n steps. The initial weights are
-/// soon forgotten.
-template <class NetworkType>
-class WeightAverage {
- public:
-  using Scalar = typename NetworkType::Scalar;
-
-  /// Throws std::invalid_argument for a decay that is not one of 0 to 1.
-  explicit WeightAverage(double decay = 0.995) : decay_(decay) {
-    detail::expect_from_zero("WeightAverage::decay", decay);
-    if (!(decay < 1)) detail::refuse_setting("WeightAverage::decay", "a number from 0 to below 1", decay);
-  }
-
-  void add(const NetworkType& network) noexcept {
-    constexpr double soon = 10;
-    const double warm = static_cast<double>(steps_) / (static_cast<double>(steps_) + soon);
-    const auto keep = static_cast<Scalar>(decay_ < warm ? decay_ : warm);
-    for (std::size_t i = 0; i < average_.parameters.size(); ++i) {
-      average_.parameters[i] += (Scalar(1) - keep) * (network.parameters[i] - average_.parameters[i]);
-    }
-    ++steps_;
-  }
-
-  /// Zeros before the first step.
-  const NetworkType& network() const noexcept { return average_; }
-  long steps() const noexcept { return steps_; }
-
- private:
-  double decay_;
-  long steps_ = 0;
-  NetworkType average_{};
 };
 
 }  // namespace pinnquad

@@ -15,7 +15,6 @@
 #include "pinnquad/features/windowed.hpp"
 #include "pinnquad/nn/tanh.hpp"
 #include "pinnquad/regression/ridge.hpp"
-#include "pinnquad/training/checkpoint.hpp"
 #include "support/random_network.hpp"
 #include "support/training_sets.hpp"
 
@@ -127,25 +126,4 @@ TEST_CASE("a sum with a network adds the network's answer; what the map says is 
   AffineMap other = map;
   other.inputs = 3;
   CHECK_THROWS_AS(affine_answer<Setting>(other), std::invalid_argument);
-}
-
-TEST_CASE("averaged weights: the first counts whole, a wandering training's mean is nearer to its middle") {
-  using Net = Network<double, InputSize<1>, Dense<1>>;
-  WeightAverage<Net> average(0.9);
-  std::mt19937_64 engine(2);
-  Net net;
-  double wandered = 0, averaged = 0;
-  for (int step = 0; step < 400; ++step) {
-    net.parameters = {2 + uniform(engine, -1, 1), -1};
-    average.add(net);
-    if (step == 0) CHECK(average.network().parameters == net.parameters);
-    if (step < 200) continue;
-    wandered += std::abs(net.parameters[0] - 2);
-    averaged += std::abs(average.network().parameters[0] - 2);
-  }
-  CHECK(averaged < 0.4 * wandered);
-  CHECK(average.network().parameters[1] == doctest::Approx(-1));
-  CHECK(average.steps() == 400);
-  CHECK_THROWS_AS(WeightAverage<Net>(1.0), std::invalid_argument);
-  CHECK_THROWS_AS(WeightAverage<Net>(-0.1), std::invalid_argument);
 }

@@ -16,7 +16,6 @@
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/guard.hpp"
-#include "pinnquad/inference/monitored_inverse.hpp"
 
 namespace pinnquad::autopilot {
 
