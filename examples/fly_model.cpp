@@ -61,9 +61,9 @@ Errors fly_core(const std::vector<char>& block, bool learns) {
   const FigureEight<double> path = eight();
   VehicleState<double> state;
   state.body.position_m = path.center_m;
-  HoverTrim<double> hover;
+  Commands<double> hover{};
   if (hover_trim(vehicle, path.center_m, hover) != Status::ok) throw std::runtime_error("the vehicle can't hover");
-  state.rotors = hover.commands;
+  state.rotors = hover;
   Errors errors;
   for (int tick = 0; tick < std::lround(duration_s / step_s); ++tick) {
     const auto now_us = static_cast<std::uint64_t>(1'000'000 + 1000 * tick);

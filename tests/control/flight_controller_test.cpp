@@ -56,11 +56,11 @@ TEST_CASE_TEMPLATE("in hover nothing is asked for, and the hover holds", Scalar,
   CHECK(demand.linear_m_s2.norm() <= Scalar(1e-6));
   CHECK(demand.angular_rad_s2.norm() <= Scalar(1e-6));
 
-  HoverTrim<Scalar> trim;
+  Commands<Scalar> trim{};
   REQUIRE(hover_trim(quadrotor, Vector3<Scalar>(Scalar(0), Scalar(0), Scalar(0)), trim) == Status::ok);
-  CHECK(trim.commands[0] == doctest::Approx(0.505).epsilon(0.01));  // "hovers at command 0.50", at 122 m
+  CHECK(trim[0] == doctest::Approx(0.505).epsilon(0.01));  // "hovers at command 0.50", at 122 m
   VehicleState<Scalar> state;
-  state.rotors = trim.commands;
+  state.rotors = trim;
   REQUIRE(fly_set_point(quadrotor, SetPoint<Scalar>{}, Scalar(5), state) == Status::ok);
   CHECK(state.body.position_m.norm() <= Scalar(1e-3));  // float: 5,000 roundings of 1e-7 N's worth of thrust
   CHECK(state.body.velocity_m_s.norm() <= Scalar(1e-3));
@@ -110,7 +110,7 @@ TEST_CASE("mirror symmetry of the demand") {
   CHECK((a.angular_rad_s2 - Vector3<double>(-1, 1, -1).cwiseProduct(b.angular_rad_s2)).norm() <= 100 * rounding);
 }
 
-TEST_CASE("on the reference there is no feedback, and the reference motion is that of flatness") {
+TEST_CASE("on the reference there is no feedback, and the demand is the motion of flatness, laterally at rest") {
   FigureEight<double> eight;
   eight.yaw_amplitude_rad = 0.8;
   const FlightController<double> controller;
@@ -120,12 +120,13 @@ TEST_CASE("on the reference there is no feedback, and the reference motion is th
     FlatMotion<double> flat;
     REQUIRE(flat_motion(point, standard_gravity_m_s2<double>, flat) == Status::ok);
     const State<double> state{point.position_m, point.velocity_m_s, flat.attitude, flat.body_rates_rad_s};
-    Accelerations<double> reference, feedback;
-    REQUIRE(controller(state, point, reference, feedback) == Status::ok);
+    Accelerations<double> demand, feedback;
+    REQUIRE(controller(state, point, demand, feedback) == Status::ok);
     CHECK(feedback.linear_m_s2.norm() <= rounding);
     CHECK(feedback.angular_rad_s2.norm() <= rounding);
-    CHECK((reference.angular_rad_s2 - flat.angular_acceleration_rad_s2).norm() <= rounding);
-    CHECK((world_acceleration(state, reference.linear_m_s2) - point.acceleration_m_s2).norm() <= rounding);
+    CHECK((demand.angular_rad_s2 - flat.angular_acceleration_rad_s2).norm() <= rounding);
+    // the specific force of flatness has no lateral part, so that nothing is lost of the acceleration
+    CHECK((world_acceleration(state, demand.linear_m_s2) - point.acceleration_m_s2).norm() <= rounding);
   }
 }
 
@@ -184,12 +185,16 @@ TEST_CASE("gains: what each error alone asks for, of the pilot and of a trajecto
   constexpr double rounding = 1e-12;
   for (const Error& e : {velocity, roll, pitch, roll_rate, pitch_rate, yaw_rate, yaw, position}) {
     CAPTURE(e.what);
-    Accelerations<double> reference, feedback;
-    REQUIRE(controller(e.state, TrajectoryPoint<double>{}, reference, feedback) == Status::ok);
+    Accelerations<double> demand, feedback;
+    REQUIRE(controller(e.state, TrajectoryPoint<double>{}, demand, feedback) == Status::ok);
     const Vector3<double> linear = body_to_world(e.state.attitude, feedback.linear_m_s2);
     CHECK((linear - e.linear_m_s2).norm() <= rounding);
     CHECK((feedback.angular_rad_s2 - e.angular_rad_s2).norm() <= 100 * rounding);
-    Accelerations<double> demand;
+    // on a point at rest the demand is its feedback; laterally, what gravity and rotation leave
+    Vector3<double> asked = body_derivative<double>(e.state, {0, 0, standard_gravity_m_s2<double>});
+    asked[2] = body_derivative<double>(e.state, {0, 0, 0})[2] + feedback.linear_m_s2[2];
+    CHECK((demand.linear_m_s2 - asked).norm() <= rounding);
+    CHECK((demand.angular_rad_s2 - feedback.angular_rad_s2).norm() <= rounding);
     REQUIRE(controller(e.state, SetPoint<double>{}, demand) == Status::ok);
     const Vector3<double> nothing = Vector3<double>::Zero();
     CHECK((world_acceleration(e.state, demand.linear_m_s2) - (e.pilot_sees ? e.linear_m_s2 : nothing)).norm() <=

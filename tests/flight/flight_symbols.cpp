@@ -396,10 +396,11 @@ unsigned char pinnquad_flight_learn(const float* state, const float* wanted, flo
 }
 
 unsigned char pinnquad_flight_track_hover(float* rmse_m) {
-  pinnquad::HoverTrim<float> trim;
+  pinnquad::Commands<float> trim{};
   const Status status = pinnquad::hover_trim(everything<float>(), Vector3<float>(0.0F, 0.0F, -5.0F), trim);
   if (status != Status::ok) return static_cast<unsigned char>(status);
-  return fly(pinnquad::test::Hover<float>{}, trim, rmse_m);
+  const pinnquad::test::Hover<float> still{};
+  return fly(pinnquad::WithoutJerk{still}, pinnquad::AnalyticInverse<Everything<float>>(everything<float>()), rmse_m);
 }
 
 unsigned char pinnquad_flight_pilot_loop(const float* state, const float* wanted, float* demand) {

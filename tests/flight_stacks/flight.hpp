@@ -148,10 +148,10 @@ class FaultyFlight {
     body_.body.position_m = at.position_m;
     body_.body.velocity_m_s = at.velocity_m_s;
     body_.body.attitude = pinnquad::from_euler<double>({0, 0, at.yaw_rad});
-    pinnquad::HoverTrim<double> trim;
+    pinnquad::Commands<double> trim{};
     if (pinnquad::hover_trim(vehicle_, at.position_m, trim) != Status::ok) figures_.crashed = true;
-    body_.rotors = trim.commands;
-    commands_ = trim.commands;
+    body_.rotors = trim;
+    commands_ = trim;
   }
 
   void begin(const Fault& fault) {

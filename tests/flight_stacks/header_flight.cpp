@@ -71,10 +71,10 @@ bool fly(const std::vector<char>& block, const std::vector<char>& other, const s
   const pinnquad::FigureEight<double>& eight = *held;
   pinnquad::VehicleState<double> state{};
   state.body.position_m = eight.sample(0).position_m;
-  pinnquad::HoverTrim<double> trim;
+  pinnquad::Commands<double> trim{};
   if (hover_trim(vehicle, state.body.position_m, trim) != Status::ok) return false;
-  state.rotors = trim.commands;
-  pinnquad::Commands<double> commands = trim.commands;
+  state.rotors = trim;
+  pinnquad::Commands<double> commands = trim;
   Phase start, flight, silent;
   double squares = 0;
   int counted = 0;

@@ -45,7 +45,7 @@ def test_as_compiled(pinnquad, fly_export, request, model):
     assert fell_back < 0.01 * asked, said
     assert sum(looped["model"]["declined"].values()) == pytest.approx(fell_back, abs=3)
     assert f"period {looped['period_s']:.1f} s" in said and (looped["period_s"] > 7.5) == (model == "slow"), said
-    for line, name in ("analytic inverse", "analytic_inverse"), (r"none \(hover trim\)", "hover_trim"), ("export", "model"):
+    for line, name in ("analytic inverse", "analytic_inverse"), ("the same, no jerk", "without_jerk"), ("export", "model"):
         found = re.search(rf"^  {line} +{number} +{number} ", said, re.M)
         for figure, key in zip(found.groups(), ("rmse_m", "largest_error_m")):
             assert abs(float(figure) - 100 * looped[name][key]) < 0.011, (name, key)
@@ -88,7 +88,7 @@ def test_model_of_a_users_own(pinnquad, own_here):
     assert abs(answered - asked * model["answered_share"]) < 2
     # two instants 50 ms apart, and 2 ms between two ticks
     assert model["declined"]["warming_up"] == 25
-    assert model["rmse_m"] < looped["hover_trim"]["rmse_m"], "it knows nothing of the vehicle"
+    assert model["rmse_m"] < looped["without_jerk"]["rmse_m"], "it knows nothing of the vehicle"
     said = pinnquad(OWN).out
     assert "battery_voltage 15.2 V" in said and re.search(r"stood in for the model: .*\b25 warming_up", said), said
     # what is held matters; of a voltage lower than any that was trained the lowest is taken

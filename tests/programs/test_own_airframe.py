@@ -67,7 +67,7 @@ def test_an_asymmetric_vehicle_hovers_near_the_ground(pinnquad, asymmetric):
     assert not Path("not.csv").exists()
 
 
-def test_what_flies_worse_than_hover_trim_is_not_exported_without_a_word(pinnquad, asymmetric):
+def test_what_flies_worse_than_without_jerk_is_not_exported_without_a_word(pinnquad, asymmetric):
     """The one that errs least leaves the flight to its guard: the best that flies is exported, or header, report and
     terminal say DO NOT FLY."""
     pinnquad(f"fly d1 {asymmetric} --seed 11 --interval 20 --samples 9000 --out a.csv")
@@ -76,8 +76,8 @@ def test_what_flies_worse_than_hover_trim_is_not_exported_without_a_word(pinnqua
     report = report_of("best")
     assert report["models"]["ridge_causal"]["r2"]["mean"] > report["models"]["ridge"]["r2"]["mean"] > 0.9
     loop = report["closed_loop"]
-    assert report["exported_model"] != "ridge_causal" and loop["model"]["rmse_m"] < loop["hover_trim"]["rmse_m"], loop
-    assert loop["formula"]["rmse_m"] < 0.5 * loop["hover_trim"]["rmse_m"]
+    assert report["exported_model"] != "ridge_causal" and loop["model"]["rmse_m"] < loop["without_jerk"]["rmse_m"], loop
+    assert loop["formula"]["rmse_m"] < 0.5 * loop["without_jerk"]["rmse_m"]
     assert "not fit to fly; the next best is tried" in done.err and "DO NOT FLY" not in done.err
     assert "DO NOT FLY" not in Path("best/model.hpp").read_text()
     flown = json.loads(pinnquad("loop best/model.block --json").out)
@@ -86,9 +86,9 @@ def test_what_flies_worse_than_hover_trim_is_not_exported_without_a_word(pinnqua
     done = pinnquad(f"{words} --export ridge_causal --out asked")
     report, comment = report_of("asked"), Path("asked/model.hpp").read_text().split("#pragma once")[0]
     loop = report["closed_loop"]
-    assert report["exported_model"] == "ridge_causal" and loop["model"]["rmse_m"] > loop["hover_trim"]["rmse_m"]
-    assert re.search("^train: warning: DO NOT FLY .* hover trim .* cm", done.err, re.M), done
+    assert report["exported_model"] == "ridge_causal" and loop["model"]["rmse_m"] > loop["without_jerk"]["rmse_m"]
+    assert re.search("^train: warning: DO NOT FLY .* without the path's jerk .* cm", done.err, re.M), done
     assert any("DO NOT FLY" in warning for warning in report["warnings"])
-    assert comment.splitlines()[2].startswith("// DO NOT FLY: ") and "hover trim" in comment
+    assert comment.splitlines()[2].startswith("// DO NOT FLY: ") and "without the path's jerk" in comment
     assert all(len(line) <= 120 for line in comment.splitlines())
     assert "DO NOT FLY" in Path("asked/report.html").read_text()

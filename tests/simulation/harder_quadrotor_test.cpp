@@ -70,25 +70,25 @@ TEST_CASE("commands -> motion -> commands through all of its effects, to 1e-9") 
 TEST_CASE("hover has a trim: near the rigid body's in calm air, more with a weak rotor, a payload, an old battery") {
   HarderConditions calm;
   calm.wind_m_s = 0;
-  pinnquad::HoverTrim<double> trim, hard, rigid;
+  pinnquad::Commands<double> trim{}, hard{}, rigid{};
   const Vector3<double> place = FlightPlan{}.start_m;
   REQUIRE(hover_trim(vehicle(calm), place, trim) == Status::ok);
   using Rigid = pinnquad::Quadrotor<double, pinnquad::StandardAtmosphere>;
   REQUIRE(
       hover_trim(Rigid(pinnquad::airframe_value<pinnquad::LightQuadrotor, double>(), pinnquad::paper_site<double>()),
                  place, rigid) == Status::ok);
-  CHECK(pinnquad::test::distance(trim.commands, rigid.commands) <= 1e-3);
+  CHECK(pinnquad::test::distance(trim, rigid) <= 1e-3);
   HarderConditions still = worst();
   still.wind_m_s = 0;
   REQUIRE(hover_trim(vehicle(still), place, hard) == Status::ok);
   const double load = 1.15;
-  CHECK(hard.commands[0] / rigid.commands[0] == doctest::Approx(load).epsilon(0.01));
-  CHECK(hard.commands[1] / rigid.commands[1] == doctest::Approx(load / 0.85).epsilon(0.01));
+  CHECK(hard[0] / rigid[0] == doctest::Approx(load).epsilon(0.01));
+  CHECK(hard[1] / rigid[1] == doctest::Approx(load / 0.85).epsilon(0.01));
   State<double> there;
   there.position_m = place;
   Commands<double> late{};  // its battery is empty after a minute
   REQUIRE(inverse_commands(vehicle(still), there, {}, 60.0, late) == Status::ok);
-  CHECK(late[0] / hard.commands[0] == doctest::Approx(12.6 * 12.6 / (10.5 * 10.5)).epsilon(1e-6));
+  CHECK(late[0] / hard[0] == doctest::Approx(12.6 * 12.6 / (10.5 * 10.5)).epsilon(1e-6));
 }
 
 TEST_CASE("its airframe: a kilogram, rotors that lag 20 ms, three times the thrust that it needs") {

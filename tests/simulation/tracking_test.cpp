@@ -31,11 +31,8 @@ FigureEight<double> course() {
   return eight;
 }
 
-HoverTrim<double> trim() {
-  HoverTrim<double> result;
-  REQUIRE(hover_trim(vehicle(), Vector3<double>(0, 0, -20), result) == Status::ok);
-  return result;
-}
+using Analytic = AnalyticInverse<Vehicle>;
+Analytic analytic_inverse() { return Analytic(vehicle()); }
 
 /// Stands in for a trained network: the interface of InverseDynamics, the vehicle's formula in float, times `gain`.
 struct FakeInverseDynamics {
@@ -51,7 +48,7 @@ struct FakeInverseDynamics {
                  Report& report) const noexcept {
     report.cause = predict(in, commands);
     if (report.cause == Status::ok) return Status::ok;
-    const bool written = has_output(AnalyticInverse<Vehicle>(vehicle())(in, place, commands));
+    const bool written = has_output(analytic_inverse()(in, place, commands));
     return written ? Status::fell_back : report.cause;
   }
 
@@ -77,26 +74,31 @@ TrackingResult<double> tracked(const FeedForward& feed_forward) {
   return track(vehicle(), course(), FlightController<double>{}, feed_forward);
 }
 
+TrackingResult<double> without_jerk() {
+  const FigureEight<double> eight = course();
+  return track(vehicle(), WithoutJerk{eight}, FlightController<double>{}, analytic_inverse());
+}
+
 }  // namespace
 
-TEST_CASE("feed-forward policies under one feedback law: analytic inverse < hover trim") {
-  const TrackingResult<double> analytic = tracked(AnalyticInverse<Vehicle>(vehicle()));
-  const TrackingResult<double> hover = tracked(trim());
-  MESSAGE("analytic inverse ", 100 * analytic.rmse_m, " cm, hover trim ", 100 * hover.rmse_m, " cm");
+TEST_CASE("a path is flown more closely with its jerk and snap than without") {
+  const TrackingResult<double> analytic = tracked(analytic_inverse());
+  const TrackingResult<double> alone = without_jerk();
+  MESSAGE("analytic inverse ", 100 * analytic.rmse_m, " cm, without jerk ", 100 * alone.rmse_m, " cm");
   REQUIRE(analytic.status == Status::ok);
-  REQUIRE(hover.status == Status::ok);
+  REQUIRE(alone.status == Status::ok);
   CHECK(analytic.flown_s == doctest::Approx(30));
   CHECK(analytic.max_speed_m_s > 4.5);
   CHECK(analytic.rmse_m < 0.05);  // rotor lag and lateral drag, which four rotors can't answer, are left
   CHECK(analytic.max_error_m >= analytic.rmse_m);
-  CHECK(hover.rmse_m > 2 * analytic.rmse_m);
-  CHECK(hover.rmse_m < 1);  // worse, but the feedback holds it
+  CHECK(alone.rmse_m > 2 * analytic.rmse_m);
+  CHECK(alone.rmse_m < 1);  // worse, but the feedback holds it
   CHECK(analytic.saturated_share == 0);
   CHECK(analytic.fallback.asked == 0);
 }
 
 TEST_CASE("a network that knows the formula tracks like the formula; a broken one visibly worse") {
-  const TrackingResult<double> analytic = tracked(AnalyticInverse<Vehicle>(vehicle()));
+  const TrackingResult<double> analytic = tracked(analytic_inverse());
   const TrackingResult<double> network = tracked(FakeNetwork({}));
   const TrackingResult<double> zeroed = tracked(FakeNetwork({0.0f, 100.0f}));
   REQUIRE(network.status == Status::ok);
@@ -108,7 +110,7 @@ TEST_CASE("a network that knows the formula tracks like the formula; a broken on
 }
 
 TEST_CASE("where the network declines the fallback flies, and is counted by Status") {
-  const TrackingResult<double> analytic = tracked(AnalyticInverse<Vehicle>(vehicle()));
+  const TrackingResult<double> analytic = tracked(analytic_inverse());
   const TrackingResult<double> never = tracked(FakeNetwork({0.0f, -1.0f}));
   constexpr double float_rounding_m = 1e-6;  // the guard's inputs and commands are float, the formula between is not
   CHECK(std::abs(never.rmse_m - analytic.rmse_m) <= float_rounding_m);
@@ -149,19 +151,23 @@ TEST_CASE("one way to fall back: the guard's, in the loop too") {
   CHECK(declined.status == Status::ok);
   CHECK(declined.flown_s == doctest::Approx(30));
   CHECK(declined.fallback.fallbacks() == 15000);
-  CHECK(declined.rmse_m < tracked(trim()).rmse_m);
+  CHECK(declined.rmse_m < without_jerk().rmse_m);
 }
 
 namespace {
 
-/// Comes to a Status that a test chooses; the hover's commands where it has output.
+/// Comes to a Status that a test chooses; where it has output, the analytic inverse's commands times `gain`.
 struct ChosenStatus {
-  HoverTrim<double> inner;
+  Analytic inner;
   Status status;
+  double gain = 1;
 
   Status operator()(const State<double>& state, const Accelerations<double>& desired, std::uint64_t time_us,
                     Commands<double>& commands) noexcept {
-    return has_output(status) ? (static_cast<void>(inner(state, desired, time_us, commands)), status) : status;
+    if (!has_output(status)) return status;
+    static_cast<void>(inner(state, desired, time_us, commands));
+    for (double& u : commands) u *= gain;
+    return status;
   }
 };
 
@@ -177,7 +183,7 @@ TEST_CASE("a tick says what the feed-forward came to, and keeps the feedback wha
   for (int i = 0; i < status_count; ++i) {
     const auto chosen = static_cast<Status>(i);
     TrackingController<double, ChosenStatus> controller(quadrotor.airframe(), FlightController<double>{},
-                                                        {trim(), chosen});
+                                                        {analytic_inverse(), chosen});
     Commands<double> commands{};
     CAPTURE(to_string(chosen));
     CHECK(controller(off, still, 0, commands) == (has_output(chosen) ? chosen : Status::fell_back));
@@ -188,17 +194,15 @@ TEST_CASE("a tick says what the feed-forward came to, and keeps the feedback wha
   }
 }
 
-TEST_CASE("a sum that leaves the commands' range is said to be limited, and does not hide a fallback") {
+TEST_CASE("what leaves the commands' range is said to be limited, and does not hide a fallback") {
   const Vehicle quadrotor = vehicle();
-  HoverTrim<double> much;
-  much.commands = {0.98, 0.98, 0.98, 0.98};
   State<double> off;
   off.attitude = from_euler<double>({-0.3, 0, 0});
   const TrajectoryPoint<double> still = test::Hover<double>{}.sample(0);
   Commands<double> commands{};
   for (const Status chosen : {Status::ok, Status::limited, Status::fell_back}) {
     TrackingController<double, ChosenStatus> controller(quadrotor.airframe(), FlightController<double>{},
-                                                        {much, chosen});
+                                                        {analytic_inverse(), chosen, 3});
     CHECK(controller(off, still, 0, commands) == (chosen == Status::ok ? Status::limited : chosen));
     CHECK(saturated(commands));
   }
@@ -213,7 +217,6 @@ TEST_CASE("a circle, and a hover that stays") {
   CHECK(round.rmse_m < 0.05);
   const test::Hover<double> still{Vector3<double>(1, 2, -20), 0.5};
   CHECK(track(vehicle(), still, FlightController<double>{}, inverse).max_error_m <= 1e-9);
-  CHECK(track(vehicle(), still, FlightController<double>{}, trim()).max_error_m <= 1e-9);
 }
 
 namespace {
@@ -225,7 +228,7 @@ struct Witness {
     State<double> state;
     double time_s;
   };
-  HoverTrim<double> inner;
+  Analytic inner;
   std::vector<Seen>* seen;
 
   Status operator()(const State<double>& state, const Accelerations<double>& desired, std::uint64_t time_us,
@@ -244,7 +247,7 @@ TEST_CASE("a result's figures are those of what was flown") {
   plan.duration_s = 4;
   std::vector<Witness::Seen> seen;
   seen.reserve(3000);
-  const auto flown = track(vehicle(), course(), FlightController<double>{}, Witness{trim(), &seen}, plan);
+  const auto flown = track(vehicle(), course(), FlightController<double>{}, Witness{analytic_inverse(), &seen}, plan);
   REQUIRE(flown.status == Status::ok);
   REQUIRE(seen.size() == 2000);
   double squares = 0, farthest_m = 0, fastest_m_s = 0;
@@ -282,8 +285,9 @@ TEST_CASE("the loop recovers from a start far off, in every direction") {
     VehicleState<double> state;
     state.body.position_m = Vector3<double>(0, 0, -20);
     state.body.position_m[direction % 3] += direction < 3 ? 5 : -5;
-    state.rotors = trim().commands;
-    TrackingController<double, HoverTrim<double>> controller(quadrotor.airframe(), FlightController<double>{}, trim());
+    REQUIRE(hover_trim(quadrotor, state.body.position_m, state.rotors) == Status::ok);
+    TrackingController<double, Analytic> controller(quadrotor.airframe(), FlightController<double>{},
+                                                    analytic_inverse());
     Commands<double> commands{};
     for (std::uint64_t i = 0; i < 8000; ++i) {
       REQUIRE(has_output(controller(state.body, goal.sample(state.time_s), 1000 * i, commands)));
@@ -317,12 +321,11 @@ TEST_CASE("float flies it too") {
 TEST_CASE("bad input ends the flight with its Status") {
   FigureEight<double> broken = course();
   broken.half_width_m = std::numeric_limits<double>::quiet_NaN();
-  const TrackingResult<double> result =
-      track(vehicle(), broken, FlightController<double>{}, AnalyticInverse<Vehicle>(vehicle()));
+  const TrackingResult<double> result = track(vehicle(), broken, FlightController<double>{}, analytic_inverse());
   CHECK(result.status == Status::not_finite);
   CHECK(result.flown_s == 0);
 
-  TrackingController<double, HoverTrim<double>> controller(vehicle().airframe(), FlightController<double>{}, trim());
+  TrackingController<double, Analytic> controller(vehicle().airframe(), FlightController<double>{}, analytic_inverse());
   Commands<double> commands{42, 42, 42, 42};
   State<double> state;
   state.velocity_m_s[0] = std::numeric_limits<double>::infinity();

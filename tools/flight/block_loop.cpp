@@ -70,7 +70,7 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   flights.near_ground = near_ground;
   const ModelRange range = plan.keeps_envelope ? range_of(model) : range_of(model).of_altitude();
   const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, range, flights);
-  HoverTrim<double> trim;
+  Commands<double> trim{};
   Status status = vehicle.status();
   if (status == Status::ok) status = hover_trim(vehicle, trajectory.sample(0).position_m, trim);
   if (status != Status::ok) {
@@ -88,7 +88,7 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   flights.model = plan.keeps_envelope ? fly_model(Extend<TrainingGuard, FallsBack>(analytic))
                                       : fly_model(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic));
   flights.analytic_inverse = fly(analytic);
-  flights.hover_trim = fly(trim);
+  flights.without_jerk = track(vehicle, WithoutJerk{trajectory}, controller, analytic);
   return flights;
 }
 

@@ -26,7 +26,7 @@ struct LoopFlights {
   double half_length_m = 0, period_s = 0;
   double lowest_m = 0, highest_m = 0;  ///< altitude of the trajectory
   bool near_ground = false;            ///< in ground effect: the model is shown the altitude
-  pinnquad::TrackingResult<double> model, analytic_inverse, hover_trim;
+  pinnquad::TrackingResult<double> model, analytic_inverse, without_jerk;
 };
 
 /// The motions that a model answers. The model must stay where it is.

@@ -21,14 +21,14 @@ inline nlohmann::json loop_figures(const pinnquad::TrackingResult<double>& flown
           {"status", pinnquad::to_string(flown.status != ok ? flown.status : flown.declined)}};
 }
 
-/// Of a figure with its `half_length_m`, flown by `who` and by none (`hover_trim`), as loop_figures() says them: true
-/// where the flight of `who` ended, or went further off than the figure is long and no feed-forward is off.
+/// Of a figure with its `half_length_m`, flown by `who` and by the analytic inverse `without_jerk`, as loop_figures()
+/// says them: true where the flight of `who` ended, or went further off than the figure is long and that one is off.
 inline bool lost_vehicle(const nlohmann::json& flown, const char* who = "model") {
   if (!flown.contains(who)) return false;
   const nlohmann::json& figures = flown[who];
   return figures["status"] != to_string(pinnquad::Status::ok) ||
          !(figures["largest_error_m"] <=
-           flown["hover_trim"]["largest_error_m"].get<double>() + 2 * flown["half_length_m"].get<double>());
+           flown["without_jerk"]["largest_error_m"].get<double>() + 2 * flown["half_length_m"].get<double>());
 }
 
 }  // namespace programs

@@ -212,8 +212,8 @@ Columns column_values(const std::vector<std::string>& given) {
   return columns;
 }
 
-template <class FeedForward>
-TrackingResult<double> fly(const char* label, const Vehicle& vehicle, const FigureEight<double>& trajectory,
+template <class Trajectory, class FeedForward>
+TrackingResult<double> fly(const char* label, const Vehicle& vehicle, const Trajectory& trajectory,
                            const FeedForward& feed_forward) {
   const double rotor_scale = vehicle.rotor_scale(vehicle.surroundings({}, 0));
   const FlightController<double> controller({}, flight_limits(vehicle.airframe(), rotor_scale));
@@ -247,8 +247,6 @@ bool closed_loop(const Flown& model, const Columns& columns) {
   const FigureEight<double>& trajectory = *held;
   const AnalyticInverse<Vehicle> analytic(vehicle);
   const Measured measured{vehicle.site().ground_z_m, columns};
-  HoverTrim<double> trim;
-  if (hover_trim(vehicle, trajectory.center_m, trim) != Status::ok) return false;
   std::printf(
       "  closed loop  figure-eight, period %.1f s, %.0f s at 1 kHz, commands at 500 Hz; same feedback throughout\n",
       trajectory.period_s, TrackingPlan<double>{}.duration_s);
@@ -272,7 +270,7 @@ bool closed_loop(const Flown& model, const Columns& columns) {
     fly("analytic, no ground effect", vehicle, trajectory,
         AnalyticInverse<Distant>(Distant(vehicle.airframe(), vehicle.site(), {}, {})));
   }
-  fly("none (hover trim)", vehicle, trajectory, trim);
+  fly("the same, no jerk", vehicle, WithoutJerk{trajectory}, analytic);
   const auto zeroed =
       fly("export, weights zeroed", vehicle, trajectory, NetworkInverse<Zeroed, Measured>(Zeroed(analytic), measured));
   const double fallbacks = static_cast<double>(exported.fallback.fallbacks()) / exported.fallback.asked;

@@ -115,7 +115,7 @@ ControlledLoop::ControlledLoop(const LoopSetting& setting)
     return point;
   }};
   Status status = told_.status();
-  HoverTrim<double> trim;
+  Commands<double> trim{};
   if (status == Status::ok) status = hover_trim(told_, eight->center_m, trim);
   if (status != Status::ok) {
     throw std::invalid_argument(std::string("this airframe can't be flown here: ") + to_string(status));

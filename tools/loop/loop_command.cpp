@@ -63,7 +63,7 @@ nlohmann::json report_of(const LoopOptions& options, const BlockModel& model, co
                            {"altitude_m", {flights.lowest_m, flights.highest_m}},
                            {"model", programs::loop_figures(flights.model)},
                            {"analytic_inverse", programs::loop_figures(flights.analytic_inverse)},
-                           {"hover_trim", programs::loop_figures(flights.hover_trim)}};
+                           {"without_jerk", programs::loop_figures(flights.without_jerk)}};
   for (std::size_t i = 0; i < columns.size(); ++i) report["columns"][model.columns()[i].name] = columns[i];
   report["model"]["asked"] = flights.model.fallback.asked;
   report["model"]["answered_share"] = programs::answered_share(flights.model.fallback);
@@ -95,7 +95,7 @@ void print_table(const LoopOptions& options, const BlockModel& model, const std:
   std::printf("  %-20s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "answered by the model");
   print_flight("model", flights.model);
   print_flight("analytic inverse", flights.analytic_inverse);
-  print_flight("none (hover trim)", flights.hover_trim);
+  print_flight("the same, no jerk", flights.without_jerk);
   const nlohmann::json by_status = declined(flights.model.fallback);
   std::string reasons;
   for (const auto& [status, ticks] : by_status.items()) {

@@ -200,10 +200,10 @@ class Vehicles {
   }
 
   static Commands<double> hover_of(const SwitchedQuadrotor& vehicle, const Triple& place_m) {
-    HoverTrim<double> hover;
+    Commands<double> hover{};
     const Status status = hover_trim(vehicle, Vector3<double>(place_m[0], place_m[1], place_m[2]), hover);
     if (status != Status::ok) refuse(std::string("no hover here: ") + to_string(status));
-    return hover.commands;
+    return hover;
   }
 
   /// Where a mask is true; all for None.

@@ -69,9 +69,8 @@ study::Contender contender_of(const study::BeyondModel& model, const study::Cond
     const std::optional<pinnquad::Certificate> certificate = done.model->certificate();
     outcome.proven = certificate && certificate->proven();
     if (condition.in_loop) {
-      outcome.loop =
-          study::closed_loop([&done](const pinnquad::RowSet& rows) { return done.model->guarded_predictions(rows); },
-                             *condition.in_loop, condition.airframe.airframe<double>());
+      outcome.loop = study::closed_loop(
+          [&done](const pinnquad::RowSet& rows) { return done.model->guarded_predictions(rows); }, *condition.in_loop);
     }
     workshop.count(assignment.epochs);
   };

@@ -31,11 +31,10 @@ constexpr pinnquad::Commands<double> no_commands = {pinnquad::not_a_number, pinn
 /// Commands of the hover at the begin of the paper's flight d1.
 BeyondTraining evaluate_none(const BeyondTask& task) {
   const auto vehicle = pinnquad::flight_vehicle<pinnquad::AgileFlight>(task.airframe.airframe<double>());
-  pinnquad::HoverTrim<double> trim;
+  pinnquad::Commands<double> trim{};
   const pinnquad::Status status = hover_trim(vehicle, pinnquad::AgileFlight::plan().start_m, trim);
-  return evaluated(task, [commands = status == pinnquad::Status::ok ? trim.commands : no_commands](const Sample&) {
-    return commands;
-  });
+  return evaluated(
+      task, [commands = status == pinnquad::Status::ok ? trim : no_commands](const Sample&) { return commands; });
 }
 
 BeyondTraining evaluate_formula(const BeyondTask& task) {

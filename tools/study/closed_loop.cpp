@@ -35,8 +35,7 @@ pinnquad::Sample wanted_row(const pinnquad::State<double>& state, const pinnquad
 /// The model asked row by row, as it is judged: formulas, which have no block, stand beside trained models here.
 class ModelFeedForward {
  public:
-  ModelFeedForward(const RowPredictions& model, const pinnquad::Commands<double>& hover, double ground_z_m)
-      : model_(model), hover_(hover), ground_z_m_(ground_z_m) {}
+  ModelFeedForward(const RowPredictions& model, double ground_z_m) : model_(model), ground_z_m_(ground_z_m) {}
 
   Status operator()(const pinnquad::State<double>& state, const pinnquad::Accelerations<double>& desired,
                     std::uint64_t time_us, pinnquad::Commands<double>& commands) noexcept {
@@ -44,10 +43,10 @@ class ModelFeedForward {
       pinnquad::Flight row;
       row.push_back(wanted_row(state, desired, pinnquad::seconds_of(time_us), ground_z_m_));
       const pinnquad::Commands<double> made = model_(pinnquad::RowSet(row, {0, 1})).front();
-      const bool answered = pinnquad::all_finite(made);
-      count_.add(answered ? Status::ok : Status::outside_envelope);
-      commands = answered ? made : hover_;
-      return Status::ok;
+      const Status status = pinnquad::all_finite(made) ? Status::ok : Status::outside_envelope;
+      count_.add(status);
+      if (status == Status::ok) commands = made;
+      return status;
     } catch (const std::exception&) {
       return Status::not_finite;
     }
@@ -57,27 +56,23 @@ class ModelFeedForward {
 
  private:
   const RowPredictions& model_;
-  pinnquad::Commands<double> hover_;
   double ground_z_m_;
   pinnquad::FallbackCount count_{};
 };
 
 }  // namespace
 
-LoopFigures closed_loop(const RowPredictions& model, const pinnquad::Airframe<double>& flown,
-                        const pinnquad::Airframe<double>& told) {
+LoopFigures closed_loop(const RowPredictions& model, const pinnquad::Airframe<double>& flown) {
   using namespace pinnquad;
   const auto vehicle = flight_vehicle<AgileFlight>(flown);
   const FlightController<double> controller(
       {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
   const Vector3<double> center_m(0, 0, -20);
   LoopFigures figures;
-  HoverTrim<double> trim;
-  if (hover_trim(flight_vehicle<AgileFlight>(told), center_m, trim) != Status::ok) return figures;
-  const ModelFeedForward policy(model, trim.commands, vehicle.site().ground_z_m);
+  const ModelFeedForward policy(model, vehicle.site().ground_z_m);
   const auto fly = [&](std::size_t i, const auto& trajectory) {
     const TrackingResult<double> result = track(vehicle, trajectory, controller, policy);
-    if (result.status != Status::ok || result.declined != Status::ok) return;
+    if (result.status != Status::ok || result.declined == Status::not_finite) return;
     figures.rmse_m[i] = result.rmse_m;
     figures.declined_share[i] = result.fallback.fallbacks() / static_cast<double>(result.fallback.asked);
   };

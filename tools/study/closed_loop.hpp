@@ -25,9 +25,7 @@ struct LoopFigures {
 /// Commands of a row, NaN where the model declines.
 using RowPredictions = std::function<programs::Predictions(const pinnquad::RowSet&)>;
 
-/// Flies `flown`. Where the model declines, the hover's commands of `told`, the airframe as the model was told it,
-/// stand in. The feedback is the same for all models.
-LoopFigures closed_loop(const RowPredictions& model, const pinnquad::Airframe<double>& flown,
-                        const pinnquad::Airframe<double>& told);
+/// Flies `flown`. Where the model declines, its rigid body stands in. The outer loop is the same for all models.
+LoopFigures closed_loop(const RowPredictions& model, const pinnquad::Airframe<double>& flown);
 
 }  // namespace study

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A model of logged flights in a closed loop: the vehicle that is identified in them flies a figure-eight inside what
-// they have flown, with the model as feed-forward, beside the analytic inverse and none.
+// they have flown, by the model, beside the analytic inverse, with and without the path's jerk.
 #pragma once
 
 #include <algorithm>
@@ -158,9 +158,10 @@ inline std::string unfit_to_fly(const nlohmann::json& flown) {
   } else if (model["answered_share"] < least_answered) {
     std::snprintf(text, sizeof text, "answers %.1f %% of a figure-eight that the flights' own limits hold",
                   100 * model["answered_share"].get<double>());
-  } else if (model["rmse_m"] > flown["hover_trim"]["rmse_m"]) {
-    std::snprintf(text, sizeof text, "flies a figure-eight %.1f cm off, where hover trim alone is %.1f cm off",
-                  100 * model["rmse_m"].get<double>(), 100 * flown["hover_trim"]["rmse_m"].get<double>());
+  } else if (model["rmse_m"] > flown["without_jerk"]["rmse_m"]) {
+    std::snprintf(text, sizeof text,
+                  "flies a figure-eight %.1f cm off, where the analytic inverse is %.1f cm off without the path's jerk",
+                  100 * model["rmse_m"].get<double>(), 100 * flown["without_jerk"]["rmse_m"].get<double>());
   } else {
     return turned_round(flown.value("against_formula", nlohmann::json::object()));
   }
@@ -172,9 +173,10 @@ inline std::string do_not_fly(const std::string& title, const nlohmann::json& fl
   const std::string unfit = unfit_to_fly(flown);
   if (unfit.empty()) return "";
   char errors[160];
-  std::snprintf(errors, sizeof errors, " (model %.1f cm off, hover trim %.1f cm, analytic inverse %.1f cm)",
-                100 * flown["model"]["rmse_m"].get<double>(), 100 * flown["hover_trim"]["rmse_m"].get<double>(),
-                100 * flown["formula"]["rmse_m"].get<double>());
+  std::snprintf(errors, sizeof errors,
+                " (model %.1f cm off, analytic inverse %.1f cm, without the path's jerk %.1f cm)",
+                100 * flown["model"]["rmse_m"].get<double>(), 100 * flown["formula"]["rmse_m"].get<double>(),
+                100 * flown["without_jerk"]["rmse_m"].get<double>());
   return title + " " + unfit + errors +
          "; fly the analytic inverse of the airframe, or train on more and livelier flights of this vehicle";
 }
@@ -189,11 +191,11 @@ inline nlohmann::json fly_given(const pinnquad::BlockModel& model, const pinnqua
                              {"half_length_m", flown.half_length_m},
                              {"period_s", flown.period_s},
                              {"formula", loop_figures(flown.analytic_inverse)},
-                             {"hover_trim", loop_figures(flown.hover_trim)},
+                             {"without_jerk", loop_figures(flown.without_jerk)},
                              {"model", loop_figures(flown.model)},
                              {"against_formula", nlohmann::json::object()}};
     result["model"]["answered_share"] = answered_share(flown.model.fallback);
-    if (lost_vehicle(result, "formula") || result["formula"]["rmse_m"] > result["hover_trim"]["rmse_m"]) {
+    if (lost_vehicle(result, "formula") || result["formula"]["rmse_m"] > result["without_jerk"]["rmse_m"]) {
       return {{"why_not", "the airframe's own analytic inverse does not fly it"}};
     }
     return result;
@@ -208,11 +210,10 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
                                  const IdentifiedVehicle& identified, bool has_velocity) {
   if (!identified.airframe) return {{"why_not", "the flights do not identify their vehicle"}};
   constexpr double shortest_s = 2;
-  const auto eight =
-      eight_for(identified.airframe->value, 0, flown_envelope(training, has_velocity), shortest_s);
+  const auto eight = eight_for(identified.airframe->value, 0, flown_envelope(training, has_velocity), shortest_s);
   if (!eight) return {{"why_not", "the flights hold no figure-eight, however slow"}};
   const IdentifiedQuadrotor vehicle = identified_quadrotor(identified);
-  pinnquad::HoverTrim<double> trim;
+  pinnquad::Commands<double> trim{};
   if (pinnquad::hover_trim(vehicle, eight->center_m, trim) != pinnquad::Status::ok) {
     return {{"why_not", "the vehicle that was identified does not hover"}};
   }
@@ -225,10 +226,11 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
   const auto fly = [&](const auto& feed_forward) {
     return pinnquad::track(vehicle, *eight, controller, feed_forward, plan);
   };
+  const auto alone = pinnquad::track(vehicle, pinnquad::WithoutJerk{*eight}, controller, analytic, plan);
   nlohmann::json result = {{"trajectory", "figure-eight"},           {"half_length_m", eight->half_length_m},
                            {"half_width_m", eight->half_width_m},    {"period_s", eight->period_s},
-                           {"formula", loop_figures(fly(analytic))}, {"hover_trim", loop_figures(fly(trim))}};
-  if (lost_vehicle(result, "formula") || result["formula"]["rmse_m"] > result["hover_trim"]["rmse_m"]) {
+                           {"formula", loop_figures(fly(analytic))}, {"without_jerk", loop_figures(alone)}};
+  if (lost_vehicle(result, "formula") || result["formula"]["rmse_m"] > result["without_jerk"]["rmse_m"]) {
     return {{"why_not", "the vehicle that was identified is not known well enough: its own formula does not fly it"}};
   }
   using Guard = pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::Fallback<Analytic>>;

@@ -527,9 +527,9 @@ class Training {
     const auto centimetres = [&](const char* who) { return decimals(100 * flown[who]["rmse_m"].get<double>(), 1); };
     std::printf(
         "  flown on the vehicle that %s, figure-eight of %.1f s: %s cm off; by the analytic inverse %s, "
-        "without feed-forward %s\n",
+        "by that without jerk and snap of the path %s\n",
         vehicle_.asked ? "was identified" : "was given", flown["period_s"].get<double>(), centimetres("model").c_str(),
-        centimetres("formula").c_str(), centimetres("hover_trim").c_str());
+        centimetres("formula").c_str(), centimetres("without_jerk").c_str());
     const std::string compared = programs::comparison_in_words(flown["against_formula"]);
     if (!compared.empty()) {
       std::printf("    its sums of commands beside the formula's there, slope (rms difference): %s\n",

@@ -478,9 +478,10 @@ inline std::string training_page(const TrainingPage& in) {
                                              {"difference", shown::number(figures["rms_difference"], 3)},
                                              {"spread", shown::number(figures["spread"], 3)}});
     }
-    const std::pair<const char*, const char*> policies[] = {{"model", "the exported model"},
-                                                            {"formula", "the vehicle's analytic inverse"},
-                                                            {"hover_trim", "none, hover trim"}};
+    const std::pair<const char*, const char*> policies[] = {
+        {"model", "the exported model"},
+        {"formula", "the vehicle's analytic inverse"},
+        {"without_jerk", "the same, without jerk and snap of the path"}};
     for (const auto& [key, name] : policies) {
       page["closed_loop"]["flown"].push_back(
           {{"name", name},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Feed-forward policies: the commands for a motion wanted, before any feedback.
+// Feed-forward policies: the commands for a motion wanted; a controller's feedback is part of it.
 // Contract: `Status operator()(const State<S>&, const Accelerations<S>& desired, std::uint64_t time_us, Commands<S>&)
 // noexcept`; the commands are untouched unless has_output(status). One is AnalyticInverse
 // (inference/analytic_inverse.hpp).
@@ -40,26 +40,14 @@ using FallbackCountOf = decltype(std::declval<const Policy&>().count());
 template <class Policy, class Scalar>
 inline constexpr bool is_feed_forward = is_detected<detail::FeedForward, Policy, Scalar>;
 
-/// No feed-forward: the commands of the hover, whatever is wanted.
-template <class Scalar>
-struct HoverTrim {
-  Commands<Scalar> commands{};
-
-  Status operator()(const State<Scalar>& /*state*/, const Accelerations<Scalar>& /*desired*/, std::uint64_t /*time_us*/,
-                    Commands<Scalar>& result) noexcept {
-    result = commands;
-    return Status::ok;
-  }
-};
-
-/// The trim of a vehicle that stands still at a place, in calm or in the wind of its effects at time 0.
-/// `no_solution` (vehicle/inverse.hpp) or `not_finite`; `trim` is untouched unless the Status is ok.
+/// Commands of a vehicle that stands still at a place, in calm or in the wind of its effects at time 0.
+/// `no_solution` (vehicle/inverse.hpp) or `not_finite`; `commands` are untouched unless the Status is ok.
 template <class Scalar, class... Effects>
 Status hover_trim(const Quadrotor<Scalar, Effects...>& quadrotor, const Vector3<Scalar>& position_m,
-                  HoverTrim<Scalar>& trim) noexcept {
+                  Commands<Scalar>& commands) noexcept {
   State<Scalar> state;
   state.position_m = position_m;
-  return inverse_commands(quadrotor, state, Accelerations<Scalar>{}, Scalar(0), trim.commands);
+  return inverse_commands(quadrotor, state, Accelerations<Scalar>{}, Scalar(0), commands);
 }
 
 /// Counts a network's answers by Status.

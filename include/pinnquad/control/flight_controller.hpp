@@ -160,18 +160,21 @@ class FlightController {
     return Status::ok;
   }
 
-  /// Trajectory loop. Reference: the point's world acceleration in the current attitude, angular accelerations from
-  /// jerk and snap. Feedback, to be added to it: from position, velocity, attitude and body rate errors. They are kept
-  /// apart because a feed-forward policy answers the first, allocation the second. Yaw follows the trajectory. Speed
-  /// within the limits, where there are any.
+  /// Trajectory loop: the question that an inverse is asked, the same in loops and in flight stacks. `demand` is the
+  /// motion of the point (acceleration and jerk within the limits, angular accelerations from jerk and snap) and the
+  /// feedback of position, velocity, attitude and body rate errors together. Rotors make no lateral force: along body x
+  /// and y it is the acceleration of a vehicle that feels none. `feedback`: its share of the demand, for what
+  /// integrates it. Yaw follows the trajectory. Speed within the limits, where there are any.
   /// `not_finite`, `no_solution` (flatness.hpp), `output_not_finite`; both are untouched unless the Status is ok.
-  Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point, Accelerations<Scalar>& reference,
+  Status operator()(const State<Scalar>& state, TrajectoryPoint<Scalar> point, Accelerations<Scalar>& demand,
                     Accelerations<Scalar>& feedback) const noexcept {
     using std::cos;
     using std::sin;
     if (!(all_finite(state) && all_finite(point.position_m) && all_finite(point.velocity_m_s))) {
       return Status::not_finite;
     }
+    point.acceleration_m_s2 = limited(point.acceleration_m_s2);
+    point.jerk_m_s3 = limited_jerk(point.jerk_m_s3, point.acceleration_m_s2);
     FlatMotion<Scalar> flat;
     Status status = flat_motion(point, gravity_m_s2_, flat);
     if (status != Status::ok) return status;
@@ -182,16 +185,18 @@ class FlightController {
     status = attitude_error(state, acceleration, Heading<Scalar>{sin(point.yaw_rad), cos(point.yaw_rad)}, error);
     if (status != Status::ok) return status;
     // `error` also turns vectors from the axes of the attitude wanted into those of the body
-    Accelerations<Scalar> moved, corrected;
-    moved.linear_m_s2 = body_derivative(state, point.acceleration_m_s2);
-    moved.angular_rad_s2 = body_to_world(error, flat.angular_acceleration_rad_s2);
+    Accelerations<Scalar> asked, corrected;
     corrected.linear_m_s2 = world_to_body<Scalar>(state.attitude, acceleration - point.acceleration_m_s2);
     corrected.angular_rad_s2 = angular_feedback(state, error, body_to_world(error, flat.body_rates_rad_s));
-    if (!(all_finite(moved.linear_m_s2) && all_finite(moved.angular_rad_s2) && all_finite(corrected.linear_m_s2) &&
+    asked.linear_m_s2 = body_derivative<Scalar>(state, {Scalar(0), Scalar(0), gravity_m_s2_});
+    asked.linear_m_s2[2] = body_derivative(state, point.acceleration_m_s2)[2] + corrected.linear_m_s2[2];
+    asked.angular_rad_s2 =
+        limited_turn(body_to_world(error, flat.angular_acceleration_rad_s2) + corrected.angular_rad_s2);
+    if (!(all_finite(asked.linear_m_s2) && all_finite(asked.angular_rad_s2) && all_finite(corrected.linear_m_s2) &&
           all_finite(corrected.angular_rad_s2))) {
       return Status::output_not_finite;
     }
-    reference = moved;
+    demand = asked;
     feedback = corrected;
     return Status::ok;
   }
@@ -242,6 +247,7 @@ class FlightController {
     return Vector3<Scalar>(north * scale, east * scale, gravity_m_s2_ - up);
   }
 
+ private:
   /// The jerk (NED) beside a limited acceleration: it turns the thrust no faster than an attitude error may, so that
   /// feedback can hold against a wrong one.
   Vector3<Scalar> limited_jerk(const Vector3<Scalar>& jerk_m_s3,
@@ -264,7 +270,6 @@ class FlightController {
     return result;
   }
 
- private:
   /// The speed at this distance from which the position loop stops with no more than this deceleration.
   Scalar stoppable(Scalar far_m, Scalar deceleration_m_s2) const noexcept {
     using std::sqrt;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Trajectory tracking: commands = feed-forward of the reference motion + allocation of the feedback.
-// The feedback law does not depend on the feed-forward policy, so that policies can be compared. It flies where the
-// policy declines too.
+// Trajectory tracking: FlightController's demand, reference and feedback together -> commands of a policy, which adds
+// what it has learnt -> desaturate(). NeuralController (control/autopilot) flies the same law, to the bit. It flies
+// where the policy declines too.
 #pragma once
 
 #include "pinnquad/control/adaptive_inverse.hpp"
@@ -15,7 +15,7 @@
 namespace pinnquad {
 
 /// Commands of a reference point and a measured state, NED and FRD, SI units. Status `limited` where a command was
-/// limited, `fell_back` where the feed-forward declined and the rigid body flew.
+/// limited, `fell_back` where the policy declined and the rigid body flew.
 template <class Scalar, class FeedForward>
 class TrackingController {
   static_assert(is_feed_forward<FeedForward, Scalar>,
@@ -34,15 +34,14 @@ class TrackingController {
         feed_forward_(feed_forward),
         rotor_scale_(rotor_scale) {}
 
-  /// u = u_ff(state, reference motion) + allocation^-1 (m a_fb along body z, J omega_dot_fb), summed in thrust
-  /// fractions, then desaturated. Where the policy declines, u_ff is the allocation of the reference motion's
-  /// rigid-body wrench, without air.
+  /// u = desaturate(policy(state, demand)). Where the policy declines, the rigid body of the airframe answers, without
+  /// air.
   /// A policy that learns (control/adaptive_inverse.hpp) is shown the state and the commands of the tick before first,
   /// and what it finds across the thrust is taken from the motion that is asked for, with its rate of change along the
   /// trajectory.
-  /// `ok`. `limited`: the policy limited, or the sum was desaturated. `fell_back`: the policy fell back, or declined
-  /// (feed_forward_status() says why). Any other Status of the controller, and `output_not_finite`: the commands are
-  /// untouched.
+  /// `ok`. `limited`: the policy limited, or its commands were desaturated. `fell_back`: the policy fell back, or
+  /// declined (feed_forward_status() says why). Any other Status of the controller, and `output_not_finite`: the
+  /// commands are untouched.
   Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point, std::uint64_t time_us,
                     Commands<Scalar>& commands) noexcept {
     TrajectoryPoint<Scalar> asked = point;
@@ -51,25 +50,18 @@ class TrackingController {
       flew_ = false;
     }
     lean(state, asked);
-    Accelerations<Scalar> motion, feedback;
-    const Status demanded = controller_(state, asked, motion, feedback);
+    Accelerations<Scalar> demand, feedback;
+    const Status demanded = controller_(state, asked, demand, feedback);
     if (demanded != Status::ok) return demanded;
-    Commands<Scalar> reference{};
     if constexpr (integrates_feedback<FeedForward, Scalar>) feed_forward_.integrate(feedback);
-    feed_forward_status_ = feed_forward_(state, motion, time_us, reference);
-    Status status = feed_forward_status_;
-    ThrustFractions<Scalar> sum = rotors_.fractions(reference);
+    Commands<Scalar> wanted{};
+    Status status = feed_forward_status_ = feed_forward_(state, demand, time_us, wanted);
     if (!has_output(status)) {
       status = Status::fell_back;
-      sum = rotors_.fractions_for(required_wrench(airframe_, state, motion, controller_.gravity_m_s2()), rotor_scale_);
+      const Wrench<Scalar> wrench = required_wrench(airframe_, state, demand, controller_.gravity_m_s2());
+      wanted = rotors_.commands_of(rotors_.fractions_for(wrench, rotor_scale_));
     }
-    Wrench<Scalar> push;
-    push.force_N[2] = airframe_.mass_kg * feedback.linear_m_s2[2];
-    push.torque_N_m = inertia_times(airframe_, feedback.angular_rad_s2);
-    const ThrustFractions<Scalar> correction = rotors_.fractions_for(push, rotor_scale_);
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += correction[i];
-    if (!all_finite(sum)) return Status::output_not_finite;
-    const Commands<Scalar> wanted = rotors_.commands_of(sum);
+    if (!all_finite(wanted)) return Status::output_not_finite;
     commands = desaturate(rotors_, wanted);
     if constexpr (learns_in_flight<FeedForward, Scalar>) {
       last_ = commands;

@@ -38,9 +38,9 @@ inline double largest_fraction(const Rotors<double>& rotors, const Commands<doub
 /// Above the share that the controller asks for at most (0.97, flight_limits) the airframe cannot stay up.
 template <class... Effects>
 double hover_command(const Quadrotor<double, Effects...>& quadrotor, const Vector3<double>& place_m) {
-  HoverTrim<double> hover;
+  Commands<double> hover{};
   const Status status = hover_trim(quadrotor, place_m, hover);
-  return status == Status::ok ? detail::largest_fraction(quadrotor.rotors(), hover.commands)
+  return status == Status::ok ? detail::largest_fraction(quadrotor.rotors(), hover)
                               : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -54,14 +54,14 @@ PilotStyle pilot_style(const Quadrotor<double, Effects...>& quadrotor, const Vec
   constexpr int speeds = 80;
   PilotStyle style;
   style.max_speed_m_s = style.max_climb_m_s = style.max_descent_m_s = max_speed_m_s;
-  HoverTrim<double> hover;
+  Commands<double> hover{};
   if (hover_trim(quadrotor, place_m, hover) != Status::ok) return style;
-  const double hover_command = detail::largest_fraction(quadrotor.rotors(), hover.commands);
+  const double hover_command = detail::largest_fraction(quadrotor.rotors(), hover);
   const auto command_at = [&](double down_m_s) {
     State<double> state;
     state.position_m = place_m;
     state.velocity_m_s[2] = down_m_s;
-    Commands<double> commands = hover.commands;
+    Commands<double> commands = hover;
     const Status status = inverse_commands(quadrotor, state, Accelerations<double>{}, 0.0, commands);
     return status == Status::ok ? detail::largest_fraction(quadrotor.rotors(), commands) : hover_command;
   };

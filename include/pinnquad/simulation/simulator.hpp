@@ -139,11 +139,11 @@ class Simulator {
 
  private:
   Status start() {
-    HoverTrim<double> hover;
+    Commands<double> hover{};
     Status status = quadrotor_.status();
     if (status == Status::ok) status = hover_trim(quadrotor_, settings_.start_m, hover);
     if (status != Status::ok) return status;
-    vehicle_.rotors = commands_ = hover.commands;
+    vehicle_.rotors = commands_ = hover;
     const double rotor_scale = quadrotor_.rotor_scale(quadrotor_.surroundings(vehicle_.body, 0.0));
     controller_ =
         FlightController<double>(settings_.gains, flight_limits(quadrotor_.airframe(), rotor_scale, settings_.gains),

@@ -67,10 +67,10 @@ TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& nominal, World
   VehicleState<Scalar> vehicle;
   vehicle.body = {start.position_m, start.velocity_m_s, flat.attitude, flat.body_rates_rad_s};
   const Scalar rotor_scale = nominal.rotor_scale(nominal.surroundings(vehicle.body, Scalar(0)));
-  HoverTrim<Scalar> trim;
+  Commands<Scalar> trim{};
   result.status = hover_trim(nominal, start.position_m, trim);
   if (result.status != Status::ok) return result;
-  vehicle.rotors = trim.commands;
+  vehicle.rotors = trim;
 
   TrackingController<Scalar, FeedForward> controller(nominal.airframe(), flight_controller, feed_forward, rotor_scale);
   Commands<Scalar> commands{};

@@ -107,9 +107,9 @@ inline std::vector<LoggedInstant> flown_instants(const OwnFlight& plan) {
   const auto physics = vehicle.time_step(step_s);
   VehicleState<double> now;
   now.body.position_m = Vector3<double>(0, 0, on_legs ? -ground_m : -20);
-  HoverTrim<double> hover;
+  Commands<double> hover{};
   if (hover_trim(vehicle, now.body.position_m, hover) != Status::ok) return {};
-  Commands<double> commands = hover.commands;
+  Commands<double> commands = hover;
   now.rotors = commands;
   const double scale = vehicle.rotor_scale(vehicle.surroundings(now.body, 0.0));
   const FlightController<double> controller({}, flight_limits(airframe, scale));

@@ -84,12 +84,12 @@ TEST_CASE("the vehicle of flights without an airframe is the one that flew, by t
   CHECK(programs::identified_in_words(vehicle.asked->found).find("yaw effectiveness") != std::string::npos);
 
   const programs::IdentifiedQuadrotor quadrotor = programs::identified_quadrotor(*vehicle.asked);
-  pinnquad::HoverTrim<double> of_truth, of_found;
+  pinnquad::Commands<double> of_truth{}, of_found{};
   using Vehicle = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag>;
   REQUIRE(pinnquad::hover_trim(Vehicle(other_vehicle().value), {0, 0, -20}, of_truth) == pinnquad::Status::ok);
   REQUIRE(pinnquad::hover_trim(quadrotor, {0, 0, -20}, of_found) == pinnquad::Status::ok);
   for (std::size_t i = 0; i < pinnquad::rotor_count; ++i) {
-    CHECK(of_found.commands[i] == doctest::Approx(of_truth.commands[i]).epsilon(0.03));
+    CHECK(of_found[i] == doctest::Approx(of_truth[i]).epsilon(0.03));
   }
 }
 
@@ -163,7 +163,7 @@ TEST_CASE("a vehicle that leaves its path by more than the figure, or falls, is 
   const auto flown = [](double model_m, double trim_m, const char* status) {
     return nlohmann::json{{"half_length_m", 0.5},
                           {"model", {{"status", status}, {"largest_error_m", model_m}}},
-                          {"hover_trim", {{"status", "ok"}, {"largest_error_m", trim_m}}}};
+                          {"without_jerk", {{"status", "ok"}, {"largest_error_m", trim_m}}}};
   };
   CHECK_FALSE(programs::lost_vehicle(flown(1.9, 1, "ok")));
   CHECK(programs::lost_vehicle(flown(2.1, 1, "ok")));
@@ -217,7 +217,7 @@ TEST_CASE(
   CHECK(swapped["thrust"]["slope"].get<double>() == doctest::Approx(1));
   CHECK(programs::turned_round(swapped).find("against the formula's") != std::string::npos);
   CHECK(programs::unfit_to_fly({{"model", {{"answered_share", 1}, {"status", "ok"}, {"largest_error_m", 0.1}}},
-                                {"hover_trim", {{"largest_error_m", 0.1}}},
+                                {"without_jerk", {{"largest_error_m", 0.1}}},
                                 {"half_length_m", 1},
                                 {"against_formula", swapped}}) == programs::turned_round(swapped));
 }

@@ -349,16 +349,8 @@ class NeuralController {
     TrajectoryPoint<float> point = target(reaction, now);
     // a vehicle that levels: thrust alone, so that level stays level
     if (reaction != Reaction::levels) point.acceleration_m_s2 -= analytic_bias().across_m_s2();
-    point.acceleration_m_s2 = outer_loop_.limited(point.acceleration_m_s2);
-    point.jerk_m_s3 = outer_loop_.limited_jerk(point.jerk_m_s3, point.acceleration_m_s2);
     const Status outer = outer_loop_(now, point, wanted, feedback);
     if (outer != Status::ok) return outer;
-    wanted.linear_m_s2 += feedback.linear_m_s2;
-    wanted.angular_rad_s2 = outer_loop_.limited_turn(wanted.angular_rad_s2 + feedback.angular_rad_s2);
-    // rotors make no lateral force: the network has seen what gravity and rotation leave of it
-    const Vector3<float> at_rest = body_derivative<float>(now, {0.0f, 0.0f, vehicle_.site().gravity_m_s2});
-    wanted.linear_m_s2[0] = at_rest[0];
-    wanted.linear_m_s2[1] = at_rest[1];
     expected_m_s2_ = world_acceleration<float>(now, wanted.linear_m_s2);
     motion = motion_inputs(now, wanted);
     return Status::ok;
