@@ -26,13 +26,13 @@ def flight(flown):
 def trained(made, flight):
     """A folder with a/: a network of the paper's recipe."""
     words = "--recipe paper --seeds 2 --epochs 8 --allow-poor --out a"
-    return made(f"train --flight {flight} {words}")
+    return made(f"train {flight} {words}")
 
 
 @pytest.fixture(scope="module")
 def evaluated(pinnquad, trained, flight):
     """Exit code and what it says of the rows that trained none."""
-    return pinnquad("evaluate", trained / "a/model.block", "--flight", flight, "--rows", "test", "--json", code=(0, 1))
+    return pinnquad("evaluate", trained / "a/model.block", flight, "--rows", "test", "--json", code=(0, 1))
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +88,7 @@ def test_judges_as_the_training_did(trained, evaluated, judged):
 
 
 def test_header_as_block(pinnquad, trained, flight, evaluated):
-    words = "--flight", flight, "--rows", "test"
+    words = flight, "--rows", "test"
     of_header = pinnquad("evaluate", trained / "a/model.hpp", *words, "--json", code=evaluated.code)
     assert but_the_name(of_header.out) == but_the_name(evaluated.out)
     assert "Dense<25>" in pinnquad("evaluate", trained / "a/model.block", *words, code=evaluated.code).out
@@ -137,8 +137,8 @@ def test_own_airframe(pinnquad, flight):
     """A block brings it."""
     replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "mine.toml", ("^name = .*", 'name = "mine"'),
              ("^mass_kg = .*", "mass_kg = 1.31"))
-    pinnquad(f"train --recipe paper --airframe mine.toml --flight {flight} --out b --seeds 1 --epochs 2 --allow-poor")
-    of_block, of_header = (pinnquad(f"evaluate b/{file} --flight", flight, code=(0, 1)).out
+    pinnquad(f"train --recipe paper --airframe mine.toml {flight} --out b --seeds 1 --epochs 2 --allow-poor")
+    of_block, of_header = (pinnquad(f"evaluate b/{file}", flight, code=(0, 1)).out
                            for file in ("model.block", "model.hpp"))
     assert of_block.splitlines()[1:] == of_header.splitlines()[1:] and "for mine" in of_block
 
@@ -146,11 +146,11 @@ def test_own_airframe(pinnquad, flight):
 def test_header_without_its_block(pinnquad, trained, flight):
     """A header is taken by the block beside it, which says its hash."""
     shutil.copy(trained / "a/model.hpp", "alone.hpp")
-    pinnquad.refused("evaluate alone.hpp --flight", flight, at="alone.hpp", keyword="alone.block")
+    pinnquad.refused("evaluate alone.hpp", flight, at="alone.hpp", keyword="alone.block")
     shutil.copy(SOURCE / "examples/models/demo_quadrotor.block", "alone.block")
-    pinnquad.refused("evaluate alone.hpp --flight", flight, at="alone.block", keyword="another header")
+    pinnquad.refused("evaluate alone.hpp", flight, at="alone.block", keyword="another header")
     shutil.copy(trained / "a/model.block", "alone.block")
-    pinnquad("evaluate alone.hpp --flight", flight, code=(0, 1))
+    pinnquad("evaluate alone.hpp", flight, code=(0, 1))
 
 
 def test_worse_than_the_mean(pinnquad, trained, flight):
@@ -162,7 +162,7 @@ def test_worse_than_the_mean(pinnquad, trained, flight):
                 cells[i] = 0.5 + 0.4 * math.sin(line * (i + 1))
 
     edited(flight, "noise.csv", noise)
-    done = pinnquad("evaluate", trained / "a/model.block", "--flight", "noise.csv", code=1)
+    done = pinnquad("evaluate", trained / "a/model.block", "noise.csv", code=1)
     assert "worse than the mean" in done.err and "model.block: " in done.err, done
 
 
@@ -175,9 +175,9 @@ def test_refused(pinnquad, trained, flight):
     Path("short.block").write_bytes(whole[:30])
     for name, keyword in (("none.block", "found none"), ("flight.csv", "model block"), ("flight.hpp", "flight.block"),
                           ("cut.block", "cut short"), ("short.block", "model block")):
-        pinnquad.refused("evaluate", name, "--flight", "flight.csv", at=name, keyword=keyword)
+        pinnquad.refused("evaluate", name, "flight.csv", at=name, keyword=keyword)
     for offset in 9, 16, 30, 60, 2000, 20000:
         Path("changed.block").write_bytes(whole[:offset] + b"\xff" + whole[offset + 1 :])
-        pinnquad.refused("evaluate changed.block --flight flight.csv", at="changed.block", keyword="expected")
-    pinnquad.refused("evaluate", trained / "a/model.block", "--flight", "none.csv", at="none.csv",
+        pinnquad.refused("evaluate changed.block flight.csv", at="changed.block", keyword="expected")
+    pinnquad.refused("evaluate", trained / "a/model.block", "none.csv", at="none.csv",
                      keyword="readable file")

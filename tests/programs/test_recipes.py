@@ -21,7 +21,7 @@ def flight(flown):
 @pytest.fixture(scope="module")
 def trained(made, flight):
     """trained(options): the folder that they write, once."""
-    return lambda words="", of=flight: made(f"train --flight {of} {TRAIN} --out . {words}")
+    return lambda words="", of=flight: made(f"train {of} {TRAIN} --out . {words}")
 
 
 def figures(folder, but=""):
@@ -80,7 +80,7 @@ def test_reports(pinnquad, trained, flight):
     # the loss named first in the list of losses is the one that is exported where physics_informed was not asked for
     assert small["verdict"]["model"] == small["exported_model"] == "constant_weight"
     assert "constant weight" in (folder / "model.hpp").read_text()
-    header, block = (pinnquad("evaluate", folder / name, "--flight", flight, "--rows", "test", "--json",
+    header, block = (pinnquad("evaluate", folder / name, flight, "--rows", "test", "--json",
                               code=(0, 1)).out
                      for name in ("model.hpp", "model.block"))
     judged, of_block = json.loads(header), json.loads(block)
@@ -100,7 +100,7 @@ def test_slopes_under_noise(pinnquad, flown):
     errors = {}
     for flight, by in (quiet, "least squares"), (noisy, "instruments"):
         folder = Path(by.split()[0])
-        said = pinnquad(f"train {words}", "--flight", flight, "--out", folder).out
+        said = pinnquad(f"train {words}", flight, "--out", folder).out
         report = report_of(folder)
         certificate = report["certificate"]
         assert certificate["proven"] is True and report["exported"] is True
@@ -119,7 +119,7 @@ def test_slopes_under_noise(pinnquad, flown):
         assert said.count("by instruments") == (3 if by == "instruments" else 0)
         assert f"<td>{by}</td>" in (folder / "report.html").read_text()
         assert any("instruments" in warning for warning in report["warnings"]) == (by == "instruments")
-        judged = json.loads(pinnquad("evaluate", folder / "model.block", "--flight", quiet, "--json").out)
+        judged = json.loads(pinnquad("evaluate", folder / "model.block", quiet, "--json").out)
         errors[by] = judged["rmse"]
     assert errors["instruments"] < 2 * errors["least squares"] < 0.02, "on a flight without noise"
 
@@ -136,7 +136,7 @@ def test_latency(pinnquad, flown):
     slow = "--airframe crazyflie_2_1"
     for flight, options, lag in ((late, "", -0.05), (late, "--lag 0", 0), ("ahead.csv", "", 0.05), (prompt, "", 0),
                                  (flown(f"--seed 3 --samples 5000 {slow}"), slow, 0)):
-        said = pinnquad(f"{words} {options} --out aligned", "--flight", flight).out
+        said = pinnquad(f"{words} {options} --out aligned", flight).out
         report = report_of("aligned")
         assert report["settings"]["lag_removed_s"] == pytest.approx(lag), (flight, options)
         assert ("--lag 0 leaves the commands" in said) == (lag != 0)
@@ -146,7 +146,7 @@ def test_latency(pinnquad, flown):
         error[str(flight), options] = report["models"]["structured"]["rmse"]["mean"]
     assert error[str(late), ""] < 0.5 * error[str(late), "--lag 0"]
     assert error[str(late), ""] < 1.8 * error[str(prompt), ""]
-    for options, keyword in ("--lag soon --flight ahead.csv", "--lag"), ("--lag 0 --dataset none", "a dataset"):
+    for options, keyword in (("--lag soon ahead.csv", "--lag"),):
         pinnquad.refused(f"{words} {options} --out aligned", keyword=keyword)
 
 
@@ -159,16 +159,16 @@ def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
             cells[17:21] = [0.2 + 0.6 * float(u) + 0.004 * (float(cells[16]) - 20) for u in cells[17:21]]
 
     edited(flight, "near.csv", near_ground)
-    said = pinnquad(f"train --flight near.csv {TRAIN} --out near --loss vanilla").out
+    said = pinnquad(f"train near.csv {TRAIN} --out near --loss vanilla").out
     assert re.search(r"shown the altitude: .* with it [0-9.]*e-3, without [0-9.]*e-3$", said, re.M), said
     assert "pinnquad::InverseFeaturesWithAltitude;" in Path("near/model.hpp").read_text()
     for model in "model.hpp", "model.block":
         pinnquad(f"certify near/{model}")
-    judged = json.loads(pinnquad("evaluate near/model.hpp --flight near.csv --rows test --json").out)
+    judged = json.loads(pinnquad("evaluate near/model.hpp near.csv --rows test --json").out)
     assert Path("near/replay.txt").read_text().startswith("pinnquad-replay 1 500 25\n")
     compiler("-fsyntax-only -Wall -Wextra -Werror -I near -I", SOURCE / "tools",
              SOURCE / "tools/fly_export/fly_export.cpp")
-    pinnquad(f"train --flight near.csv {TRAIN} --out near_no --loss vanilla --altitude no")
+    pinnquad(f"train near.csv {TRAIN} --out near_no --loss vanilla --altitude no")
     assert "pinnquad::InverseFeatures;" in Path("near_no/model.hpp").read_text()
     far = trained("--loss vanilla --altitude yes --slopes pinned")
     assert "pinnquad::InverseFeaturesWithAltitude;" in (far / "model.hpp").read_text()
@@ -191,14 +191,14 @@ def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
 def test_limits_of_trust(pinnquad, flight, flown, compiler, flags):
     """In a header beside the model, of 80 s of validation rows and more; nothing that stays."""
     assert re.search("^  no limits .* 80 s",
-                     pinnquad(f"train --flight {flight} {TRAIN} --out short --loss vanilla").out, re.M)
+                     pinnquad(f"train {flight} {TRAIN} --out short --loss vanilla").out, re.M)
     long = flown("--seed 3 --samples 9000")
-    said = pinnquad(f"train --flight {long} {TRAIN} --out trusted --loss vanilla").out
+    said = pinnquad(f"train {long} {TRAIN} --out trusted --loss vanilla").out
     assert "  trusted/trust.hpp: struct TrainedQuadModelTrust" in said
     compiler(*flags, "-O1", "-Wall", "-Wextra", "-Werror", "-I", "trusted", SOURCE / "tests/programs/trust/guarded.cpp",
              "-o", "guarded")
     Program("./guarded")("trusted/replay.txt")
-    pinnquad(f"train --flight {flight} {TRAIN} --out trusted --recipe paper")
+    pinnquad(f"train {flight} {TRAIN} --out trusted --recipe paper")
     assert not Path("trusted/trust.hpp").exists(), "limits of an earlier training stay beside another model"
 
 
@@ -206,7 +206,7 @@ def test_limits_of_trust(pinnquad, flight, flown, compiler, flags):
                                             ("--recipe paper --slopes pinned", "--slopes")])
 def test_refused(pinnquad, flight, commands, words, keyword):
     Path("out").mkdir()
-    line = pinnquad.refused(f"train --flight {flight} --out out --epochs 1 --seeds 1 {words}", keyword=keyword).lines[0]
+    line = pinnquad.refused(f"train {flight} --out out --epochs 1 --seeds 1 {words}", keyword=keyword).lines[0]
     assert not os.listdir("out")
     (text,) = [text for command, text in commands if command.words[-1] == "train"]
     for name in line.split("known: ")[1].split(", ") if "known: " in line else ["altitude", "slopes", "pinned", "130"]:

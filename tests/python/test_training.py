@@ -20,7 +20,7 @@ def test_the_model_is_proven_and_good(trained, flight):
 @pytest.mark.parametrize("recipe", ["structured", "paper"])
 def test_the_bytes_of_the_program(program, flight, tmp_path, recipe):
     flight.save(tmp_path / "flight.csv")
-    program("train", "--flight", tmp_path / "flight.csv", "--recipe", recipe, "--seeds", 2, "--epochs", 2, "--out",
+    program("train", tmp_path / "flight.csv", "--recipe", recipe, "--seeds", 2, "--epochs", 2, "--out",
             tmp_path / "theirs", "--allow-poor")
     training = pinnquad.train(Flight.read(tmp_path / "flight.csv"), recipe=recipe, seeds=2, epochs=2)
     files = training.save(tmp_path / "ours", allow_poor=True)

@@ -51,6 +51,11 @@ inline void require_command(const CLI::App& program, const std::string& elsewher
   const std::string known = listed(command.get_subcommands([](const CLI::App*) { return true; }),
                                    [](const CLI::App* part) { return part->get_name(); });
   if (known.empty()) {
+    for (const std::string& word : unknown) {
+      if (word != "--flight" && word != "--dataset" && word != "--log") continue;
+      throw std::invalid_argument("no option " + word + ": flights, datasets and logs stand by themselves: " +
+                                  command.get_name() + " FLIGHTS");
+    }
     if (!unknown.empty()) throw CLI::ExtrasError(command.get_name(), unknown);
     return;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How --help looks: what CLI11 makes of a command, within the 80 columns of a terminal.
+// How --help looks: what CLI11 makes of a command, within 100 columns.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -86,7 +86,7 @@ class HelpFormatter : public CLI::Formatter {
   }
 
  private:
-  static constexpr std::size_t width = 79, name_column = 28;
+  static constexpr std::size_t width = 99, name_column = 28;
 
   static std::vector<const CLI::Option*> arguments(const CLI::App* app) {
     return app->get_options(

@@ -201,8 +201,8 @@ programs::Command programs::loop_command(CLI::App& program) {
       ->check(CLI::IsMember(std::vector<std::string>(loop_trajectories.begin(), loop_trajectories.end())));
   CLI::Option* guard =
       line->add_option("--guard", options->guard,
-                       "envelope: outside of its training envelope the analytic inverse flies in place of the model; "
-                       "none: the model flies there too")
+                       "envelope: outside of its training envelope the analytic inverse flies; none: the model flies "
+                       "there too")
           ->capture_default_str()
           ->check(CLI::IsMember({"envelope", "none"}));
   add_names(*line, "--controllers", options->controllers, loop_controllers,

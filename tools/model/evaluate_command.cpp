@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Judges a model on recorded flights, by its block, which describes itself: no compiler is asked.
-//   pinnquad evaluate my_model/model.hpp --flight flight.csv --json
+//   pinnquad evaluate my_model/model.hpp flight.csv --json
 #include "model/evaluate_command.hpp"
 
 #include <array>
@@ -71,7 +71,7 @@ programs::Command programs::evaluate_command(CLI::App& program) {
       program.add_subcommand("evaluate", "Judges an exported model on recorded flights, without compiling");
   const auto options = std::make_shared<EvaluateOptions>();
   add_model(*line, options->model);
-  add_paths(*line, "--flight", options->flights, "FILE.csv", "recorded flights to judge it on")->required();
+  add_paths(*line, "flights", options->flights, "FILE.csv", "recorded flights to judge it on")->required();
   line->add_option("--rows", options->rows,
                    "all: every row; test: those that pinnquad train tests on when it is given these flights")
       ->capture_default_str()
@@ -79,9 +79,9 @@ programs::Command programs::evaluate_command(CLI::App& program) {
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(
       "Examples:\n"
-      "  pinnquad train --flight d1.csv --out my_model\n"
-      "  pinnquad evaluate my_model/model.hpp --flight d1.csv --rows test\n"
-      "  pinnquad evaluate my_model/model.block --flight d2.csv --json\n"
+      "  pinnquad train d1.csv --out my_model\n"
+      "  pinnquad evaluate my_model/model.hpp d1.csv --rows test\n"
+      "  pinnquad evaluate my_model/model.block d2.csv --json\n"
       "Exit codes: 0; 1 it is worse than the mean of the commands; 2 bad input or a file that can't be read; 130\n"
       "interrupted.");
   return {line, [options] { return evaluate(*options); }};

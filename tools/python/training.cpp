@@ -254,7 +254,7 @@ void bind_training(py::module_& module) {
       py::arg("seeds") = 5, py::arg("epochs") = 0, py::arg("seed") = 1,
       py::arg("hold_out") = std::vector<std::string>{}, py::arg("altitude") = py::none(), py::arg("slopes") = "learned",
       py::arg("lag_s") = py::none(), py::arg("threads") = 0,
-      "As `pinnquad train --flight`, on flights in memory, and with its bytes.\n\n"
+      "As `pinnquad train FLIGHTS`, on flights in memory, and with its bytes.\n\n"
       "flights    a Dataset, a Flight or a list of them; one: its last fifth is held out, of three or more the last\n"
       "airframe   what flew: an Airframe, a name, or a TOML file\n"
       "recipe     'structured' (its model is proven), 'paper', 'best', 'small'\n"

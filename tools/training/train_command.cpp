@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The options of `train`, and which of them do not go together.
-//   pinnquad train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
-//   pinnquad train --dataset DIR --hold-out-each trajectory --seeds 5 --out OUT
-//   pinnquad train --log DIR --mapping px4 --hold-out flight7 --out OUT
+//   pinnquad train flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
+//   pinnquad train DIR --hold-out-each trajectory --seeds 5 --out OUT
+//   pinnquad train DIR --mapping px4 --hold-out flight7 --out OUT
 #include "training/train_command.hpp"
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
+#include "pinnquad/logs/read_dataset.hpp"
 #include "training/network_kinds.hpp"
 #include "training/recipe.hpp"
 #include "training/train_run.hpp"
@@ -32,22 +33,14 @@ struct GivenWords {
   int epochs = programs::recipe_epochs;
 };
 
-void add_sources(CLI::App& app, TrainOptions& options) {
-  using programs::add_path, programs::add_paths;
-  add_paths(
-      app, "--flight", options.flights, "FILE.csv",
-      "recorded flight, CSV as `pinnquad fly` writes it: its first part trains, its last is held out. Of three or "
-      "more, whole flights, in this order: the first train, the last is held out");
-  add_path(app, "--dataset", options.dataset, "DIR",
-           "imported flights of a real vehicle, a folder that `pinnquad import` wrote");
-  add_paths(app, "--log", options.logs, "LOG", "flight logs, imported first: ULog, CSV, or folders of them");
-  app.add_option("--mapping", options.mapping, "what the columns of --log mean: see import")
-      ->type_name("NAME|FILE.toml");
+void add_flights(CLI::App& app, TrainOptions& options) {
+  programs::add_sources(app, options.flights, options.mapping);
   app.add_option("--hold-out", options.hold_out, "flights or trajectories that judge, held out together")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAME,...");
   app.add_option("--hold-out-each", options.hold_out_each,
-                 "hold out each flight or each trajectory in turn; the export is fitted to all")
+                 "each in turn; the export is fitted to all")
       ->check(CLI::IsMember({"flight", "trajectory"}))
       ->type_name("flight|trajectory");
 }
@@ -60,39 +53,33 @@ void add_kinds(CLI::App& app, TrainOptions& options, GivenWords& words) {
   }
   app.add_option(
          "--recipe", words.recipe,
-         "kinds of models to compare, by a name, and the one to export; of flights, where --models names none. " +
-             recipes)
+"models to compare, and the one to export (flights): " + recipes)
       ->capture_default_str();
   app.add_option("--loss", words.losses,
-                 "what the networks of a recipe are trained under, any of: " + programs::listed(programs::loss_names) +
-                     ". The recipe structured trains its model too, whatever is asked for, and exports it; the others "
-                     "export physics_informed or, where it is not asked for, the first of this list")
+                 "of a recipe's networks: " + programs::listed(programs::loss_names))
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAME,...")
       ->default_str("vanilla,physics_informed");
   app.add_option("--models", options.models,
-                 "compare these of the kinds for logs, by their names in report.json: closed forms, windows, networks "
-                 "stopped by validation; of logs all, where no recipe is asked for")
+                 "instead of a recipe these kinds for logs, as report.json names them (logs: all)")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAME,...");
   app.add_option(
          "--export", options.export_choice,
-         "which model becomes the header: the best that flies on measured motion (causal: the default of logs), "
-         "the best that looks ahead (centred: planned trajectories only), or one by its name")
+         "the best that flies on measured motion (causal: the default of logs), the best that looks ahead "
+                 "(centred: planned trajectories only), or one by its name")
       ->type_name("causal|centred|NAME");
   app.add_option(
          "--altitude", words.altitude,
-         "is the model of the recipe structured shown the altitude above ground? auto: if that lowers its error on "
-         "the validation rows by a fifth, as it does near the ground. A model that is shown it must be given it in "
-         "flight")
+         "is the structured model shown it? auto: if its validation error falls by a fifth")
       ->check(CLI::IsMember({"auto", "yes", "no"}))
       ->type_name("auto|yes|no")
       ->capture_default_str();
   app.add_option(
          "--slopes", words.slopes,
-         "how much the command sums of the recipe structured's model rise with the angular acceleration: learned "
-         "of the flights, or pinned to the airframe's in hover, where quiet flights, rotor lag or latency hide them; "
-         "the noise of an angular acceleration then goes into the commands")
+         "of the structured model's command sums by the angular acceleration; pinned: those of the airframe in hover")
       ->check(CLI::IsMember({"learned", "pinned"}))
       ->type_name("learned|pinned")
       ->capture_default_str();
@@ -102,21 +89,20 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   using programs::add_number, programs::add_path;
   app.footer(
       "Examples:\n"
-      "  pinnquad train --flight d1.csv --out my_model\n"
-      "  pinnquad train --flight a.csv --flight b.csv --flight c.csv --airframe mine.toml --recipe best\n"
-      "  pinnquad train --flight d1.csv --recipe small --out small\n"
-      "  pinnquad train --log logs --mapping px4 --hold-out flight7 --out my_model\n"
-      "  pinnquad train --dataset my_logs --hold-out-each trajectory --out my_model\n"
+      "  pinnquad train d1.csv --out my_model\n"
+      "  pinnquad train a.csv b.csv c.csv --airframe mine.toml --recipe best\n"
+      "  pinnquad train logs --mapping px4 --hold-out flight7 --out my_model\n"
+      "  pinnquad train my_logs --hold-out-each trajectory --out my_model\n"
+      "docs/train.md and docs/log_training.md say more of each option.\n"
       "Exit codes: 0; 1 nothing exported: no model was finished, or the best is worse than the mean of the commands;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted: the same command goes on from there.");
-  add_sources(app, options);
+  add_flights(app, options);
   app.add_option("--airframe", words.airframe,
                  "what flew: a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
       ->capture_default_str();
   app.add_option(
          "--lag", words.lag,
-         "from command to motion, removed from the commands of logs and flights: estimated, of flights as whole "
-         "rows that are not the rotors', or as given")
+"from command to motion, removed from the commands: estimated, or as given")
       ->type_name("auto|SECONDS")
       ->capture_default_str();
   add_path(app, "--out", options.out, "DIR", "folder for results, report and the exported header")
@@ -130,29 +116,29 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
       ->type_name("N");
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
   app.add_flag("--allow-poor", options.allow_poor,
-               "export the best model even if it is worse than the mean of the commands; its header says so");
+"export even what is worse than the mean of the commands; its header says so");
+}
+
+/// What was given as flights goes where its content belongs.
+void take_source(TrainOptions& options) {
+  using pinnquad::logs::SourceKind;
+  const SourceKind kind = pinnquad::logs::kind_of_sources(options.flights, options.mapping);
+  if (kind == SourceKind::flights) return;
+  if (kind == SourceKind::dataset) options.dataset = options.flights.front();
+  if (kind == SourceKind::logs) options.logs = options.flights;
+  options.flights.clear();
 }
 
 /// Throws std::invalid_argument, one line, for options that do not go together.
-void require_one_way(const CLI::App& line) {
+void require_one_way(const CLI::App& line, const TrainOptions& options) {
   const auto given = [&line](const char* name) { return line.count(name) > 0; };
   const auto refuse = [](const std::string& what) { throw std::invalid_argument(what); };
-  std::string sources;
-  int count = 0;
-  for (const char* source : {"--flight", "--dataset", "--log"}) {
-    if (!given(source)) continue;
-    sources += (count++ > 0 ? " and " : "") + std::string(source);
-  }
-  if (count == 0) refuse("--flight, --dataset or --log is required");
-  if (count > 1) refuse(sources + " can't be given together: expected one of them");
-  if (given("--log") != given("--mapping")) refuse("--log and --mapping go together: what its columns mean");
-  if (given("--lag") && given("--dataset"))
-    refuse("--lag goes with --flight or --log: a dataset was imported with one");
+  if (given("--lag") && !options.dataset.empty()) refuse("--lag: a dataset was imported with one");
   if (given("--hold-out") && given("--hold-out-each")) refuse("--hold-out and --hold-out-each can't be given together");
   for (const char* of_recipes : {"--recipe", "--loss", "--altitude", "--slopes"}) {
     if (!given(of_recipes)) continue;
     if (given("--models")) refuse(std::string(of_recipes) + " and --models can't be given together");
-    if (!given("--flight") && !given("--recipe")) refuse(std::string(of_recipes) + " goes with --recipe");
+    if (options.flights.empty() && !given("--recipe")) refuse(std::string(of_recipes) + " goes with --recipe");
   }
 }
 
@@ -168,11 +154,12 @@ programs::Command programs::train_command(CLI::App& program) {
   const auto asked = std::make_shared<Asked>();
   add_options(*line, asked->options, asked->words);
   return {line, [asked, line] {
-            require_one_way(*line);
             TrainOptions& options = asked->options;
+            take_source(options);
+            require_one_way(*line, options);
             const GivenWords& words = asked->words;
             const auto given = [line](const char* name) { return line->count(name) > 0; };
-            if (given("--recipe") || (given("--flight") && !given("--models"))) options.recipe = words.recipe;
+            if (given("--recipe") || (!options.flights.empty() && !given("--models"))) options.recipe = words.recipe;
             options.losses = words.losses;
             if (words.altitude != "auto") options.altitude = words.altitude == "yes";
             options.lag_s = programs::lag_of(words.lag);

@@ -51,9 +51,9 @@ void each_output(const TrainOptions& options, const Use& use) {
 /// No output takes the place of an input or of another output.
 void require_separate_files(const TrainOptions& options) {
   programs::FileRoles roles;
-  for (const std::string& path : options.flights) roles.reads("--flight", path);
-  for (const std::string& path : options.logs) roles.reads("--log", path);
-  if (!options.dataset.empty()) roles.reads("--dataset", options.dataset);
+  for (const std::string& path : options.flights) roles.reads("FLIGHTS", path);
+  for (const std::string& path : options.logs) roles.reads("FLIGHTS", path);
+  if (!options.dataset.empty()) roles.reads("FLIGHTS", options.dataset);
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   roles.writes("--out", options.out);
   each_output(options, [&roles](const std::string& path) { roles.writes("--out", path); });
