@@ -6,6 +6,10 @@
 #include "pinnquad/flight.hpp"
 #endif
 
+// Features: vdot_bx [m/s^2], vdot_by [m/s^2], vdot_bz [m/s^2], wdot_x [rad/s^2], wdot_y [rad/s^2], wdot_z [rad/s^2],
+// v_bx [m/s], v_by [m/s], v_bz [m/s], w_x [rad/s], w_y [rad/s], w_z [rad/s], roll [rad], pitch [rad], sin_yaw [1],
+// cos_yaw [1].
+// Outputs: u1 [1], u2 [1], u3 [1], u4 [1].
 struct CrazyflieModel {
   using Scalar = float;
   using Network = pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<4>>;
@@ -14,7 +18,7 @@ struct CrazyflieModel {
   using Vehicle = pinnquad::Crazyflie;
   using Inputs = Features::Inputs<Scalar>;
 
-  static constexpr int format_version = 4;
+  static constexpr int format_version = 5;
   static constexpr const char* name = "CrazyflieModel";
 
   // provenance
@@ -31,43 +35,18 @@ struct CrazyflieModel {
   static constexpr bool worse_than_mean = false;
   static constexpr bool beats_linear_regression = true;
 
-  // what it was trained for; require_model() compares with Features, Outputs and Vehicle
-  static constexpr const char* frame = "body FRD, world NED";
-  static constexpr std::array<const char*, 16> feature_names = {{
-      "vdot_bx", "vdot_by", "vdot_bz", "wdot_x", "wdot_y", "wdot_z", "v_bx", "v_by",
-      "v_bz", "w_x", "w_y", "w_z", "roll", "pitch", "sin_yaw", "cos_yaw"}};
-  static constexpr std::array<const char*, 16> feature_units = {{
-      "m/s^2", "m/s^2", "m/s^2", "rad/s^2", "rad/s^2", "rad/s^2", "m/s", "m/s",
-      "m/s", "rad/s", "rad/s", "rad/s", "rad", "rad", "1", "1"}};
-  static constexpr std::array<const char*, 4> output_names = {{"u1", "u2", "u3", "u4"}};
-  static constexpr std::array<const char*, 4> output_units = {{"1", "1", "1", "1"}};
-  static constexpr const char* vehicle_name = "crazyflie_2_1";
-  // rotor by rotor: signs of its torque about x, y, z
-  static constexpr std::array<std::array<int, 3>, 4> motor_torque_signs = {{
-    {{-1, 1, 1}},
-    {{1, -1, 1}},
-    {{1, 1, -1}},
-    {{-1, -1, -1}}}};
-
-  // records: a reader that does not know one of them must not fly the model (exported/model_records.hpp)
-  static constexpr std::array<const char*, 7> records = {{"answer", "commands", "clock", "window", "columns", "allocation", "base"}};
-  static constexpr const char* answer = "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<25>, pinnquad::Relu, pinnquad::Dense<4>>";
+  // commands and clock of its training (exported/model_facts.hpp)
   static constexpr auto command_meaning = pinnquad::CommandMeaning::thrust;
   static constexpr double command_lower = 0.0;
   static constexpr double command_upper = 1.0;
   static constexpr double sample_period_s = 0.0;
   static constexpr double lag_removed_s = 0.0;
-  static constexpr int window_taps = 1;
-  static constexpr bool causal = true;
-  static constexpr std::array<const char*, 0> column_names = {};
-  static constexpr std::array<const char*, 0> column_units = {};
   // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density
   static constexpr std::array<std::array<double, 4>, 4> allocation = {{
     {{0.14892469519600002, 0.14892469519600002, 0.14892469519600002, 0.14892469519600002}},
     {{-0.004844060445524638, 0.004844060445524638, 0.004844060445524638, -0.004844060445524638}},
     {{0.004844060445524638, -0.004844060445524638, 0.004844060445524638, -0.004844060445524638}},
     {{0.003741968607140001, 0.003741968607140001, -0.003741968607140001, -0.003741968607140001}}}};
-  static constexpr const char* base = "";
 
   // standardisation: (value - mean) / spread
   static constexpr pinnquad::Scaler<float, 16> input = {{{
@@ -922,6 +901,8 @@ struct CrazyflieModel {
       0.35971934f, 0.017417606f, 0.38566175f, 0.0f, 0.0f, 0.007366561f, 0.0f, 0.07300846f,
       -0.06333551f, -0.045490004f, 0.22579788f}};
 
+  // over what the types say: layers, names and units, frame, airframe's name, motor order
+  static constexpr std::uint64_t shape_hash = 0xa33d7466eebddf56;
   // over all of this: what was edited does not compile (exported/contents_hash.hpp)
   static constexpr std::uint64_t contents_hash = 0x939025e8281a3a72;
 };

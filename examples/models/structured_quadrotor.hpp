@@ -29,6 +29,10 @@ struct StructuredQuadModelAirframe {
   }
 };
 
+// Features: s_z [m/s^2], wdot_x [rad/s^2], wdot_y [rad/s^2], wdot_z [rad/s^2], w_x [rad/s], w_y [rad/s], w_z [rad/s],
+// w_yz [rad^2/s^2], w_zx [rad^2/s^2], w_xy [rad^2/s^2], down_x [1], down_y [1], down_z [1], v_bx [m/s], v_by [m/s],
+// v_bz [m/s], vv_bx [m^2/s^2], vv_by [m^2/s^2], vv_bz [m^2/s^2].
+// Outputs: sum [1], roll_sum [1], pitch_sum [1], yaw_sum [1].
 struct StructuredQuadModel {
   using Scalar = float;
   using Network = pinnquad::AxisAligned<float, 19, 1>;
@@ -37,7 +41,7 @@ struct StructuredQuadModel {
   using Vehicle = StructuredQuadModelAirframe;
   using Inputs = Features::Inputs<Scalar>;
 
-  static constexpr int format_version = 4;
+  static constexpr int format_version = 5;
   static constexpr const char* name = "StructuredQuadModel";
 
   // provenance
@@ -54,52 +58,18 @@ struct StructuredQuadModel {
   static constexpr bool worse_than_mean = false;
   static constexpr bool beats_linear_regression = true;
 
-  // what it was trained for; require_model() compares with Features, Outputs and Vehicle
-  static constexpr const char* frame = "body FRD, world NED";
-  static constexpr std::array<const char*, 19> feature_names = {{
-      "s_z", "wdot_x", "wdot_y", "wdot_z", "w_x", "w_y", "w_z", "w_yz",
-      "w_zx", "w_xy", "down_x", "down_y", "down_z", "v_bx", "v_by", "v_bz",
-      "vv_bx", "vv_by", "vv_bz"}};
-  static constexpr std::array<const char*, 19> feature_units = {{
-      "m/s^2", "rad/s^2", "rad/s^2", "rad/s^2", "rad/s", "rad/s", "rad/s", "rad^2/s^2",
-      "rad^2/s^2", "rad^2/s^2", "1", "1", "1", "m/s", "m/s", "m/s",
-      "m^2/s^2", "m^2/s^2", "m^2/s^2"}};
-  static constexpr std::array<const char*, 4> output_names = {{"sum", "roll_sum", "pitch_sum", "yaw_sum"}};
-  static constexpr std::array<const char*, 4> output_units = {{"1", "1", "1", "1"}};
-  static constexpr const char* vehicle_name = "paper_quadrotor";
-  // rotor by rotor: signs of its torque about x, y, z
-  static constexpr std::array<std::array<int, 3>, 4> motor_torque_signs = {{
-    {{-1, 1, 1}},
-    {{1, -1, 1}},
-    {{1, 1, -1}},
-    {{-1, -1, -1}}}};
-
-  // records: a reader that does not know one of them must not fly the model (exported/model_records.hpp)
-  static constexpr std::array<const char*, 7> records = {{"answer", "commands", "clock", "window", "columns", "allocation", "base"}};
-  static constexpr const char* answer = "pinnquad::AxisAligned<float, 19, 1>";
+  // commands and clock of its training (exported/model_facts.hpp)
   static constexpr auto command_meaning = pinnquad::CommandMeaning::thrust;
   static constexpr double command_lower = 0.0;
   static constexpr double command_upper = 1.0;
   static constexpr double sample_period_s = 0.05;
   static constexpr double lag_removed_s = 0.0;
-  static constexpr int window_taps = 1;
-  static constexpr bool causal = true;
-  static constexpr std::array<const char*, 0> column_names = {};
-  static constexpr std::array<const char*, 0> column_units = {};
   // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density
   static constexpr std::array<std::array<double, 4>, 4> allocation = {{
     {{7.378601163836665, 7.378601163836665, 7.378601163836665, 7.378601163836665}},
     {{-1.8000245111202822, 1.8000245111202822, 1.8000245111202822, -1.8000245111202822}},
     {{1.8000245111202822, -1.8000245111202822, 1.8000245111202822, -1.8000245111202822}},
     {{0.09809941226552932, 0.09809941226552932, -0.09809941226552932, -0.09809941226552932}}}};
-  static constexpr const char* base = "";
-  static constexpr std::array<std::array<int, 3>, 4> slope_signs = {{
-    {{-1, 1, 1}},
-    {{1, -1, 1}},
-    {{1, 1, -1}},
-    {{-1, -1, -1}}}};
-  static constexpr std::array<float, 4> residual_lower = {{0.0f, 0.0f, 0.0f, 0.0f}};
-  static constexpr std::array<float, 4> residual_upper = {{0.0f, 0.0f, 0.0f, 0.0f}};
 
   // standardisation: (value - mean) / spread
   static constexpr pinnquad::Scaler<float, 19> input = {{{
@@ -177,8 +147,10 @@ struct StructuredQuadModel {
       -0.00025123588f, 0.10264491f, -0.0015613193f, 0.0022342945f, 0.0006267158f, -0.002746572f, 0.0005076283f, -0.0007971216f,
       0.002819453f, 1.5425916e-05f, 0.0039976374f, 9.024931e-15f, -5.67402e-17f, -1.1402832e-18f, -4.709057e-18f}};
 
+  // over what the types say: layers, names and units, frame, airframe's name, motor order
+  static constexpr std::uint64_t shape_hash = 0xef870c086a8774be;
   // over all of this: what was edited does not compile (exported/contents_hash.hpp)
-  static constexpr std::uint64_t contents_hash = 0xc7e2161eb7ef37e2;
+  static constexpr std::uint64_t contents_hash = 0xb4279cd1ca8227e8;
 };
 
 static_assert(pinnquad::require_model<StructuredQuadModel>());

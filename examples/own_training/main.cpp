@@ -20,6 +20,7 @@ using MyOutputs = CommandOutputs;   // or WrenchOutputs
 using MyNetwork = Mlp<float, InputSize<MyFeatures::size>, Hidden<10, 25>, OutputSize<4>, Relu>;
 using MyLoss = PaperLoss<CyclicalAnnealing>;  // or Mse
 using MyOptimizer = Adam;                     // or Scheduled<AdamW, CosineDecay>
+// The header says this of the loss: edit both.
 constexpr const char* my_loss_in_words = "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing";
 constexpr int my_epochs = 300;
 constexpr unsigned my_seed = 1;

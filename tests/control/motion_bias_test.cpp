@@ -81,11 +81,11 @@ TEST_CASE("the settings of a model: its own time constants, else the usual ones;
   CHECK(own.time_constants_s == SignedSums<double>{0.25, 0.5, 1, infinity});
   CHECK(own.most == usual.most);
   CHECK(bias_settings<Telling>().time_constants_s[0] == 0.25f);
-  ModelRecords<float> records;
-  CHECK(bias_settings<double>(records).time_constants_s == usual.time_constants_s);
-  records.has_bias = true;
-  for (float& time_s : records.bias_time_constants_s) time_s = 2;
-  CHECK(bias_settings<double>(records).time_constants_s == SignedSums<double>{2, 2, 2, 2});
+  ModelFacts facts;
+  CHECK(bias_settings<double>(facts).time_constants_s == usual.time_constants_s);
+  facts.has_bias = true;
+  for (double& time_s : facts.bias_time_constants_s) time_s = 2;
+  CHECK(bias_settings<double>(facts).time_constants_s == SignedSums<double>{2, 2, 2, 2});
 }
 
 TEST_CASE("the most that it changes a command: of an X a quarter of the bounds' sum") {

@@ -76,7 +76,7 @@ TEST_CASE_TEMPLATE("a shipped block is that of its header", Header, DemoQuadMode
   const BlockModel block = shipped<Header>();
   CHECK(block.contents_hash() == Header::contents_hash);
   CHECK(block.name() == Header::name);
-  CHECK(block.airframe_name() == Header::vehicle_name);
+  CHECK(block.airframe_name() == Header::Vehicle::name);
   ModelView<Header> view;
   REQUIRE(ModelView<Header>::open(block.data(), block.size(), view) == Status::ok);
   CHECK(std::memcmp(view.parameters(), Header::parameters.data(), sizeof Header::parameters) == 0);

@@ -174,11 +174,9 @@ TEST_CASE("provenance is told, and no text can break out of its string") {
 
 TEST_CASE("what the model was trained for is told as data") {
   const std::string header = written(some_model(1), {Model::FeatureVector{}});
-  for (const char* line :
-       {"int format_version = 4;", "frame = \"body FRD, world NED\";",
-        "output_names = {{\"u1\", \"u2\", \"u3\", \"u4\"}};", "output_units = {{\"1\", \"1\", \"1\", \"1\"}};",
-        "vehicle_name = \"paper_quadrotor\";", "\"sin_yaw\", \"cos_yaw\"}};", "\"rad\", \"1\", \"1\"}};",
-        "motor_torque_signs = {{\n    {{-1, 1, 1}},\n    {{1, -1, 1}},\n    {{1, 1, -1}},\n    {{-1, -1, -1}}}};"}) {
+  for (const char* line : {"int format_version = 5;", "// Features: vdot_bx [m/s^2], ", " cos_yaw [1].\n",
+                           "// Outputs: u1 [1], u2 [1], u3 [1], u4 [1].\n", "using Features = pinnquad::PaperFeatures;",
+                           "using Vehicle = pinnquad::PaperQuadrotor;", "allocation = {{\n    {{", "shape_hash = 0x"}) {
     CAPTURE(line);
     CHECK(header.find(line) != std::string::npos);
   }
@@ -251,7 +249,7 @@ TEST_CASE("no locale plays a part, whether it is the stream's or the program's")
   from.training_rows = 1234567;
   from.seed = 7654321;
   from.epochs = 300000;
-  from.verdict = Verdict{0.875, 1234.5, 0.5};
+  from.verdict = Verdict{0.875, -1234.5, 0.5};
   const std::vector<Model::FeatureVector> golden(3, Model::FeatureVector{0.5f, 1.5f, -2.5f});
   const std::string plain = written(some_model(1), golden, from);
   CHECK(plain.find("training_rows = 1234567;") != std::string::npos);

@@ -72,13 +72,6 @@ Provenance provenance() {
   from.command_upper = Header::command_upper;
   from.sample_period_s = Header::sample_period_s;
   from.lag_removed_s = Header::lag_removed_s;
-  if constexpr (is_detected<detail::DistanceStatisticsOf, Header>) {
-    const auto numbers = [](const auto& values) { return std::vector<double>(values.begin(), values.end()); };
-    from.slope_signs = Header::slope_signs;
-    from.residual_range = Provenance::ResidualRange{numbers(Header::residual_lower), numbers(Header::residual_upper)};
-    from.distance = Provenance::DistanceStatistics{numbers(Header::distance_mean),
-                                                   numbers(Header::distance_inverse_cholesky), Header::distance_limit};
-  }
   return from;
 }
 
@@ -140,9 +133,9 @@ TEST_CASE("the demonstration's header is what the writer writes") {
   CHECK(largest_golden_difference<DemoQuadModel>() <= golden_tolerance);
 }
 
-TEST_CASE("so is one in double, with a window, optional records and an airframe that its trainer was given") {
+TEST_CASE("so is one in double, with a window, a column and an airframe that its trainer was given") {
   using Given = WithGivenAirframe<OwnRacer>;
-  const GivenAirframe airframe(OwnRacer::vehicle_name, OwnRacerAirframe::value<double>());
+  const GivenAirframe airframe(OwnRacerAirframe::name, OwnRacerAirframe::value<double>());
   CHECK(comparable(written<Given>(trained<Given>({airframe}))) == comparable(text_of("models/own_racer.hpp")));
   CHECK(largest_golden_difference<OwnRacer>() <= 1e-12);
 }
@@ -150,11 +143,11 @@ TEST_CASE("so is one in double, with a window, optional records and an airframe 
 TEST_CASE("the hash that is written is the one that the compiler works out") {
   CHECK(says_its_hash<DemoQuadModel>(trained<DemoQuadModel>()));
   using Given = WithGivenAirframe<OwnRacer>;
-  const GivenAirframe airframe(OwnRacer::vehicle_name, OwnRacerAirframe::value<double>());
+  const GivenAirframe airframe(OwnRacerAirframe::name, OwnRacerAirframe::value<double>());
   CHECK(says_its_hash<OwnRacer, Given>(trained<Given>({airframe})));
   auto other = OwnRacerAirframe::value<double>();
   other.mass_kg += 1e-15;
-  const GivenAirframe heavier(OwnRacer::vehicle_name, other);
+  const GivenAirframe heavier(OwnRacerAirframe::name, other);
   CHECK_FALSE(says_its_hash<OwnRacer, Given>(trained<Given>({heavier})));
 }
 

@@ -80,7 +80,7 @@ void check_export(const Fitted& fitted, const Answer& answer, const std::string&
   CHECK(header.str().find("using Features = pinnquad::PartlyWindowed<pinnquad::WithColumns<pinnquad::PhysicsFeatures, "
                           "pinnquad::BatteryVoltage>, pinnquad::AccelerationFeatures, 3, "
                           "pinnquad::PeriodMicroseconds<20000>") != std::string::npos);
-  CHECK(header.str().find("\"wdot_z[-2]\"") != std::string::npos);
+  CHECK(header.str().find("wdot_z[-2] [rad/s^2]") != std::string::npos);
 
   const BlockBytes bytes(model_block(model, golden, Provenance{}));
   ModelView<Model> view;

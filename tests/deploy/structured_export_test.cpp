@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A structured model that is exported as a value is that of its types to the byte: header, block, what trust asks.
+// A structured model that is exported as a value is that of its types to the byte: header, block, what trust asks; and
+// so is one whose features are known by name alone. So are closed forms.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include "pinnquad/evaluation/judgement.hpp"
 #include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/features/windowed.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 
 using namespace pinnquad;
 
@@ -67,6 +69,15 @@ bool same(const std::vector<Commands<double>>& a, const std::vector<Commands<dou
 }
 
 template <class Features>
+GroundFeatures by_name_of() {
+  const GroundFeatures typed = ground_features<Features>();
+  GroundFeatures named = named_features(typed.type, typed.names, typed.units, typed.window);
+  CHECK(named.accelerations == typed.accelerations);
+  CHECK(named.columns.size() == typed.columns.size());
+  return named;
+}
+
+template <class Features>
 bool compare(bool with_residual) {
   const Dataset flights = curved_flights();
   const RowSplit split = split_for_training(flights);
@@ -77,14 +88,20 @@ bool compare(bool with_residual) {
   if (!with_residual) settings.residual.least_gain = 1;
   const StructuredModelFit fit = fit_structured<Features, Features>(split, airframe, settings).best();
   const GroundModel<float>& value = fit.model;
-  using Base = detail::StructuredBase<Features>;
-  using Whole = detail::StructuredWhole<Features>;
+  using Setting = Context<Features, GivenAirframe, AxisCommandOutputs>;
+  using Base = TrainedModel<MonotoneBase<Features>, Setting>;
+  using Whole = TrainedModel<MonotonePredictor<Features, StructuredResidual<residual_inputs<Features>>>, Setting>;
+  const StructuredSet by_name =
+      structured_set(by_name_of<Features>(), airframe, detail::residual_trainer<StructuredResidual<32>>());
+  const StructuredModelFit named = fit_structured(by_name, nullptr, split, settings).best();
+  CHECK(named.parameters == fit.parameters);
+  CHECK(text_of(named.model, split.train) == text_of(value, split.train));
   const auto same_as = [&](auto tag) {
     using Model = typename decltype(tag)::type;
     typename Model::Network predictor{};
     REQUIRE(fit.parameters.size() == predictor.parameters.size());
     std::copy(fit.parameters.begin(), fit.parameters.end(), predictor.parameters.begin());
-    const auto context = make_context<Context<Features, GivenAirframe, AxisCommandOutputs>>(split.train, airframe);
+    const auto context = make_context<Setting>(split.train, airframe);
     const GroundModel<float> of_types = ground_model(make_trained_model(predictor, context, split.train));
     CHECK(text_of(value, split.train) == text_of(of_types, split.train));
     const auto golden = golden_features(value, split.train);
@@ -107,4 +124,42 @@ TEST_CASE("with a residual, with the altitude and a column, of a window") {
   CHECK(compare<WithColumns<InverseFeaturesWithAltitude, BatteryVoltage>>(true));
   CHECK_FALSE(compare<InverseFeatures>(false));
   compare<PartlyWindowed<InverseFeatures, InverseAccelerations, 3, PeriodMicroseconds<50000>, Centred>>(true);
+}
+
+TEST_CASE("a closed form of features by name, of a base and of a window") {
+  const Dataset flights = curved_flights();
+  const RowSet rows = split_for_training(flights).train;
+  const GivenAirframe airframe = given_airframe<PaperQuadrotor>();
+  const auto same = [&](auto features, auto outputs) {
+    using Features = typename decltype(features)::type;
+    using Setting = Context<Features, GivenAirframe, typename decltype(outputs)::type>;
+    const auto context = make_context<Setting>(rows, airframe);
+    const FitContext by_name =
+        fit_context(by_name_of<Features>(), ground_outputs<typename Setting::Outputs>(airframe), airframe, rows);
+    const AffineMap map = fit_ridge(regression_sums(context, rows), 0.1);
+    const AffineMap of_names = fit_ridge(regression_sums(by_name, rows), 0.1);
+    CHECK(map.weights == of_names.weights);
+    const GroundModel<float> typed = ground_model(make_trained_model(affine_answer<Setting>(map), context, rows));
+    CHECK(text_of(affine_model(by_name, of_names, rows), rows) == text_of(typed, rows));
+  };
+  using Paper = WithColumns<PaperFeatures, BatteryVoltage>;
+  same(std::common_type<Paper>{}, std::common_type<CommandOutputs>{});
+  same(std::common_type<PaperFeatures>{}, std::common_type<ResidualOutputs<LinearizedBase>>{});
+  same(std::common_type<PartlyWindowed<Paper, AccelerationFeatures, 3, PeriodMicroseconds<50000>>>{},
+       std::common_type<CommandOutputs>{});
+}
+
+TEST_CASE("names that are no feature set, a map of another size, rows without features") {
+  const Dataset flights = curved_flights();
+  const RowSet rows = split_for_training(flights).train;
+  const GivenAirframe airframe = given_airframe<PaperQuadrotor>();
+  CHECK_THROWS_AS(named_features("Set", {"w_x"}, {"m"}), std::invalid_argument);             // another unit
+  CHECK_THROWS_AS(named_features("Set", {"w_x", "w_y"}, {"rad/s"}), std::invalid_argument);  // a unit is missing
+  CHECK_THROWS_AS(named_features("Set", {"w_x", "w_x"}, {"rad/s", "rad/s"}), std::invalid_argument);
+  const GroundFeatures rates = named_features("Set", {"w_x", "w_y"}, {"rad/s", "rad/s"});
+  const auto trainer = detail::residual_trainer<StructuredResidual<16>>();
+  CHECK_THROWS_AS(structured_set(rates, airframe, trainer), std::invalid_argument);  // no angular acceleration
+  const auto commands = ground_outputs<CommandOutputs>(airframe);
+  CHECK_THROWS_AS(affine_model(fit_context(rates, commands, airframe, rows), AffineMap{}, rows), std::invalid_argument);
+  CHECK_THROWS_AS(fit_context(rates, commands, airframe, RowSet{}), std::invalid_argument);
 }

@@ -10,17 +10,8 @@
 #include "support/tolerances.hpp"
 #include "support/uneven_airframe.hpp"
 
-using pinnquad::Airframe;
-using pinnquad::check_airframe;
-using pinnquad::command_of_fraction;
-using pinnquad::Commands;
-using pinnquad::Rotors;
-using pinnquad::Status;
-using pinnquad::thrust_fraction;
-using pinnquad::ThrustFractions;
-using pinnquad::test::draws;
-using pinnquad::test::RandomStates;
-using pinnquad::test::rounding;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 TEST_CASE("the curve's ends: a command is thrust, or a speed whose square is") {
   for (const double u : {-0.5, 0.0, 0.25, 0.5, 1.0, 1.5}) {

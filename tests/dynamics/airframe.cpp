@@ -16,9 +16,7 @@
 #include "pinnquad/dynamics/airframes/racer_5_inch.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
 
-using pinnquad::Airframe;
-using pinnquad::check_airframe;
-using pinnquad::Status;
+using namespace pinnquad;
 
 namespace {
 
@@ -52,27 +50,21 @@ std::vector<Field<Scalar>> non_negative_fields() {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("the airframes of the library are valid and carry their names", Scalar, float, double) {
+TEST_CASE_TEMPLATE("the airframes of the library are valid", Scalar, float, double) {
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::PaperQuadrotor, Scalar>()) == Status::ok);
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::ReferenceQuadrotor15, Scalar>()) == Status::ok);
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::ReferenceQuadrotor10, Scalar>()) == Status::ok);
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::Racer5Inch, Scalar>()) == Status::ok);
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::Crazyflie, Scalar>()) == Status::ok);
   CHECK(check_airframe(pinnquad::airframe_value<pinnquad::Px4Sih, Scalar>()) == Status::ok);
-  CHECK(std::string(pinnquad::PaperQuadrotor::name) == "paper_quadrotor");
-  CHECK(std::string(pinnquad::ReferenceQuadrotor15::name) == "reference_1.5kg");
-  CHECK(std::string(pinnquad::ReferenceQuadrotor10::name) == "reference_1.0kg");
-  CHECK(std::string(pinnquad::Racer5Inch::name) == "racer_5_inch");
-  CHECK(std::string(pinnquad::Crazyflie::name) == "crazyflie_2_1");
-  CHECK(std::string(pinnquad::Px4Sih::name) == "px4_sih");
 }
 
 TEST_CASE_TEMPLATE("check_airframe refuses each bad field", Scalar, float, double) {
   const Airframe<Scalar> good = pinnquad::PaperQuadrotor::value<Scalar>();
-  const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
+  const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN(), inf = std::numeric_limits<Scalar>::infinity();
   for (const auto& [label, field] : positive_fields<Scalar>()) {
     const std::string name = label;  // a structured binding can't be captured in C++17
-    for (const Scalar bad : {Scalar(0), Scalar(-1), nan}) {
+    for (const Scalar bad : {Scalar(0), Scalar(-1), nan, inf}) {
       CAPTURE(name);
       CAPTURE(bad);
       Airframe<Scalar> airframe = good;
@@ -86,24 +78,11 @@ TEST_CASE_TEMPLATE("check_airframe refuses each bad field", Scalar, float, doubl
     Airframe<Scalar> airframe = good;
     field(airframe) = Scalar(0);
     CHECK(check_airframe(airframe) == Status::ok);
-    for (const Scalar bad : {Scalar(-1), nan}) {
+    for (const Scalar bad : {Scalar(-1), nan, inf}) {
       CAPTURE(bad);
       field(airframe) = bad;
       CHECK(check_airframe(airframe) == Status::invalid_airframe);
     }
-  }
-}
-
-TEST_CASE_TEMPLATE("check_airframe refuses an infinite value", Scalar, float, double) {
-  const Airframe<Scalar> good = pinnquad::PaperQuadrotor::value<Scalar>();
-  auto fields = positive_fields<Scalar>();
-  for (const auto& field : non_negative_fields<Scalar>()) fields.push_back(field);
-  for (const auto& [label, field] : fields) {
-    const std::string name = label;
-    CAPTURE(name);
-    Airframe<Scalar> airframe = good;
-    field(airframe) = std::numeric_limits<Scalar>::infinity();
-    CHECK(check_airframe(airframe) == Status::invalid_airframe);
   }
 }
 

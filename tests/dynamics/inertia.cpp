@@ -13,13 +13,8 @@
 #include "support/tolerances.hpp"
 #include "support/uneven_airframe.hpp"
 
-using pinnquad::Airframe;
-using pinnquad::check_airframe;
-using pinnquad::State;
-using pinnquad::Status;
-using pinnquad::Vector3;
-using pinnquad::test::draws;
-using pinnquad::test::RandomStates;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 namespace {
 /// Eigen's dense matrix and LU: a formula of nobody here.

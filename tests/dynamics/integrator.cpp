@@ -10,13 +10,9 @@
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::Airframe;
-using pinnquad::Quaternion;
-using pinnquad::State;
-using pinnquad::Vector3;
+using namespace pinnquad;
+using namespace pinnquad::test;
 using pinnquad::detail::StateDerivative;
-using pinnquad::test::distance;
-using pinnquad::test::RandomStates;
 
 namespace {
 

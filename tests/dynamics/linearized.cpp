@@ -13,10 +13,7 @@
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::Accelerations;
-using pinnquad::Airframe;
-using pinnquad::Commands;
-using pinnquad::Rotors;
+using namespace pinnquad;
 
 namespace {
 

@@ -7,15 +7,8 @@
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::Accelerations;
-using pinnquad::Airframe;
-using pinnquad::State;
-using pinnquad::Vector3;
-using pinnquad::Wrench;
-using pinnquad::test::distance;
-using pinnquad::test::draws;
-using pinnquad::test::evaluation_tolerance;
-using pinnquad::test::RandomStates;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 namespace {
 template <class Scalar>

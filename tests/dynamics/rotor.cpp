@@ -14,15 +14,8 @@
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::Airframe;
-using pinnquad::AllocationMatrix;
-using pinnquad::Commands;
-using pinnquad::Rotors;
-using pinnquad::Spin;
-using pinnquad::Status;
-using pinnquad::Wrench;
-using pinnquad::test::draws;
-using pinnquad::test::RandomStates;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 namespace {
 

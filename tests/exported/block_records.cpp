@@ -41,10 +41,9 @@ Status opened(const BlockBytes& block, ModelView<Shape>& view) {
   const Status status = ModelView<Shape>::open(block.data(), block.size(), view);
   if (status != Status::ok) {
     CHECK(view.parameters() == before.parameters());
-    CHECK(view.records.command_upper == before.records.command_upper);
-    CHECK(view.records.sample_period_ns == before.records.sample_period_ns);
-    CHECK(view.records.has_verdict == before.records.has_verdict);
-    CHECK(view.records.distance == before.records.distance);
+    CHECK(view.facts.command_upper == before.facts.command_upper);
+    CHECK(view.facts.sample_period_s == before.facts.sample_period_s);
+    CHECK(view.facts.has_verdict == before.facts.has_verdict);
     CHECK(view.input.mean == before.input.mean);
   }
   return status;
@@ -70,18 +69,12 @@ TEST_CASE("terms are read back from a block") {
   const BlockBytes block(model_block<RecordedModel>());
   ModelView<RecordedModel> view;
   REQUIRE(opened(block, view) == Status::ok);
-  {
-    const auto& records = view.records;
-    CHECK(records.command_meaning == CommandMeaning::thrust);
-    CHECK(records.command_lower == 0.0f);
-    CHECK(records.command_upper == 1.0f);
-    CHECK(records.sample_period_ns == 4000000u);
-    CHECK(records.lag_removed_ns == 12500000u);
-    CHECK_FALSE(records.has_verdict);
-    CHECK(records.slope_signs == nullptr);
-    CHECK(records.residual_range == nullptr);
-    CHECK(records.distance == nullptr);
-  }
+  CHECK(view.facts.command_meaning == CommandMeaning::thrust);
+  CHECK(view.facts.command_lower == 0);
+  CHECK(view.facts.command_upper == 1);
+  CHECK(view.facts.sample_period_s == 0.004);
+  CHECK(view.facts.lag_removed_s == 0.0125);
+  CHECK_FALSE(view.facts.has_verdict);
 }
 
 TEST_CASE("a block of another format does not open") {
@@ -119,13 +112,13 @@ TEST_CASE("a block of other terms than its header's does not open; a shape witho
 
 TEST_CASE("an unknown record is refused if it is mandatory, else skipped") {
   const Bytes block = model_block<RecordedModel>();
-  for (const unsigned type : {0u, detail::block_record_types + 1, 77u, 0x7fffu}) {
+  for (const unsigned type : {0u, 10u, detail::block_record_types + 1, 77u, 0x7fffu}) {
     for (const std::size_t length : {0u, 1u, 8u, 13u, 64u}) {
       auto records = records_of(block);
       records.insert(records.begin() + 1, Record{type, Bytes(length, 0xab)});
       ModelView<RecordedModel> view;
       REQUIRE(opened(with_records(block, records), view) == Status::ok);
-      CHECK(view.records.sample_period_ns == 4000000u);
+      CHECK(view.facts.sample_period_s == 0.004);
       records[1].type |= mandatory_record;
       CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_incompatible);
     }
@@ -286,7 +279,7 @@ TEST_CASE("window, columns and period of a feature set with a past are records")
   const Bytes block = model_block(model, {Shape::FeatureVector{}}, {});
   ModelView<Shape> view;
   REQUIRE(opened(BlockBytes(block), view) == Status::ok);
-  CHECK(view.records.sample_period_ns == 10000000u);
+  CHECK(view.facts.sample_period_s == 0.01);
   auto records = records_of(block);
   CHECK(detail::read_u32(find(records, BlockRecord::window).bytes.data()) == 2);
   const std::string columns = std::string("battery_voltage") + '\0' + "V" + '\0';
@@ -330,19 +323,11 @@ TEST_CASE("a residual on another base does not open, though its outputs have the
   CHECK(opened<ResidualModel<LinearizedBase>>(with_records(block, records)) == Status::block_incompatible);
 }
 
-TEST_CASE(
-    "verdict, proven slopes, range of a residual, statistics of a distance and a bias go along where they are given") {
+TEST_CASE("a verdict and a bias go along where they are given") {
   using Model = ResidualModel<LinearizedBase>;
   const auto model = some_model<Net16, ResidualContext<LinearizedBase>>();
   Provenance from;
   from.verdict = Verdict{-0.5, 0.25, -1.0};
-  from.slope_signs = {{{-1, 1, 0}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}}};
-  from.residual_range = Provenance::ResidualRange{{-0.125, -0.25, -0.5, -1}, {0.125, 0.25, 0.5, 1}};
-  Provenance::DistanceStatistics distance;
-  distance.mean.assign(16, 0.5);
-  distance.inverse_cholesky.assign(136, 0.25);
-  distance.limit = 3;
-  from.distance = distance;
   from.bias_time_constants_s = {0.25, 0.5, 0, 1};
   const std::vector<Model::FeatureVector> golden = {Model::FeatureVector{}};
   const Bytes block = model_block(model, golden, from);
@@ -351,23 +336,12 @@ TEST_CASE(
   REQUIRE(opened(BlockBytes(block), view) == Status::ok);
   const BlockBytes kept(block);
   REQUIRE(opened(kept, view) == Status::ok);
-  CHECK(view.records.has_verdict);
-  CHECK(view.records.worse_than_mean);
-  REQUIRE(view.records.slope_signs != nullptr);
-  const auto* signs = view.records.slope_signs;
-  CHECK(std::vector<int>(signs, signs + 3) == std::vector<int>{-1, 1, 0});
-  CHECK(std::vector<int>(signs + 9, signs + 12) == std::vector<int>{-1, -1, -1});
-  REQUIRE(view.records.residual_range != nullptr);
-  const auto* range = view.records.residual_range;
-  CHECK(std::vector<float>(range, range + 8) == std::vector<float>{-0.125f, -0.25f, -0.5f, -1, 0.125f, 0.25f, 0.5f, 1});
-  REQUIRE(view.records.distance != nullptr);
-  CHECK(view.records.distance[15] == 0.5f);
-  CHECK(view.records.distance[16] == 0.25f);
-  CHECK(view.records.distance[16 + 136] == 3.0f);
-  REQUIRE(view.records.has_bias);
-  const auto settings = bias_settings<double>(view.records);
+  CHECK(view.facts.has_verdict);
+  CHECK(view.facts.worse_than_mean);
+  REQUIRE(view.facts.has_bias);
+  const auto settings = bias_settings<double>(view.facts);
   CHECK(settings.time_constants_s == SignedSums<double>{0.25, 0.5, std::numeric_limits<double>::infinity(), 1});
-  CHECK(bias_settings<float>(view.records).time_constants_s[1] == 0.5f);
+  CHECK(bias_settings<float>(view.facts).time_constants_s[1] == 0.5f);
   // without it the block is the same but for the record
   auto without = records_of(block);
   without.erase(without.begin() + (&find(without, BlockRecord::bias) - without.data()));
@@ -379,12 +353,13 @@ TEST_CASE(
   REQUIRE(bare.size() == expected.size());
   CHECK(std::memcmp(bare.data(), expected.data(), expected.size()) == 0);
   REQUIRE(opened(bare, other) == Status::ok);
-  CHECK_FALSE(other.records.has_bias);
-  CHECK(bias_settings<double>(other.records).time_constants_s == BiasSettings<double>{}.time_constants_s);
+  CHECK_FALSE(other.facts.has_bias);
+  CHECK(bias_settings<double>(other.facts).time_constants_s == BiasSettings<double>{}.time_constants_s);
 
   for (const Record& record : records_of(block)) {
     const unsigned type = record.type & 0x7fffu;
-    const bool optional = (7 <= type && type <= 10) || type == static_cast<unsigned>(BlockRecord::provenance) ||
+    const bool optional = type == static_cast<unsigned>(BlockRecord::verdict) ||
+                          type == static_cast<unsigned>(BlockRecord::provenance) ||
                           type == static_cast<unsigned>(BlockRecord::bias);
     CHECK((record.type < mandatory_record) == optional);
   }
@@ -393,23 +368,12 @@ TEST_CASE(
     std::memcpy(find(records, type).bytes.data() + at, &value, sizeof value);
     return opened<Model>(with_records(block, records)) == Status::block_corrupt;
   };
-  CHECK(corrupt(BlockRecord::slope_signs, 5, static_cast<unsigned char>(2)));
-  CHECK(corrupt(BlockRecord::residual_range, 0, 1.0f));
-  CHECK(corrupt(BlockRecord::distance, 4 * 20, std::numeric_limits<float>::infinity()));
-  CHECK(corrupt(BlockRecord::distance, 4 * (16 + 136), 0.0f));
   for (const float time_s : {-0.1f, 61.0f, std::numeric_limits<float>::quiet_NaN()}) {
     CHECK(corrupt(BlockRecord::bias, 4, time_s));
   }
 
   from.bias_time_constants_s = {0.25, 0.5, -1, 1};
-  CHECK_THROWS_WITH_AS(model_block(model, golden, from), "export: a time constant of the bias is not one of 0 to 60 s",
+  CHECK_THROWS_WITH_AS(model_block(model, golden, from),
+                       "export: expected time constants of the bias of 0.02 to 60 s, or 0 (record bias), found -1",
                        std::invalid_argument);
-  from.bias_time_constants_s.reset();
-  from.distance->mean.pop_back();
-  CHECK_THROWS_WITH_AS(model_block(model, golden, from),
-                       "export: the statistics of a distance are not those of 16 features", std::invalid_argument);
-  from.distance.reset();
-  from.residual_range->lower[2] = 0.75;
-  CHECK_THROWS_WITH_AS(model_block(model, golden, from),
-                       "export: a lower bound of the residual lies above the upper one", std::invalid_argument);
 }

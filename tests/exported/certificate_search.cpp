@@ -44,10 +44,10 @@ struct OwnColumn {
   int axis;
   double share;
 };
-constexpr OwnColumn own_columns[] = {{"battery_voltage", "V", true, 0, 0},    {"load", "N", true, 0, 0},
-                                     {"wind_x", "m/s", true, 0, 0},           {"gyro_slope", "rad/s^2", true, 0, 1},
-                                     {"turning", "deg/s/s", true, 1, 57.3},   {"torque_z", "N m", true, 2, 0.03},
-                                     {"wdot_filtered", "1", true, 1, 0.5},    {"effort", "1", false, 2, 0.2},
+constexpr OwnColumn own_columns[] = {{"battery_voltage", "V", true, 0, 0},  {"load", "N", true, 0, 0},
+                                     {"wind_x", "m/s", true, 0, 0},         {"gyro_slope", "rad/s^2", true, 0, 1},
+                                     {"turning", "deg/s/s", true, 1, 57.3}, {"torque_z", "N m", true, 2, 0.03},
+                                     {"wdot_filtered", "1", true, 1, 0.5},  {"effort", "1", false, 2, 0.2},
                                      {"own_speed", "m/s", false, 0, 0}};
 
 /// Features in turn, and where three in a row begin.
@@ -99,8 +99,8 @@ class Composer {
 
  private:
   /// Parts of the library by their first names' places among NamedFeatures, and how many they are.
-  static constexpr std::array<int, 2> parts[] = {{16, 3}, {3, 3}, {9, 3}, {19, 3}, {22, 3},
-                                                 {6, 3},  {25, 3}, {0, 3}, {12, 2}, {14, 2}, {18, 1}};
+  static constexpr std::array<int, 2> parts[] = {{16, 3}, {3, 3}, {9, 3},  {19, 3}, {22, 3}, {6, 3},
+                                                 {25, 3}, {0, 3}, {12, 2}, {14, 2}, {18, 1}};
 
   static void append(std::vector<std::string>& to, const std::string& name) {
     if (std::find(to.begin(), to.end(), name) == to.end()) to.push_back(name);
@@ -209,7 +209,7 @@ class Maker {
     }
     model_.window_taps = static_cast<std::uint32_t>(features_.taps);
     model_.causal = features_.causal;
-    model_.sample_period_s = features_.taps > 1 ? features_.period_s : 0;
+    model_.facts.sample_period_s = features_.taps > 1 ? features_.period_s : 0;
     model_.features_type = "none";
   }
 
@@ -222,7 +222,7 @@ class Maker {
     model_.output_texts = {detail::description_text<Schema>()};
     detail::append_texts(model_.output_texts, Map::names, Map::units);
     detail::take_airframe<Schema>(model_, PaperQuadrotor::name, airframe, airframe_in<Scalar>(airframe));
-    model_.command_meaning = command_meaning_of(airframe);
+    model_.facts.command_meaning = command_meaning_of(airframe);
     for (int k = 0; k < Map::size; ++k) {
       model_.output_mean.push_back(draw(-0.1, 0.5));
       model_.output_deviation.push_back(draw(0.05, 0.3));
@@ -264,9 +264,9 @@ class Maker {
     const bool masked = !path_bounded && (kind != 2 || composer_.likely(0.5));
     const std::string network = "pinnquad::Network<" + scalar + ", pinnquad::Inputs<" +
                                 (masked ? std::to_string(others) : count) + ">, " + layers(path_bounded) + ">";
-    const std::string shown = path_bounded ? "pinnquad::PathBounded<" + network + ">"
-                                           : (masked ? "pinnquad::Withheld<" + network + ", " + count + places + ">"
-                                                     : network);
+    const std::string shown = path_bounded
+                                  ? "pinnquad::PathBounded<" + network + ">"
+                                  : (masked ? "pinnquad::Withheld<" + network + ", " + count + places + ">" : network);
     model_.answer = "pinnquad::Sum<" + base + ", pinnquad::Bounded<" + shown + ">>";
     add_affine(threes, others);
     for (int k = 0; k < 4; ++k) model_.parameters.push_back(draw(-3, -0.1));

@@ -440,8 +440,8 @@ namespace {
 /// Signed sums of the commands' derivatives by a held angular acceleration: `by_feature(feature)` are derivatives of
 /// the commands.
 template <class Features, class ByFeature>
-AxisDerivatives held(const Airframe<double>& airframe, bool all_taps, const ByFeature& by_feature) {
-  AxisDerivatives result{};
+AxisSlopes held(const Airframe<double>& airframe, bool all_taps, const ByFeature& by_feature) {
+  AxisSlopes result{};
   int taps = 1;
   if constexpr (is_windowed<Features>) taps = all_taps ? Features::Window::taps : 1;
   for (int tap = 0; tap < taps; ++tap) {

@@ -50,8 +50,8 @@ struct Phase {
 /// In the middle of what the model was trained with; 0 of one that is not shown it.
 double trained_voltage() {
   using Model = TrainedQuadModel;
-  for (std::size_t i = 0; i < Model::feature_names.size(); ++i) {
-    if (std::string_view(Model::feature_names[i]) != pinnquad::BatteryVoltage::name) continue;
+  for (std::size_t i = 0; i < Model::Features::names.size(); ++i) {
+    if (std::string_view(Model::Features::names[i]) != pinnquad::BatteryVoltage::name) continue;
     return 0.5 * (static_cast<double>(Model::envelope_lower[i]) + static_cast<double>(Model::envelope_upper[i]));
   }
   return 0;

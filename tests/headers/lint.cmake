@@ -12,7 +12,9 @@
 cmake_minimum_required(VERSION 3.22)
 include("${CMAKE_CURRENT_LIST_DIR}/../../cmake/PinnquadRooms.cmake")
 
-set(longest 400)
+if(NOT DEFINED LONGEST) # the planted faults are shorter
+  set(LONGEST 400)
+endif()
 set(grounded
   any chrono condition_variable deque exception filesystem forward_list fstream functional future iomanip ios iostream
   istream list locale map memory mutex new optional ostream queue random regex set shared_mutex sstream stack stdexcept
@@ -44,8 +46,8 @@ foreach(header IN LISTS headers)
   endif()
   string(REGEX REPLACE "[^\n]" "" newlines "${text}")
   string(LENGTH "${newlines}" lines)
-  if(lines GREATER longest)
-    fault("${header}" "${lines} lines; a header has at most ${longest}")
+  if(lines GREATER LONGEST)
+    fault("${header}" "${lines} lines; a header has at most ${LONGEST}")
   endif()
 
   # which room is this?

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 #include <vector>
 
 #include "pinnquad/dynamics/linearized.hpp"
@@ -165,6 +166,16 @@ std::size_t block_bytes = 0;
 
 namespace {
 
+/// A description as a block has it, spaces among it.
+struct Description {
+  std::vector<unsigned char> text;
+  void add(std::string_view piece) { text.insert(text.end(), piece.begin(), piece.end()); }
+  void add(int number) {
+    if (number >= 10) add(number / 10);
+    text.push_back(static_cast<unsigned char>('0' + number % 10));
+  }
+};
+
 /// A block of the records that a block must have, written without the rooms that do not fly.
 void write_block() {
   using namespace pinnquad;
@@ -210,11 +221,13 @@ void write_block() {
   record(BlockRecord::clock, bytes_of(std::uint32_t{0}, std::uint32_t{0}));
   record(BlockRecord::window, bytes_of(std::uint32_t{1}, std::uint32_t{1}));
   record(BlockRecord::allocation, bytes_of(allocation(airframe_value<Vehicle, float>())));
-  record(BlockRecord::answer, letters(Model::answer_letters));
-  record(BlockRecord::features, texts({}, Model::feature_names, Model::feature_units));
+  Description answer;
+  pinnquad::detail::describe<Model::Network>(answer);
+  record(BlockRecord::answer, answer.text);
+  record(BlockRecord::features, texts({}, Model::Features::names, Model::Features::units));
   auto schema = letters(pinnquad::detail::description_letters<Model::Outputs>());
   schema.push_back(0);
-  record(BlockRecord::outputs, texts(schema, Model::output_names, Model::output_units));
+  record(BlockRecord::outputs, texts(schema, OutputMap<Model::Outputs>::names, OutputMap<Model::Outputs>::units));
   std::vector<unsigned char> vehicle;
   const auto exact = airframe_value<Vehicle, double>();
   const auto flown = airframe_value<Vehicle, float>();

@@ -14,23 +14,8 @@
 #include "support/sign_step.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::Context;
-using pinnquad::Literal;
-using pinnquad::LocalMonotonicity;
-using pinnquad::Match;
-using pinnquad::PaperFeatures;
-using pinnquad::PaperQuadrotor;
-using pinnquad::Pitch;
-using pinnquad::Roll;
-using pinnquad::Standardised;
-using pinnquad::TanhStep;
-using pinnquad::Yaw;
-using pinnquad::test::array;
-using pinnquad::test::flight_context;
-using pinnquad::test::PaperBatch;
-using pinnquad::test::random_batch;
-using pinnquad::test::rounding;
-using pinnquad::test::SignStep;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 namespace {
 

@@ -8,13 +8,8 @@
 #include "support/loss_batches.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::Context;
-using pinnquad::Mse;
-using pinnquad::PaperFeatures;
-using pinnquad::PaperQuadrotor;
-using pinnquad::test::PaperBatch;
-using pinnquad::test::random_batch;
-using pinnquad::test::rounding;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 namespace {
 

@@ -13,21 +13,8 @@
 #include "support/loss_batches.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::Context;
-using pinnquad::PaperFeatures;
-using pinnquad::PaperQuadrotor;
-using pinnquad::PearsonCorrelation;
-using pinnquad::Roll;
-using pinnquad::RotorSpeedOutputs;
-using pinnquad::Yaw;
-using pinnquad::test::array;
-using pinnquad::test::central_differences;
-using pinnquad::test::flight_context;
-using pinnquad::test::gradient_error;
-using pinnquad::test::gradient_tolerance;
-using pinnquad::test::PaperBatch;
-using pinnquad::test::random_batch;
-using pinnquad::test::rounding;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 namespace {
 

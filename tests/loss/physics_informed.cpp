@@ -10,24 +10,8 @@
 #include "support/loss_batches.hpp"
 #include "support/sign_step.hpp"
 
-using pinnquad::Constant;
-using pinnquad::Context;
-using pinnquad::CyclicalAnnealing;
-using pinnquad::is_loss;
-using pinnquad::LocalMonotonicity;
-using pinnquad::Mse;
-using pinnquad::PaperFeatures;
-using pinnquad::PaperLoss;
-using pinnquad::PaperQuadrotor;
-using pinnquad::PhysicsInformed;
-using pinnquad::Pitch;
-using pinnquad::Roll;
-using pinnquad::Weighted;
-using pinnquad::Yaw;
-using pinnquad::test::flight_context;
-using pinnquad::test::PaperBatch;
-using pinnquad::test::random_batch;
-using pinnquad::test::SignStep;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 namespace {
 

@@ -32,6 +32,10 @@ struct NearGroundQuadModelAirframe {
   }
 };
 
+// Features: s_z [m/s^2], wdot_x [rad/s^2], wdot_y [rad/s^2], wdot_z [rad/s^2], w_x [rad/s], w_y [rad/s], w_z [rad/s],
+// w_yz [rad^2/s^2], w_zx [rad^2/s^2], w_xy [rad^2/s^2], down_x [1], down_y [1], down_z [1], v_bx [m/s], v_by [m/s],
+// v_bz [m/s], vv_bx [m^2/s^2], vv_by [m^2/s^2], vv_bz [m^2/s^2], altitude [m].
+// Outputs: sum [1], roll_sum [1], pitch_sum [1], yaw_sum [1].
 struct NearGroundQuadModel {
   using Scalar = float;
   using Network = pinnquad::Sum<pinnquad::AxisAligned<float, 20, 1>, pinnquad::Saturated<pinnquad::Masked<pinnquad::Network<float, pinnquad::InputSize<17>, pinnquad::Dense<32>, pinnquad::Relu, pinnquad::Dense<32>, pinnquad::Relu, pinnquad::Dense<4>>, 20, 1>>>;
@@ -40,7 +44,7 @@ struct NearGroundQuadModel {
   using Vehicle = NearGroundQuadModelAirframe;
   using Inputs = Features::Inputs<Scalar>;
 
-  static constexpr int format_version = 4;
+  static constexpr int format_version = 5;
   static constexpr const char* name = "NearGroundQuadModel";
 
   // provenance
@@ -57,52 +61,18 @@ struct NearGroundQuadModel {
   static constexpr bool worse_than_mean = false;
   static constexpr bool beats_linear_regression = true;
 
-  // what it was trained for; require_model() compares with Features, Outputs and Vehicle
-  static constexpr const char* frame = "body FRD, world NED";
-  static constexpr std::array<const char*, 20> feature_names = {{
-      "s_z", "wdot_x", "wdot_y", "wdot_z", "w_x", "w_y", "w_z", "w_yz",
-      "w_zx", "w_xy", "down_x", "down_y", "down_z", "v_bx", "v_by", "v_bz",
-      "vv_bx", "vv_by", "vv_bz", "altitude"}};
-  static constexpr std::array<const char*, 20> feature_units = {{
-      "m/s^2", "rad/s^2", "rad/s^2", "rad/s^2", "rad/s", "rad/s", "rad/s", "rad^2/s^2",
-      "rad^2/s^2", "rad^2/s^2", "1", "1", "1", "m/s", "m/s", "m/s",
-      "m^2/s^2", "m^2/s^2", "m^2/s^2", "m"}};
-  static constexpr std::array<const char*, 4> output_names = {{"sum", "roll_sum", "pitch_sum", "yaw_sum"}};
-  static constexpr std::array<const char*, 4> output_units = {{"1", "1", "1", "1"}};
-  static constexpr const char* vehicle_name = "paper_quadrotor";
-  // rotor by rotor: signs of its torque about x, y, z
-  static constexpr std::array<std::array<int, 3>, 4> motor_torque_signs = {{
-    {{-1, 1, 1}},
-    {{1, -1, 1}},
-    {{1, 1, -1}},
-    {{-1, -1, -1}}}};
-
-  // records: a reader that does not know one of them must not fly the model (exported/model_records.hpp)
-  static constexpr std::array<const char*, 7> records = {{"answer", "commands", "clock", "window", "columns", "allocation", "base"}};
-  static constexpr const char* answer = "pinnquad::Sum<pinnquad::AxisAligned<float, 20, 1>, pinnquad::Bounded<pinnquad::Withheld<pinnquad::Network<float, pinnquad::Inputs<17>, pinnquad::Dense<32>, pinnquad::Relu, pinnquad::Dense<32>, pinnquad::Relu, pinnquad::Dense<4>>, 20, 1>>>";
+  // commands and clock of its training (exported/model_facts.hpp)
   static constexpr auto command_meaning = pinnquad::CommandMeaning::thrust;
   static constexpr double command_lower = 0.0;
   static constexpr double command_upper = 1.0;
   static constexpr double sample_period_s = 0.05;
   static constexpr double lag_removed_s = 0.0;
-  static constexpr int window_taps = 1;
-  static constexpr bool causal = true;
-  static constexpr std::array<const char*, 0> column_names = {};
-  static constexpr std::array<const char*, 0> column_units = {};
   // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density
   static constexpr std::array<std::array<double, 4>, 4> allocation = {{
     {{7.378601163836665, 7.378601163836665, 7.378601163836665, 7.378601163836665}},
     {{-1.8000245111202822, 1.8000245111202822, 1.8000245111202822, -1.8000245111202822}},
     {{1.8000245111202822, -1.8000245111202822, 1.8000245111202822, -1.8000245111202822}},
     {{0.09809941226552932, 0.09809941226552932, -0.09809941226552932, -0.09809941226552932}}}};
-  static constexpr const char* base = "";
-  static constexpr std::array<std::array<int, 3>, 4> slope_signs = {{
-    {{-1, 1, 1}},
-    {{1, -1, 1}},
-    {{1, 1, -1}},
-    {{-1, -1, -1}}}};
-  static constexpr std::array<float, 4> residual_lower = {{-0.08125654f, -0.00021614795f, -0.00047705427f, 0.00020037197f}};
-  static constexpr std::array<float, 4> residual_upper = {{0.06580391f, 0.00031457128f, 3.4054872e-05f, 0.0008835882f}};
 
   // standardisation: (value - mean) / spread
   static constexpr pinnquad::Scaler<float, 20> input = {{{
@@ -402,8 +372,10 @@ struct NearGroundQuadModel {
       0.012894741f, 0.0f, -6.106764e-12f, 4.5571896e-06f, -0.0005008184f, -0.00073817937f, 0.0f, 0.0f,
       0.00072951545f, 2.2684073e-06f, 0.0005056628f, 0.13322264f, 0.0015927164f, 0.005256384f, -0.00012106736f}};
 
+  // over what the types say: layers, names and units, frame, airframe's name, motor order
+  static constexpr std::uint64_t shape_hash = 0x666158e056745937;
   // over all of this: what was edited does not compile (exported/contents_hash.hpp)
-  static constexpr std::uint64_t contents_hash = 0xbc91aefd2ee5c56f;
+  static constexpr std::uint64_t contents_hash = 0x51ca7650da3b6914;
 };
 
 static_assert(pinnquad::require_model<NearGroundQuadModel>());

@@ -38,6 +38,13 @@ struct OwnRacerAirframe {
   }
 };
 
+// Features: vdot_bx [m/s^2], vdot_by [m/s^2], vdot_bz [m/s^2], wdot_x [rad/s^2], wdot_y [rad/s^2], wdot_z [rad/s^2],
+// v_bx [m/s], v_by [m/s], v_bz [m/s], w_x [rad/s], w_y [rad/s], w_z [rad/s], roll [rad], pitch [rad], sin_yaw [1],
+// cos_yaw [1], battery_voltage [V], vdot_bx[-1] [m/s^2], vdot_by[-1] [m/s^2], vdot_bz[-1] [m/s^2], wdot_x[-1]
+// [rad/s^2], wdot_y[-1] [rad/s^2], wdot_z[-1] [rad/s^2], v_bx[-1] [m/s], v_by[-1] [m/s], v_bz[-1] [m/s], w_x[-1]
+// [rad/s], w_y[-1] [rad/s], w_z[-1] [rad/s], roll[-1] [rad], pitch[-1] [rad], sin_yaw[-1] [1], cos_yaw[-1] [1],
+// battery_voltage[-1] [V].
+// Outputs: u1 [1], u2 [1], u3 [1], u4 [1].
 struct OwnRacer {
   using Scalar = double;
   using Network = pinnquad::Network<double, pinnquad::InputSize<34>, pinnquad::Dense<6>, pinnquad::Tanh, pinnquad::Dense<4>>;
@@ -46,7 +53,7 @@ struct OwnRacer {
   using Vehicle = OwnRacerAirframe;
   using Inputs = Features::Inputs<Scalar>;
 
-  static constexpr int format_version = 4;
+  static constexpr int format_version = 5;
   static constexpr const char* name = "OwnRacer";
 
   // provenance
@@ -63,139 +70,18 @@ struct OwnRacer {
   static constexpr bool worse_than_mean = true;
   static constexpr bool beats_linear_regression = false;
 
-  // what it was trained for; require_model() compares with Features, Outputs and Vehicle
-  static constexpr const char* frame = "body FRD, world NED";
-  static constexpr std::array<const char*, 34> feature_names = {{
-      "vdot_bx", "vdot_by", "vdot_bz", "wdot_x", "wdot_y", "wdot_z", "v_bx", "v_by",
-      "v_bz", "w_x", "w_y", "w_z", "roll", "pitch", "sin_yaw", "cos_yaw",
-      "battery_voltage", "vdot_bx[-1]", "vdot_by[-1]", "vdot_bz[-1]", "wdot_x[-1]", "wdot_y[-1]", "wdot_z[-1]", "v_bx[-1]",
-      "v_by[-1]", "v_bz[-1]", "w_x[-1]", "w_y[-1]", "w_z[-1]", "roll[-1]", "pitch[-1]", "sin_yaw[-1]",
-      "cos_yaw[-1]", "battery_voltage[-1]"}};
-  static constexpr std::array<const char*, 34> feature_units = {{
-      "m/s^2", "m/s^2", "m/s^2", "rad/s^2", "rad/s^2", "rad/s^2", "m/s", "m/s",
-      "m/s", "rad/s", "rad/s", "rad/s", "rad", "rad", "1", "1",
-      "V", "m/s^2", "m/s^2", "m/s^2", "rad/s^2", "rad/s^2", "rad/s^2", "m/s",
-      "m/s", "m/s", "rad/s", "rad/s", "rad/s", "rad", "rad", "1",
-      "1", "V"}};
-  static constexpr std::array<const char*, 4> output_names = {{"u1", "u2", "u3", "u4"}};
-  static constexpr std::array<const char*, 4> output_units = {{"1", "1", "1", "1"}};
-  static constexpr const char* vehicle_name = "own_racer";
-  // rotor by rotor: signs of its torque about x, y, z
-  static constexpr std::array<std::array<int, 3>, 4> motor_torque_signs = {{
-    {{-1, -1, -1}},
-    {{1, -1, 1}},
-    {{1, 1, -1}},
-    {{-1, 1, 1}}}};
-
-  // records: a reader that does not know one of them must not fly the model (exported/model_records.hpp)
-  static constexpr std::array<const char*, 7> records = {{"answer", "commands", "clock", "window", "columns", "allocation", "base"}};
-  static constexpr const char* answer = "pinnquad::Network<double, pinnquad::Inputs<34>, pinnquad::Dense<6>, pinnquad::Tanh, pinnquad::Dense<4>>";
+  // commands and clock of its training (exported/model_facts.hpp)
   static constexpr auto command_meaning = pinnquad::CommandMeaning::throttle;
   static constexpr double command_lower = 0.0;
   static constexpr double command_upper = 0.95;
   static constexpr double sample_period_s = 0.01;
   static constexpr double lag_removed_s = 0.033;
-  static constexpr int window_taps = 2;
-  static constexpr bool causal = true;
-  static constexpr std::array<const char*, 1> column_names = {{"battery_voltage"}};
-  static constexpr std::array<const char*, 1> column_units = {{"V"}};
   // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density
   static constexpr std::array<std::array<double, 4>, 4> allocation = {{
     {{8.016714469792177, 8.00227137323964, 7.615878746302568, 8.016714469792177}},
     {{-0.8016714469792178, 0.7896450742238385, 0.7615878746302568, -0.8016714469792178}},
     {{-0.6012535852344133, -0.600170352992973, 0.5711909059726925, 0.6012535852344133}},
     {{-0.17636771833542797, 0.22415025703002522, -0.16754933241865658, 0.17636771833542797}}}};
-  static constexpr const char* base = "";
-  static constexpr std::array<std::array<int, 3>, 4> slope_signs = {{
-    {{-1, 1, 1}},
-    {{1, -1, 0}},
-    {{1, 1, -1}},
-    {{-1, -1, -1}}}};
-  static constexpr std::array<double, 4> residual_lower = {{-0.25, -0.26, -0.27, -0.28}};
-  static constexpr std::array<double, 4> residual_upper = {{0.25, 0.26, 0.27, 0.28}};
-  static constexpr std::array<double, 34> distance_mean = {{
-      0.5097788212350531, 0.44331934011976504, -0.03708876030139896, 7.307871626554764, 11.381509054599332, -1.9511347092198228, 0.3190759249089691, -0.5948800774846809,
-      0.19913809606117738, 0.5670275402846393, 0.9371777831562953, -0.3434375230594739, -0.14152957485388803, -0.14075334261280548, -0.08669972058526582, 0.010421271655248227,
-      14.95225714969627, 1.3265063645614852, -1.514673573561056, 0.7948096320192022, 8.576941747041092, -6.475829002316533, -0.8797170580719303, 0.26671904852720985,
-      -0.018945241520083977, 0.25213134843896123, 0.035755620745175354, 1.1536238332881208, -0.40251520220971715, 0.04171469887896255, -0.15538469800242044, 0.019780524309514325,
-      0.18556853774486082, 15.110494100662596}};
-  static constexpr std::array<double, 595> distance_inverse_cholesky = {{
-      0.30555270959116715, 0.0, 0.4014864533325153, 0.0, 0.0, 0.2625734073455706, 0.0, 0.0,
-      0.0, 0.041712345507369304, 0.0, 0.0, 0.0, 0.0, 0.04669190421882494, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.2888790825101137, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 1.011965816807533, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.8929451587993918, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.8833560484760897, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.4415198357736293, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.3572893726231663, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.8163613671970559, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 2.435043836843645, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      2.4729396028361683, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.8812889306100926,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.2676571946323714,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      1.4253188403214783, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.3227560730662856, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.3607110816195016, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.3922939350962216, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.05281153790048065, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0360506644914576, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.27647892825857867, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.6686314556963432, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.9020063703041897, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0698361802688816, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.3720669621444734, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.46339327482660053, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.7357237828570206, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      2.705178854235691, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.1670304268424228,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.6629474082885065,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      2.4033533442593056, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-      0.0, 0.0, 1.4839382813686972}};
-  static constexpr double distance_limit = 8.5;
 
   // standardisation: (value - mean) / spread
   static constexpr pinnquad::Scaler<double, 34> input = {{{
@@ -290,8 +176,10 @@ struct OwnRacer {
       0.2041235247359201, 0.44121683837467085, 0.0010749823623175114, -0.2172595051423214, 0.010114746508785744, 0.2983035439232471, -0.4877128524232753, -0.5343374417471016,
       -0.24400588816143054, 0.3949892755352531, 0.0, 0.0, 0.0, 0.0}};
 
+  // over what the types say: layers, names and units, frame, airframe's name, motor order
+  static constexpr std::uint64_t shape_hash = 0xe5a990e22802b025;
   // over all of this: what was edited does not compile (exported/contents_hash.hpp)
-  static constexpr std::uint64_t contents_hash = 0x072413b06350b96d;
+  static constexpr std::uint64_t contents_hash = 0x69aaabf0148f1160;
 };
 
 static_assert(pinnquad::require_model<OwnRacer>());

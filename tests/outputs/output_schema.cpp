@@ -143,14 +143,3 @@ TEST_CASE("each output has a unit of its own") {
   CHECK(std::string(pinnquad::OutputMap<CommandOutputs>::units[0]) == "1");
   CHECK(std::string(pinnquad::OutputMap<pinnquad::WrenchOutputs>::units[0]) == "N");
 }
-
-TEST_CASE("signs of another shape are other signs") {
-  const pinnquad::detail::TorqueSigns signs = {{{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}}};
-  CHECK(pinnquad::detail::same_values(signs, signs));
-  CHECK_FALSE(pinnquad::detail::same_values(std::array<std::array<int, 3>, 3>{}, signs));
-  const std::array<std::array<int, 4>, 4> longer = {{{-1, 1, 1, 0}, {1, -1, 1, 0}, {1, 1, -1, 0}, {-1, -1, -1, 0}}};
-  CHECK_FALSE(pinnquad::detail::same_values(longer, signs));
-  pinnquad::detail::TorqueSigns turned = signs;
-  turned[3][2] = 1;
-  CHECK_FALSE(pinnquad::detail::same_values(turned, signs));
-}

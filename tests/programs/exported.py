@@ -21,7 +21,13 @@ class Header:
         return [struct.unpack("f", struct.pack("f", float(n)))[0] for n in re.findall(NUMBER, self.listed(name))]
 
     def names(self):
-        return re.findall('"(.*?)"', self.listed("feature_names"))
+        words = re.search(r"^// Features: (.*?)\.\n// Outputs: ", self.text, re.S | re.M).group(1)
+        return [word.rsplit(" [", 1)[0] for word in words.replace("\n//", "").split(", ")]
+
+    def signs(self):
+        """Rotor by rotor, of its torques: roll, pitch, yaw."""
+        rows = self.numbers("allocation")
+        return [math.copysign(1, rows[4 * (1 + axis) + rotor]) for rotor in range(4) for axis in range(3)]
 
     def commands(self):
         """The function from features to commands."""
@@ -48,5 +54,5 @@ class Header:
 
     def sums(self):
         """The function from four commands to the signed sum of an axis."""
-        signs = self.numbers("motor_torque_signs")  # rotor by rotor: roll, pitch, yaw
+        signs = self.signs()
         return lambda u, axis: sum(signs[3 * rotor + axis] * u[rotor] for rotor in range(4))

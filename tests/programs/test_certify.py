@@ -167,7 +167,7 @@ def test_windows(pinnquad, recorded, made, model):
         return
     # the weights by hand: of the present instant, and summed over all
     header = Header(f"{model}/model.hpp")
-    names, scale, signs = header.names(), header.numbers("output"), header.numbers("motor_torque_signs")
+    names, scale, signs = header.names(), header.numbers("output"), header.signs()
     n, weights, spread = len(names), header.numbers("parameters"), header.numbers("input")
     for axis, name in enumerate(AXES):
         places = [i for i, feature in enumerate(names) if feature.startswith("wdot_" + "xyz"[axis])]

@@ -35,7 +35,7 @@ def check_help(commands):
 
 def test_help_and_version_of_the_study(study):
     of_study = commands_of(study)
-    assert names_below(of_study, study) == ["paper", "ablation", "beyond", "loop", "wrench", "merge"]
+    assert names_below(of_study, study) == ["paper", "ablation", "beyond", "loop", "wrench"]
     assert len(check_help(of_study)) <= 3
 
 
@@ -112,8 +112,7 @@ def test_refused(pinnquad, commands, words, keyword):
 
 
 @pytest.mark.parametrize("words, keyword", [
-    ("", "expected a command"), ("news", "'news'"), ("paper --out o ablation", "ablation"),
-    ("merge", "parts is required")])
+    ("", "expected a command"), ("news", "'news'"), ("paper --out o ablation", "ablation")])
 def test_refused_by_the_study(study, words, keyword):
     check_refused(study, commands_of(study), words, keyword)
 

@@ -163,7 +163,7 @@ def test_outputs(pinnquad):
     features_toml('activations = "relu"', tables=output.format('["sum", "roll_sum", "pitch_sum", "yaw_sum"]') + AIRFRAME)
     header = converted(pinnquad, "net.safetensors")
     assert "pinnquad::AxisCommandOutputs" in header.text
-    signs = header.numbers("motor_torque_signs")
+    signs = header.signs()
     commands = lambda y: [(y[0] + sum(signs[3 * i + k] * y[k + 1] for k in range(3))) / 4 for i in range(4)]
     assert worst(header, lambda row: commands(made(row))) <= TOLERANCE
 

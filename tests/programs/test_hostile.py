@@ -185,21 +185,19 @@ def study_cases():
     yield from (refused("study paper --models 1 --epochs 1 --out run/o --seeds", value) for value in WHOLE_NUMBERS)
     yield from (refused("study paper --models 1 --seeds 1 --out run/o --epochs", value) for value in WHOLE_NUMBERS)
     for option in "--flights", "--flight-seed", "--patience", "--threads":
-        yield from (refused(f"study paper --models 1 --shard 2/2 {SHORT} --out run/o {option}", value)
+        yield from (refused(f"study paper --models 1 {SHORT} --out run/o {option}", value)
                     for value in WHOLE_NUMBERS)
     for words in ["--models 0", "--models 15", "--models 1,", "--models 1-", "--models 010", "--models +1",
-                  "--shard 0/1", "--shard 2", "--shard 3/2", "--shard 1/2/3", "--weights worst", "--seeds 0",
+                  "--weights worst", "--seeds 0",
                   "--flights 0", "--flights 1001", "--epochs 0", "x", "ablation", "--no-such-option"]:
         yield refused(f"study paper --out run/o {words}")
-    for words in ["", "x", "--seeds 1", "paper", "merge", "merge in", "ablation",
-                  "ablation --out run/o --variants none", "merge absent --out run/o", "--out run/o paper",
-                  "--out run/o merge absent"]:
+    for words in ["", "x", "--seeds 1", "paper", "ablation",
+                  "ablation --out run/o --variants none", "--out run/o paper"]:
         yield refused(f"study {words}")
     yield from (refused(f"report {words}") for words in ["", "absent", "in/short.csv", "in x", "--out in"])
     for path in NO_FOLDER:
         yield left_alone(f"study paper --models 1 {SHORT} --out", path)
         yield left_alone("report", path)
-        yield left_alone("study merge", path, "--out", "run/o")
     yield from (refused("study --help", around=around) for around in ("closed_stdout", "full_stdout"))
 
 

@@ -75,26 +75,27 @@ def exchanged(name, other):
     return edit
 
 
+def own_type(model, name, members):
+    """A type of the library's with other members in its place."""
+    own = f"struct Own : pinnquad::{name} {{ {members} }};\nstruct {model} {{"
+    return lambda text: text.replace(f"pinnquad::{name}", "Own").replace(f"struct {model} {{", own)
+
+
 base = 3 + 4 * 17 + 4  # parameters of the affine base: its slopes first; then the residual's bounds
 scaled = lambda factor: lambda value: value * factor
 negated = all_numbers(lambda n: n[1:] if n.startswith("-") else "-" + n if float(n) else n)
 
 # the compiler's word besides that of the hash; None: then a replay of the golden vectors finds it; "": only the hash
-RANGE = "range of a residual is upside down, or not that of the bounds among its"
-SIGNS = "a slope sign of the model is not that of the torque"
+SHAPE = "trained for another shape"
 SLOPE = "a slope of the model is not above"
 TIME = "removed lag is no time of 0 to 4 s"
 ENVELOPE = "envelope is upside down, or ends where no training"
 residual_lies = [
-    ("bounds of the residual x 10^6", edited("parameters", at_places(range(base, base + 8), scaled(1e6))), RANGE),
-    ("one bound of the residual x 1.01", edited("parameters", number(base + 5, scaled(1.01))), RANGE),
-    ("stated range halved", edited("residual_upper", at_places(range(4), scaled(0.5))), RANGE),
-    ("stated range 1e30", edited("residual_lower", lambda _: "{{-1e30f, -1e30f, -1e30f, -1e30f}}"), RANGE),
-    ("slope signs negated", edited("slope_signs", negated), SIGNS),
+    ("bounds of the residual x 10^6", edited("parameters", at_places(range(base, base + 8), scaled(1e6))), None),
+    ("one bound of the residual x 1.01", edited("parameters", number(base + 5, scaled(1.01))), None),
     ("slope 1e-45", edited("parameters", number(1, "1e-45f")), None),
     ("slope 0", edited("parameters", number(1, "0.0f")), SLOPE),
     ("slope negative", edited("parameters", number(0, scaled(-1))), SLOPE),
-    ("frame", edited("frame", lambda _: '"body FLU, world ENU"'), "trained in other frames"),
     ("lag -3", edited("lag_removed_s", lambda _: "-3.0"), TIME),
     ("lag NaN", edited("lag_removed_s", lambda _: "std::numeric_limits<double>::quiet_NaN()"), TIME),
     ("envelope reversed", exchanged("envelope_lower", "envelope_upper"), ENVELOPE),
@@ -107,28 +108,25 @@ residual_lies = [
     ("last parameter edited", edited("parameters", number(-1, scaled(1.05))), ""),
     ("input spread 0", edited("input", number(22, "0.0f")), "standard deviation is not positive"),
     ("input spread negative", edited("input", number(22, scaled(-1))), "standard deviation is not positive"),
-    ("output spread doubled", edited("output", at_places(range(4, 8), scaled(2))), RANGE),
+    ("output spread doubled", edited("output", at_places(range(4, 8), scaled(2))), None),
     ("allocation edited", edited("allocation", number(1, scaled(1.00001))), "trained for another allocation"),
-    ("motor order edited", edited("motor_torque_signs", number(0, "1")), "trained with another motor order"),
-    ("feature names swapped", edited("feature_names", swapped('"wdot_x"', '"wdot_y"')), "trained on other features"),
-    ("output names swapped", edited("output_names", swapped('"roll_sum"', '"yaw_sum"')), "has other outputs"),
-    ("window taps", edited("window_taps", lambda _: "3"), "has another window"),
+    ("a rotor that turns the other way", lambda text: text.replace("Spin::clockwise", "Spin::counter_clockwise", 1), SHAPE),
+    ("feature names swapped", own_type("NearGroundQuadModel", "InverseFeaturesWithAltitude", """
+    static constexpr auto names = [] {
+      auto all = pinnquad::InverseFeaturesWithAltitude::names;
+      const char* first = all[1];
+      all[1] = all[2];
+      all[2] = first;
+      return all;
+    }();"""), SHAPE),
+    ("other outputs", lambda text: text.replace("AxisCommandOutputs", "WrenchOutputs"), SHAPE),
     ("command range swapped", exchanged("command_lower", "command_upper"), "range of the model's commands is none"),
     ("sample period", edited("sample_period_s", lambda _: "0.01"), ""),
-    # of a model without window: nothing else says it
     ("judgement", edited("beats_linear_regression", lambda _: "false"), ""),
 ]
 window_lies = [
-    ("window taps", edited("window_taps", lambda _: "3"), "has another window"),
-    ("window not causal", edited("causal", lambda _: "false"), "has another window"),
     ("period of the window", edited("sample_period_s", lambda _: "0.02"), "sample period is another"),
-    ("columns", edited("column_names", lambda _: '{{"air_speed"}}'), "has other extra columns"),
-    ("distance limit NaN", edited("distance_limit", lambda _: "std::numeric_limits<double>::quiet_NaN()"),
-     "statistics of a distance"),
-    ("distance limit negative", edited("distance_limit", lambda _: "-8.5"), "statistics of a distance"),
-    ("distance mean outside", edited("distance_mean", number(0, "1000000.0")), "statistics of a distance"),
-    ("distance diagonal negative", edited("distance_inverse_cholesky", number(0, scaled(-1))),
-     "statistics of a distance"),
+    ("column", own_type("OwnRacer", "BatteryVoltage", 'static constexpr const char* name = "air_speed";'), SHAPE),
 ]
 airframe_lies = [
     ("mass", lambda text: text.replace("a.mass_kg = Scalar(1.5)", "a.mass_kg = Scalar(1.6)")),
@@ -203,7 +201,7 @@ def test_headers(checked, work):
     told = list(headers())
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = [fault for fault in pool.map(believed, range(len(told)), told) if fault]
-    assert len(told) >= 33 and not found, "\n".join(found)
+    assert len(told) >= 28 and not found, "\n".join(found)
 
 
 def test_blocks(pinnquad, lies, flight):

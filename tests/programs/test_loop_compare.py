@@ -3,10 +3,11 @@
 that is interrupted and goes on, a residual wrench, what it can't fly."""
 import json
 import signal
+import sys
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, until
+from conftest import SOURCE, Program, until
 
 MODEL = SOURCE / "examples/models/structured_quadrotor.block"
 ROW = {"controller", "condition", "trajectory", "gains", "seed", "rmse_cm", "worst_cm", "recovery_s", "crashed"}
@@ -46,11 +47,13 @@ def test_gains_are_searched_and_told(study):
     assert tuned < equal
     assert {(each["controller"], each["gains"]) for each in result["series"]} == {
         (name, gains) for name in ("pid", "structured") for gains in ("equal", "tuned")}
-    ratios = [each for each in result["summary"] if each["condition"] == "calm" and each["controller"] == "structured"]
+    report = Program(sys.executable, SOURCE / "tools/study/report.py")("c")
+    assert "Ratio to pid, the same flights" in report.out
+    ratios = [each for each in json.loads(Path("c/report.json").read_text())["summary"] if each["condition"] == "calm" and each["controller"] == "structured"]
     assert all(each["over_pid"]["lower"] <= each["over_pid"]["mean"] <= each["over_pid"]["upper"] for each in ratios)
     assert all(each["over_indi"] is None for each in ratios)
     assert all(ROW <= set(row) and not row["crashed"] for row in result["rows"])
-    page = (Path("c") / "loop.html").read_text()
+    page = Path("c/report.html").read_text()
     assert "Equal gains" in page and "<svg" in page and "{{" not in page
 
 

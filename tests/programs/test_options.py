@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 from conftest import commands_of
 
-SHARES = ["nan", "0", "-1", "0/1", "2/1", "1/0x10", "1/-1", "1/1e400"]
 LAGS = ["nan", "inf", "1e400", "0x10", "-2", " "]
 
 
@@ -41,14 +40,6 @@ def check_options(commands):
                 assert not os.listdir(), (command.name, option, value)
                 tried += 1
     return tried
-
-
-@pytest.mark.parametrize("kind", ["paper", "ablation", "beyond"])
-def test_shard(study, kind):
-    """Read when the command runs, as the next two."""
-    for value in SHARES:
-        study.refused(f"{kind} --out o --shard", value, keyword="--shard", timeout=20)
-    assert not os.listdir()
 
 
 def test_models_of_the_study(study):

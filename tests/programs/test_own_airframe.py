@@ -18,7 +18,7 @@ def test_own_airframe(pinnquad, compiler, flags):
     pinnquad(f"{TRAIN} --airframe mine.toml --out a")
     header = Path("a/model.hpp").read_text()
     assert "using Vehicle = TrainedQuadModelAirframe;" in header
-    assert 'vehicle_name = "my \\"own\\" quad";' in header
+    assert 'static constexpr const char* name = "my \\"own\\" quad";' in header
     assert '"airframe": "my \\"own\\" quad"' in Path("a/report.json").read_text()
 
     compiler(*flags, "-O1", "-DPINNQUAD_INLINE_AS_COMPILER_LIKES", "-Ia",

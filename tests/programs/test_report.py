@@ -421,6 +421,48 @@ def test_refused_files(study, refused):
     report.refused("absent", at="absent/study.json", keyword="readable file")
 
 
+ERRORS_CM = {"pid": [1.2164772950067348, 1.255804761666628, 0.9602734472179026, 0.9828639415967156],
+             "indi": [0.25891294699113504, 0.2568893925369594, 0.2809830741045874, 0.27653010265906275]}
+
+
+def compared(change=lambda result: None):
+    """A comparison of two controllers in compared/, one of whose fifth flights crashed."""
+    result = {"model": "m.block", "airframe": "paper_quadrotor", "vehicle": "nominal", "seeds": 5, "duration_s": 15,
+              "delay_s": 0, "noise": dict.fromkeys(("position_m", "velocity_m_s", "attitude_rad", "body_rates_rad_s"), 0),
+              "tuning": [], "series": [], "controllers": [{"name": "pid", "summary": "<b> & rigid body"}],
+              "conditions": [], "rows": [
+                  {"controller": controller, "condition": "calm", "trajectory": "eight", "gains": "equal", "seed": seed,
+                   "rmse_cm": error, "crashed": error is None}
+                  for controller, errors in ERRORS_CM.items()
+                  for seed, error in enumerate([*errors, None if controller == "pid" else 0.27], start=1)]}
+    change(result)
+    Path("compared").mkdir(exist_ok=True)
+    Path("compared/loop.json").write_text(json.dumps(result))
+
+
+def test_controllers_compared():
+    """Intervals are those of the resamples that docs/loop.md quotes; a crashed flight is in no mean, and in no ratio."""
+    compared()
+    assert "1.10 (0.97 to 1.24), 1 lost" in report("compared").out
+    pid, indi = json.loads(Path("compared/report.json").read_text())["summary"]
+    assert (pid["crashed"], indi["crashed"], pid["flights"]) == (1, 0, 5)
+    for found, wanted in ((pid["rmse_cm"], (0.9715030341400142, 1.0957932322982822, 1.2359846194547879)),
+                          (pid["over_indi"], (3.4852414789114614, 4.086937397054028, 4.792510759586042)),
+                          (indi["over_indi"], (1, 1, 1))):
+        assert [found[key] for key in ("lower", "mean", "upper")] == pytest.approx(wanted, rel=1e-12)
+    text = shown("compared")
+    assert "&lt;b&gt; &amp; rigid body" in text and "Ratio to indi, the same flights" in text and "<svg" in text
+
+
+@pytest.mark.parametrize("change", [lambda result: result.pop("rows"), lambda result: result.update(rows=[]),
+                                    lambda result: result["rows"][0].update(rmse_cm="soon"),
+                                    lambda result: result.update(noise=None)])
+def test_refused_comparison(change):
+    compared(change)
+    report.refused("compared", at="compared/loop.json", keyword="pinnquad-study loop writes")
+    assert not Path("compared/report.html").exists()
+
+
 def test_interrupted(study):
     """Ctrl-C while it reads."""
     study()

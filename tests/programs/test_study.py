@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The paper's study: killed and resumed, interrupted, sharded and merged, it gives the rows of an undisturbed run, bit
+"""The paper's study: killed and resumed, interrupted, it gives the rows of an undisturbed run, bit
 for bit; what is broken is run again, what is foreign is refused."""
 import fcntl
 import json
@@ -25,11 +25,9 @@ def paper(study):
 
 @pytest.fixture(scope="module")
 def studies(paper, tmp_path_factory):
-    """whole/, its three parts and long/; what was said of whole."""
+    """whole/ and long/; what was said of whole."""
     folder = tmp_path_factory.mktemp("studies")
     (folder / "said.txt").write_text(paper(f"{OPTIONS} --out whole", cwd=folder).out)
-    for shard in 1, 2, 3:
-        paper(f"{OPTIONS} --shard {shard}/3 --out part{shard}", cwd=folder)
     paper(f"{LONG} --out long", cwd=folder)
     return folder
 
@@ -53,15 +51,6 @@ def same(one, other):
     assert listing(f"{one}/series") == listing(f"{other}/series")
     for name in listing(f"{one}/series"):
         same_bytes(f"{one}/series/{name}", f"{other}/series/{name}")
-
-
-def wall_s(*folders):
-    return round(sum(json.loads(Path(folder, "study.json").read_text())["wall_s"] for folder in folders), 3)
-
-
-def first_row_is_another(line, cells):
-    if line == 2:
-        cells[6] = "0.5"
 
 
 def test_whole(paper, studies):
@@ -114,40 +103,6 @@ def test_interrupted(paper):
     no_partial_files("interrupted")
 
 
-def test_merged(study, paper):
-    done = study("merge part1 part3 --out merged", code=1)
-    assert re.search("3 trainings are missing, .* model 7, flight d1 of seed 101, seed 1", done.err), done
-    study("merge part1 part2 part3 --out merged")
-    same("whole", "merged")
-    # a merged folder is a study like any other
-    assert f", {TRAININGS} of them from before" in paper(f"{OPTIONS} --out merged").out
-
-
-def test_merged_part_by_part(study):
-    """And again: what --out holds stays, and no time counts twice; --out may be among the folders."""
-    parts = ["part1", "part2", "part3"]
-    study("merge part1 part3 --out all", code=1)
-    assert ", 7 of them from before" in study("merge part2 --out all").out
-    for _ in range(2):
-        same("whole", "all")
-        assert abs(wall_s("all") - wall_s(*parts)) < 2e-3
-        assert json.loads(Path("all/study.json").read_text())["parts"] == 3
-        study("merge part1 part2 part3 all --out all")
-    edited("all/rows.csv", "other.csv", first_row_is_another)
-    shutil.copy("other.csv", "all/rows.csv")
-    study.refused("merge part1 part2 part3 --out all", keyword="other figures")
-    same_bytes("other.csv", "all/rows.csv")
-    Path("all/study.json").unlink()
-    study.refused("merge part1 --out all", at="all/study.json", keyword="found none")
-    same_bytes("other.csv", "all/rows.csv")
-    study.refused("merge whole --out whole", keyword="nothing to join")
-    Path("linked/series").mkdir(parents=True)
-    Path("linked/rows.csv").symlink_to("../part1/rows.csv")
-    before = rows("part1")
-    study.refused("merge part1 part2 part3 --out linked", keyword="same file")
-    assert rows("part1") == before, "a merge lost the rows of a part"
-
-
 @pytest.mark.parametrize("change", [
     lambda text: text[:-25], lambda text: text[:20], lambda text: "".join(text.splitlines(True)[:4]), lambda text: "",
     lambda text: re.sub(r"\A((?:.*\n){4}.*),.*\n", r"\1\n", text),
@@ -180,17 +135,14 @@ def of_model(model, seed, column, value):
     ("weights is best there", of_model("13", "2", 6, "best")),
     ("a second one", lambda line, cells: [*cells, "\n" + ",".join(cells[:6] + ["0.5"] + cells[7:])]
      if (cells[0], cells[3]) == ("7", "2") else None)])
-def test_foreign_rows(study, paper, keyword, change):
+def test_foreign_rows(paper, keyword, change):
     """Of other trainings: refused by name, and kept."""
     shutil.copytree("whole", "foreign")
     edited("whole/rows.csv", "foreign/rows.csv", change)
     Path("foreign/rows.csv").write_text(Path("foreign/rows.csv").read_text().replace(",\n", "\n"))
     before = rows("foreign")
-    for refused in paper.refused, study.refused:
-        words = f"{OPTIONS} --out foreign" if refused == paper.refused else "merge foreign --out no"
-        assert "foreign/rows.csv" in refused(words, keyword=keyword).lines[0]
-        assert rows("foreign") == before, "a refused command changed the rows"
-    assert not Path("no").exists()
+    assert "foreign/rows.csv" in paper.refused(f"{OPTIONS} --out foreign", keyword=keyword).lines[0]
+    assert rows("foreign") == before, "a refused command changed the rows"
 
 
 def test_full_disk(paper):
@@ -213,30 +165,24 @@ def test_full_disk(paper):
     (f"paper {MODELS} --epochs 13 --out whole", "whole/study.json", "epochs is 12"),
     ("paper --models 7 --seeds 3 --epochs 12 --out whole", "whole/study.json", "4 entries"),
     (f"paper {OPTIONS} --flight-seed 2 --out whole", "", "seed"),
-    ("merge part1 other --out no", "", "epochs is 12"), ("merge part2 other_figures --out no", "", "model 7"),
-    ("merge part1 absent --out no", "absent/study.json", "readable file"),
     ("paper --models 2,15 --out no", "", "model 15"), ("paper --models 0 --out no", "", "model 0"),
     ("paper --models 2,x --out no", "", "'x'"), ("paper --models 8-5 --out no", "", "'8-5'"),
-    ("paper --shard 4/3 --out no", "", "i/n"), ("paper --seeds 1", "", "--out"),
+    ("paper --seeds 1", "", "--out"),
     ("ablation --variants vanilla,z --out no", "", "z"), ("paper --seeds 0 --out no", "", "--seeds"),
     ("--models 2 --seeds 1 --out no", "", "expected a command"), ("--models 2 ablation --seeds 1 --epochs 1 --out no",
                                                                   "", "not expected"),
-    ("paper ablation --seeds 1 --epochs 1 --out no", "", "ablation"), ("--epochs 3 merge part1 --out no", "",
-                                                                       "not expected"),
+    ("paper ablation --seeds 1 --epochs 1 --out no", "", "ablation"),
     (f"paper {OPTIONS} --out a_file/out", "a_file/out", ""),
     (f"paper {OPTIONS} --out garbage", "garbage/study.json:1:1", "JSON"),
-    ("merge empty --out no", "empty/study.json", "settings"),
+    (f"paper {OPTIONS} --out empty", "empty/study.json", ""),
     (f"paper {OPTIONS} --out bare", "bare/study.json", "found none"), (f"paper {OPTIONS} --out columns",
                                                                        "columns/rows.csv:1", "columns"),
     (f"paper {OPTIONS} --out folder", "folder/rows.csv", "a folder")])
 def test_refused(study, words, at, keyword):
     """Foreign folders and bad input."""
     Path("a_file").touch()
-    for name, source in ("other", "part2"), ("other_figures", "part2"), *((name, "whole") for name in (
-            "garbage", "empty", "bare", "columns", "folder")):
-        shutil.copytree(source, name)
-    replaced("other/study.json", "other/study.json", ('"epochs": 12', '"epochs": 11'))
-    edited("part2/rows.csv", "other_figures/rows.csv", first_row_is_another)
+    for name in "garbage", "empty", "bare", "columns", "folder":
+        shutil.copytree("whole", name)
     Path("garbage/study.json").write_text("garbage\n")
     Path("empty/study.json").write_text("{}\n")
     Path("bare/study.json").unlink()

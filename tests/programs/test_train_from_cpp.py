@@ -103,7 +103,7 @@ int main() {
   MyModel::Inputs in;  // the middle of what it was trained on
   pinnquad::Commands<MyModel::Scalar> warm{}, cold{};
   in.attitude.w = 1;
-  const auto& names = MyModel::feature_names;
+  const auto& names = MyModel::Features::names;
   const auto at = names.size() - 1;
   const auto lower = MyModel::envelope_lower[at], upper = MyModel::envelope_upper[at];
   in.column<PackTemperature>() = upper - (upper - lower) / 8;
@@ -113,7 +113,7 @@ int main() {
   in.column<PackTemperature>() = std::numeric_limits<float>::quiet_NaN();
   pinnquad::Commands<MyModel::Scalar> none{};
   if (inverse.predict(in, none) != pinnquad::Status::not_finite) return 4;
-  return MyModel::column_names[0] == std::string_view("pack_temperature") && cold[0] > warm[0] + 0.02f ? 0 : 1;
+  return names[at] == std::string_view("pack_temperature") && cold[0] > warm[0] + 0.02f ? 0 : 1;
 }
 """)
     compiler("-O0", f"-I{SOURCE}/examples", "-I.", "fly.cpp", "-o", "fly")

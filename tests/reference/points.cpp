@@ -230,6 +230,8 @@ TEST_SUITE("shipped rows") {
     for (const char* file : files) {
       compare(pinnquad::test::shipped_rows(file), 100, std::string(file) + " shipped",
               [&](const plain::Point& p) { return pinnquad::test::evaluate(airframe, p); });
+      compare(pinnquad::test::shipped_rows(file), 100, std::string(file) + " shipped, plain",
+              [](const plain::Point& p) { return plain::evaluate(p, constants_of_simulator()); });
     }
     using pinnquad::test::shipped_rows;
     recover<>(shipped_rows("points_ge0.csv"), "points_ge0.csv", 80);

@@ -99,8 +99,8 @@ TEST_CASE("a given airframe stands before its model, and the model names it") {
   const std::string header = out.str();
   CHECK(header.find("struct MyQuadAirframe {") < header.find("struct MyQuad {"));
   for (const char* line : {"static constexpr const char* name = \"crazyflie_2_1\";", "using Vehicle = MyQuadAirframe;",
-                           "vehicle_name = \"crazyflie_2_1\";", "    a.mass_kg = Scalar(0.027);",
-                           "sample_period_s = 0.01", "command_meaning = pinnquad::CommandMeaning::thrust;"}) {
+                           "    a.mass_kg = Scalar(0.027);", "sample_period_s = 0.01",
+                           "command_meaning = pinnquad::CommandMeaning::thrust;"}) {
     CAPTURE(line);
     CHECK(header.find(line) != std::string::npos);
   }

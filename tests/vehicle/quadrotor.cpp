@@ -698,28 +698,6 @@ TEST_CASE_TEMPLATE("an effect whose values or model do not hold makes the vehicl
   CHECK(Near::template of<pinnquad::PaperQuadrotor>().status() == Status::ok);
 }
 
-TEST_CASE_TEMPLATE("status: valid, bad values, singular allocation", Scalar, float, double) {
-  CHECK(Bare<Scalar>(pinnquad::PaperQuadrotor::value<Scalar>()).status() == Status::ok);
-  Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
-  airframe.mass_kg = Scalar(-1);
-  CHECK(Bare<Scalar>(airframe).status() == Status::invalid_airframe);
-  airframe = pinnquad::PaperQuadrotor::value<Scalar>();
-  for (auto& rotor : airframe.rotors) rotor.y_m = Scalar(0);
-  CHECK(Bare<Scalar>(airframe).status() == Status::no_solution);
-}
-
-TEST_CASE_TEMPLATE("a vehicle is a value: its copy flies the same", Scalar, float, double) {
-  const Full<Scalar> original = full_vehicle<Scalar>({1.0, 2.0, 0.0});
-  const Full<Scalar> copy = original;
-  VehicleState<Scalar> a, b;
-  for (int i = 0; i < 10; ++i) {
-    REQUIRE(original.step(a, {Scalar(0.5), Scalar(0.6), Scalar(0.5), Scalar(0.6)}, Scalar(0.01)) == Status::ok);
-    REQUIRE(copy.step(b, {Scalar(0.5), Scalar(0.6), Scalar(0.5), Scalar(0.6)}, Scalar(0.01)) == Status::ok);
-  }
-  CHECK(pinnquad::test::same(a.body, b.body));
-  CHECK(a.rotors == b.rotors);
-}
-
 namespace {
 /// It has no value by default that could be flown.
 struct MeasuredDrag : pinnquad::QuadraticDrag {

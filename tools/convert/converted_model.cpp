@@ -258,8 +258,8 @@ pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& net
     pinnquad::detail::take_airframe<decltype(schema)>(model, meaning.airframe.name, meaning.airframe.value,
                                                       airframe_in<Scalar>(meaning.airframe.value));
   });
-  model.command_meaning = meaning.command_meaning.value_or(command_meaning_of(meaning.airframe.value));
-  model.sample_period_s = meaning.sample_period_s;
+  model.facts.command_meaning = meaning.command_meaning.value_or(command_meaning_of(meaning.airframe.value));
+  model.facts.sample_period_s = meaning.sample_period_s;
   model.training_data = network.source;
   model.loss = "not known: converted";
   RunTimeNetwork read;

@@ -108,12 +108,12 @@ class RunTimeView {
   FeatureVector envelope_upper{};
   std::vector<FeatureVector> golden_features;
   std::vector<std::array<Scalar, pinnquad::rotor_count>> golden_commands;
-  pinnquad::ModelRecords<Scalar> records{};
+  pinnquad::ModelFacts facts{};
 
   RunTimeView() = default;
   /// The model must stay where it is.
   explicit RunTimeView(const pinnquad::RunTimeModel<Scalar>& model)
-      : records(model.records()), model_(&model), work_(model.workspace()) {
+      : facts(model.records()), model_(&model), work_(model.workspace()) {
     const auto size = static_cast<std::size_t>(model.features().size());
     envelope_lower = {};
     for (std::size_t i = 0; i < size; ++i) {

@@ -29,8 +29,8 @@ inline SearchedModel searched_model(const pinnquad::BlockModel& model) {
   searched.derivatives = [&model, ways = searched.ways](const std::vector<double>& x) {
     bool window = false;
     for (const AskedMore& way : ways) window = window || way.held;
-    const pinnquad::AxisDerivatives now = model.derivatives(x, false);
-    const pinnquad::AxisDerivatives held = window ? model.derivatives(x, true) : now;
+    const pinnquad::AxisSlopes now = model.derivatives(x, false);
+    const pinnquad::AxisSlopes held = window ? model.derivatives(x, true) : now;
     std::vector<double> all;
     for (const AskedMore& way : ways) all.push_back(way.held ? held[way.axis] : now[way.axis]);
     return all;

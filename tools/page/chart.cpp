@@ -29,7 +29,7 @@ double text_width(const std::string& text) {
 /// A colour of the palette, and its light value for readers of SVG that know no variables.
 std::string ink(const std::string& colour) {
   if (colour[0] == '#') return " color=\"" + colour + "\"";
-  const std::string palette = page_palette, name = "--" + colour + ": ";
+  const std::string palette = page_file("palette.css"), name = "--" + colour + ": ";
   const std::size_t place = palette.find(name);
   if (place == std::string::npos) throw std::logic_error("page/palette.css has no colour " + colour);
   const std::size_t begin = place + name.size();
@@ -414,7 +414,7 @@ void write_svg(const std::string& path, const Chart& chart) {
   pinnquad::AtomicFile file(path);
   file.stream() << named_svg(
       chart, "xmlns=\"http://www.w3.org/2000/svg\" " + size, edge, wide, y,
-      "<style>\n" + std::string(page_palette) + "</style>\n" + ground +
+      "<style>\n" + std::string(page_file("palette.css")) + "</style>\n" + ground +
           text(0, 22, chart.title, colour::text, "start", " font-size=\"14\" font-weight=\"600\"") + drawn);
   file.commit();
 }

@@ -38,11 +38,12 @@ std::string filled(const char* text, const nlohmann::json& content) {
 }  // namespace
 
 std::string whole_page(const std::string& title, const std::string& style, const std::string& body) {
-  return filled(page_template, {{"title", title}, {"style", page_palette + style}, {"body", body}});
+  return filled(page_file("page.html"),
+                {{"title", title}, {"style", page_file("palette.css") + style}, {"body", body}});
 }
 
-std::string text_page(const char* body_template, const nlohmann::json& content) {
-  return whole_page(content.at("title"), text_style, filled(body_template, content));
+std::string text_page(const std::string& body, const nlohmann::json& content) {
+  return whole_page(content.at("title"), page_file("text.css"), filled(page_file(body), content));
 }
 
 }  // namespace programs

@@ -8,19 +8,15 @@
 
 namespace programs {
 
-// Files of this repository, compiled in (page/CMakeLists.txt).
-extern const char* const page_template;           ///< page/page.html, in the language of mustache
-extern const char* const page_palette;            ///< page/palette.css
-extern const char* const text_style;              ///< page/text.css: a page of text, tables and charts
-extern const char* const training_page_template;  ///< training/training_page.html
-extern const char* const beyond_page_template;    ///< study/beyond_page.html
-extern const char* const loop_page_template;      ///< study/loop_page.html
+/// A file of this repository, compiled in (page/CMakeLists.txt): page.html, palette.css, text.css (the style of text,
+/// tables and charts), or a body `<room>/<name>_page.html`, by its name without the room. Throws std::out_of_range.
+const char* page_file(const std::string& name);
 
 /// A page of its title as text, and its style and body as they are.
 std::string whole_page(const std::string& title, const std::string& style, const std::string& body);
 
-/// A page of text: `body_template` filled with the content, whose "title" is the page's. Text is escaped where the
-/// template has two braces.
-std::string text_page(const char* body_template, const nlohmann::json& content);
+/// A page of text: the body of that name, such as "training_page.html", filled with the content, whose "title" is the
+/// page's. Text is escaped where the body, a template of mustache, has two braces. Throws as page_file().
+std::string text_page(const std::string& body, const nlohmann::json& content);
 
 }  // namespace programs

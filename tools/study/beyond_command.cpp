@@ -14,15 +14,15 @@
 #include "airframe/choice.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/interrupt.hpp"
-#include "page/page.hpp"
-#include "study/beyond_picture.hpp"
-#include "study/beyond_summary.hpp"
+#include "study/beyond_conditions.hpp"
+#include "study/beyond_models.hpp"
+#include "study/beyond_rows.hpp"
 #include "study/campaign.hpp"
 
 namespace {
 
 struct BeyondOptions {
-  std::string out, shard = "1/1", airframe = study::Airframe::name;
+  std::string out, airframe = study::Airframe::name;
   std::vector<std::string> conditions, models, flights;
   int seeds = 10, epochs = study::paper_epochs, flight_count = 3;
   std::uint64_t flight_seed = study::first_flight_seed;
@@ -92,61 +92,6 @@ std::string name_of_file(const std::string& path, const std::set<std::string>& t
   return name;
 }
 
-/// The page and beyond.json.
-void write_found(const std::string& out, const study::Plan& plan, const std::vector<study::Condition>& conditions,
-                 const std::vector<study::BeyondModel>& models, const nlohmann::json& found) {
-  nlohmann::json content = {{"title", "Beyond the paper"},
-                            {"seeds", plan.seeds},
-                            {"flights", plan.flights},
-                            {"epochs", plan.epochs},
-                            {"conditions", nlohmann::json::array()}};
-  for (const study::Condition& condition : conditions) {
-    if (!found.contains(condition.name)) continue;
-    const nlohmann::json& of_models = found[condition.name];
-    nlohmann::json tables = nlohmann::json::array();
-    for (const study::BeyondTable& table : study::beyond_tables()) {
-      if (!study::has_table(table, of_models)) continue;
-      nlohmann::json lines = nlohmann::json::array();
-      for (const study::BeyondModel& model : models) {
-        if (!of_models.contains(model.name)) continue;
-        lines.push_back({{"cells", study::beyond_line(table, model.name, of_models[model.name])}});
-      }
-      tables.push_back({{"titles", study::beyond_titles(table)}, {"lines", lines}});
-    }
-    content["conditions"].push_back({{"name", condition.name},
-                                     {"summary", condition.summary},
-                                     {"ratios", programs::inline_svg(study::ratios_chart(of_models, models))},
-                                     {"tables", tables}});
-  }
-  pinnquad::AtomicFile page(out + "/beyond.html"), json(out + "/beyond.json");
-  page.stream() << programs::text_page(programs::beyond_page_template, content);
-  json.stream() << found.dump(2) << '\n';
-  page.commit();
-  json.commit();
-}
-
-void print_found(const std::vector<study::Condition>& conditions, const std::vector<study::BeyondModel>& models,
-                 const nlohmann::json& found) {
-  const auto print = [](const std::vector<std::string>& cells) {
-    std::printf("  %-24s", cells.front().c_str());
-    for (std::size_t i = 1; i < cells.size(); ++i) std::printf(" %16s", cells[i].c_str());
-    std::printf("\n");
-  };
-  for (const study::Condition& condition : conditions) {
-    if (!found.contains(condition.name)) continue;
-    std::printf("%s: %s\n", condition.name.c_str(), condition.summary.c_str());
-    for (const study::BeyondTable& table : study::beyond_tables()) {
-      if (!study::has_table(table, found[condition.name])) continue;
-      print(study::beyond_titles(table));
-      for (const study::BeyondModel& model : models) {
-        if (found[condition.name].contains(model.name)) {
-          print(study::beyond_line(table, model.name, found[condition.name][model.name]));
-        }
-      }
-    }
-  }
-}
-
 int run(const BeyondOptions& options) {
   if (options.out.empty()) throw std::invalid_argument("--out DIR is needed (see --help)");
   std::vector<study::Condition> conditions = study::chosen_conditions(study::flown_conditions(), options.conditions);
@@ -173,13 +118,12 @@ int run(const BeyondOptions& options) {
   plan.flights = options.flight_count;
   plan.flight_seed = options.flight_seed;
   plan.best_weights = true;
-  plan.shard = study::parse_shard(options.shard);
   plan.format = {study::beyond_header(), study::beyond_row};
   plan.fly = [given](const programs::StudyFlight& id) {
     const auto found = given->find(id.name);
     return found == given->end() ? study::fly_for_beyond(id) : found->second;
   };
-  plan.facts = {{"columns", plan.format.header}, {"network", "see models"}};
+  plan.facts = {{"network", "see models"}};
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     for (const study::BeyondModel& model : models) {
       if (takes_part(model, conditions[i])) {
@@ -190,11 +134,7 @@ int run(const BeyondOptions& options) {
   study::Campaign campaign(plan, options.out,
                            options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()));
   campaign.run();
-  if (plan.shard.count > 1) return 0;
-  const nlohmann::json found = study::beyond_json(campaign.rows());
-  print_found(conditions, models, found);
-  write_found(options.out, plan, conditions, models, found);
-  study::draw_found(options.out + "/beyond.svg", found, conditions);
+  std::printf("its report  pinnquad-study-report %s\n", options.out.c_str());
   return 0;
 }
 
@@ -204,10 +144,9 @@ programs::Command programs::beyond_command(CLI::App& program) {
   CLI::App* line =
       program.add_subcommand("beyond",
                              "What goes beyond the paper: structured models beside its network, condition by "
-                             "condition; rows.csv, beyond.html, beyond.json");
+                             "condition, as rows of DIR/rows.csv");
   const auto options = std::make_shared<BeyondOptions>();
-  add_path(*line, "--out", options->out, "DIR",
-           "folder of rows.csv, study.json, beyond.html, beyond.json and beyond.svg");
+  add_path(*line, "--out", options->out, "DIR", "folder of rows.csv and study.json");
   line->add_option("--conditions", options->conditions, "some of the conditions (default: all; with --flight none)")
       ->delimiter(',');
   line->add_option("--models", options->models, "some of the models beside the paper's network (default: all)")
@@ -222,7 +161,6 @@ programs::Command programs::beyond_command(CLI::App& program) {
       ->type_name("N");
   add_number(*line, "--threads", options->threads, 1u, 1024u, "trainings at once (default: all cores)")
       ->default_str("");
-  line->add_option("--shard", options->shard, "run part i of n only, for job arrays")->type_name("i/n");
   line->footer(study::exit_codes);
   return {line, [options] { return run(*options); }};
 }

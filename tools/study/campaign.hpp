@@ -24,7 +24,7 @@ namespace study {
 
 /// Of the commands that train, for their help.
 inline constexpr const char* exit_codes =
-    "Exit codes: 0 all trainings are there, whatever the verdicts; 1 (merge) some are missing; 2 bad input or a file "
+    "Exit codes: 0 all trainings are there, whatever the verdicts; 2 bad input or a file "
     "that can't be read or written; 130 interrupted: the same command goes on.";
 
 /// One training to run.
@@ -35,7 +35,7 @@ struct Job {
   RowId id() const { return {contender->id, contender->flight, assignment.flight_seed, assignment.seed}; }
 };
 
-/// All trainings of a plan in the order of its rows, without regard to shards.
+/// All trainings of a plan in the order of its rows.
 inline std::vector<Job> all_jobs(const Plan& plan) {
   std::vector<Job> jobs;
   for (const Contender& contender : plan.contenders) {
@@ -52,16 +52,6 @@ inline std::vector<Job> all_jobs(const Plan& plan) {
     }
   }
   return jobs;
-}
-
-/// Every n-th training from the i-th on: neighbours differ only by their seed, so that the parts take equally long.
-inline std::vector<Job> jobs_of_shard(const std::vector<Job>& jobs, const Shard& shard) {
-  std::vector<Job> part;
-  for (auto i = static_cast<std::size_t>(shard.index - 1); i < jobs.size();
-       i += static_cast<std::size_t>(shard.count)) {
-    part.push_back(jobs[i]);
-  }
-  return part;
 }
 
 /// All flights of a plan, flown now.
@@ -132,7 +122,7 @@ inline void write_series(const std::string& path, const pinnquad::Flight& flight
 class Campaign {
  public:
   Campaign(const Plan& plan, const std::string& out, unsigned threads)
-      : plan_(plan), folder_(out), threads_(threads), jobs_(jobs_of_shard(all_jobs(plan), plan.shard)) {}
+      : plan_(plan), folder_(out), threads_(threads), jobs_(all_jobs(plan)) {}
 
   /// Throws InputError, OutputError, std::invalid_argument, programs::Interrupted; finished rows are kept.
   void run() {

@@ -18,14 +18,13 @@
 #include "pinnquad/version.hpp"
 #include "study/contender.hpp"
 #include "study/rows.hpp"
-#include "study/shard.hpp"
 
 namespace study {
 
 /// Entries of study.json that decide no row.
 inline const std::set<std::string>& run_facts() {
-  static const std::set<std::string> names = {
-      "cpu", "threads", "wall_s", "started", "finished", "trainings", "trainings_finished", "parts"};
+  static const std::set<std::string> names = {"cpu",       "threads",           "wall_s", "started", "finished",
+                                              "trainings", "trainings_finished"};
   return names;
 }
 
@@ -39,7 +38,6 @@ struct Plan {
   int flights = 4;            ///< of the main comparison
   bool best_weights = false;  ///< judged are the weights of the least validation error, where a data set validates
   int patience = 0;           ///< epochs without a lesser validation error after which a training ends; 0: none does
-  Shard shard;
   RowFormat format;
   std::function<pinnquad::Flight(const programs::StudyFlight&)> fly = flown;  ///< or read, made noisy, made heavier
   nlohmann::json facts = nlohmann::json::object();  ///< entries of study.json in place of, and beside, the usual
@@ -79,7 +77,6 @@ inline nlohmann::json configuration(const Plan& plan, const Flights& flights) {
                            {"first_seed", first_seed},
                            {"flight_seed", plan.flight_seed},
                            {"flights_of_main_comparison", plan.flights},
-                           {"shard", std::to_string(plan.shard.index) + "/" + std::to_string(plan.shard.count)},
                            {"airframe", Airframe::name},
                            {"network", "10 x 25 ReLU"},
                            {"weights", weights_name(plan.best_weights)},
@@ -95,13 +92,10 @@ inline nlohmann::json configuration(const Plan& plan, const Flights& flights) {
 }
 
 /// Where two configurations differ, in words: "epochs is 300 there and 100 here"; empty if they don't. Facts of the run
-/// do not count, nor do the entries in `ignored`.
-inline std::string difference(const nlohmann::json& there, const nlohmann::json& here,
-                              const std::set<std::string>& ignored = {}) {
+/// do not count.
+inline std::string difference(const nlohmann::json& there, const nlohmann::json& here) {
   const auto deciding = [&](nlohmann::json configuration) {
-    for (const auto* names : {&run_facts(), &ignored}) {
-      for (const std::string& name : *names) configuration.erase(name);
-    }
+    for (const std::string& name : run_facts()) configuration.erase(name);
     return configuration;
   };
   const nlohmann::json a = deciding(there), b = deciding(here);
@@ -140,9 +134,7 @@ inline nlohmann::json read_configuration(const std::string& path) {
     const auto fact = [&read](const char* name, const nlohmann::json& otherwise) {
       return read.value(name, otherwise);
     };
-    return fact("wall_s", 0.0).is_number() && fact("threads", 1).is_number() && fact("parts", 1).is_number() &&
-           fact("columns", "").is_string() && fact("started", "").is_string() && fact("cpu", "").is_string() &&
-           fact("weights", "").is_string();
+    return fact("wall_s", 0.0).is_number() && fact("threads", 1).is_number() && fact("started", "").is_string();
   };
   if (!read.is_object() || !facts_are_usual())
     throw pinnquad::InputError(path, 0, 0, "the settings of a study as JSON", "something else");

@@ -18,8 +18,6 @@
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "study/loop_controllers.hpp"
-#include "study/loop_page.hpp"
-#include "study/loop_summary.hpp"
 
 namespace study {
 
@@ -260,12 +258,18 @@ nlohmann::json run_campaign(const LoopCampaign& plan) {
     }
     result["rows"].push_back(row);
   }
-  result["summary"] = loop_summary(result["rows"]);
-  AtomicFile json(plan.out + "/loop.json"), page(plan.out + "/loop.html");
+  const auto describe = [&result](const char* key, const auto& all, const std::vector<std::string>& names) {
+    result[key] = nlohmann::json::array();
+    for (const auto& each : all) {
+      if (std::find(names.begin(), names.end(), each.name) == names.end()) continue;
+      result[key].push_back({{"name", each.name}, {"summary", each.summary}});
+    }
+  };
+  describe("controllers", studied_controllers(), plan.controllers);
+  describe("conditions", loop_conditions, plan.conditions);
+  AtomicFile json(plan.out + "/loop.json");
   json.stream() << result.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-  page.stream() << loop_page(result);
   json.commit();
-  page.commit();
   return result;
 }
 

@@ -16,7 +16,6 @@
 #include "loop/loop_model.hpp"
 #include "study/loop_campaign.hpp"
 #include "study/loop_controllers.hpp"
-#include "study/loop_summary.hpp"
 #include "study/wrench_block.hpp"
 
 namespace study {
@@ -80,9 +79,12 @@ int loop(const LoopOptions& options) {
   if (options.json) {
     std::printf("%s\n", result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
-    print_loop_tables(result);
-    std::printf("%zu flights, in %s/loop.json; to look at: %s/loop.html\n", result["rows"].size(),
-                printable(options.out).c_str(), printable(options.out).c_str());
+    for (const std::string& warning : programs::bias_warnings(result["rows"])) {
+      std::printf("warning: %s\n", warning.c_str());
+    }
+    const std::string out = printable(options.out);
+    std::printf("%zu flights, in %s/loop.json\nits report  pinnquad-study-report %s\n", result["rows"].size(),
+                out.c_str(), out.c_str());
   }
   return 0;
 }
@@ -129,12 +131,12 @@ programs::Command loop_command(CLI::App& program) {
   number("--delay", options->delay_ms, 0.0, 200.0, "of what controllers see, ms");
   number("--threads", options->threads, 1u, 1024u, "flights at once (default: all cores)")->default_str("");
   line->add_flag("--json", options->json, "the figures as JSON");
-  line->add_option("--out", options->out,
-                   "folder of the comparison: loop.json, loop.html; the same command goes on in it")
+  line->add_option("--out", options->out, "folder of the comparison: loop.json; the same command goes on in it")
       ->type_name("FOLDER");
   line->footer(described("Controllers:", studied_controllers()) + described("Conditions:", programs::loop_conditions) +
                "Examples:\n"
                "  pinnquad-study loop model.block --controllers pid,adaptive --seeds 2 --out compared\n"
+               "  pinnquad-study-report compared     tables with intervals, ratios, pictures\n"
                "Exit codes: 0; 2 bad input or a file that can't be read or written; 130 interrupted: the same command\n"
                "goes on.");
   return {line, [options] { return loop(*options); }};

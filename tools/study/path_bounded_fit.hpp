@@ -97,7 +97,7 @@ auto fit_path_bounded(const ContextType& context, const RowSet& training, const 
                       double share = 0.9) {
   using Features = typename ContextType::Features;
   using Predictor = PathBoundedPredictor<Features, Residual>;
-  const ResidualKind kind = pinnquad::detail::residual_kind<Residual, Residual, Predictor, MonotoneBase<Features>>(
+  const ResidualKind kind = pinnquad::detail::residual_kind<Residual, Predictor, MonotoneBase<Features>>(
       true, [projection = detail::PathProjection<ContextType, Residual>(context, map, share)](auto& trained) {
         trained.project(projection);
       });

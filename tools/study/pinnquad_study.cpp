@@ -3,7 +3,6 @@
 // for Table 3), the ablation, what goes beyond the paper, and controllers compared in the loop. report.py writes the
 // report.
 //   pinnquad-study paper --seeds 20 --out DIR
-//   pinnquad-study merge DIR... --out DIR
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -23,7 +22,6 @@
 #include "study/campaign.hpp"
 #include "study/flights.hpp"
 #include "study/loop_command.hpp"
-#include "study/merge.hpp"
 #include "study/summary.hpp"
 #include "study/table.hpp"
 #include "study/wrench_command.hpp"
@@ -33,9 +31,7 @@ namespace {
 struct StudyOptions {
   std::string out;
   std::string models;
-  std::string shard = "1/1";
   std::string weights = "final";
-  std::vector<std::string> parts;
   std::vector<std::string> variants;
   int seeds = study::paper_seeds;
   int epochs = study::paper_epochs;
@@ -60,9 +56,6 @@ void add_campaign_options(CLI::App& app, StudyOptions& options) {
   add_number(app, "--patience", options.patience, 0, 100000,
              "end a training after this many epochs without a lesser validation error; 0: never");
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
-  app.add_option("--shard", options.shard, "run part i of n only, for job arrays (docs/study.md)")
-      ->type_name("i/n")
-      ->capture_default_str();
 }
 
 int run_campaign(const StudyOptions& options, const char* kind, std::vector<study::Contender> contenders) {
@@ -76,13 +69,11 @@ int run_campaign(const StudyOptions& options, const char* kind, std::vector<stud
   plan.best_weights = options.weights == "best";
   plan.patience = options.patience;
   plan.flight_seed = options.flight_seed;
-  plan.shard = study::parse_shard(options.shard);
   study::Campaign campaign(plan, options.out,
                            options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()));
   campaign.run();
   study::print_summary(plan, campaign.rows());
-  // a shard's rows are for merge; an ablation is no Table 3
-  if (plan.kind != "table 2" || options.shard != "1/1") return 0;
+  if (plan.kind != "table 2") return 0;  // an ablation is no Table 3
   programs::keeping("all trainings are in " + options.out +
                         "/rows.csv, pictures of its flights are missing; the same "
                         "command goes on",
@@ -110,8 +101,6 @@ programs::Command paper_command(CLI::App& program) {
   line->footer(std::string("Examples:\n"
                            "  pinnquad-study paper --seeds 20 --out study\n"
                            "  pinnquad-study paper --models 2,4,5-8 --epochs 100 --out part\n"
-                           "  pinnquad-study paper --shard 2/8 --out study/2       part 2 of 8, for a job array\n"
-                           "  pinnquad-study merge study/* --out study/all         joins such parts\n"
                            "The same command goes on where it was stopped or killed.\n") +
                study::exit_codes);
   return {line, [options] { return run_campaign(*options, "table 2", study::chosen_models(options->models)); }};
@@ -128,23 +117,12 @@ programs::Command ablation_command(CLI::App& program) {
   return {line, [options] { return run_campaign(*options, "ablation", study::chosen_variants(options->variants)); }};
 }
 
-programs::Command merge_command(CLI::App& program) {
-  CLI::App* line = program.add_subcommand("merge", "Joins the folders of a study's shards into one");
-  const auto options = std::make_shared<StudyOptions>();
-  line->add_option("parts", options->parts, "folders to join")->type_name("DIR")->required();
-  programs::add_path(*line, "--out", options->out, "DIR", "folder to write")->required();
-  line->footer(
-      "Exit codes: 0 all trainings are there; 1 some are missing; 2 bad input, parts of different studies, or a file "
-      "that can't be read or written; 130 interrupted, nothing written.");
-  return {line, [options] { return study::merge(options->parts, options->out); }};
-}
-
 int run(int argument_count, char** arguments, std::string& name) {
   CLI::App program("The paper's campaign: its models trained and judged, seed by seed", name);
   program.fallthrough();  // --config may stand anywhere
-  const std::vector<programs::Command> commands = {
-      paper_command(program),       ablation_command(program),      programs::beyond_command(program),
-      study::loop_command(program), study::wrench_command(program), merge_command(program)};
+  const std::vector<programs::Command> commands = {paper_command(program), ablation_command(program),
+                                                   programs::beyond_command(program), study::loop_command(program),
+                                                   study::wrench_command(program)};
   program.footer(
       std::string("Examples:\n"
                   "  pinnquad-study paper --seeds 20 --out study       the study; then its report:\n"

@@ -1,26 +1,23 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Writes the report of a study that `pinnquad-study paper` ran.
+"""Writes the report of a folder that `pinnquad-study paper`, `beyond` or `loop` wrote.
 
     pinnquad-study paper --seeds 20 --out study
     tools/study/report.py study          installed: pinnquad-study-report study
 
-Reads DIR/rows.csv, study.json and series/; writes DIR/report.html, report.json, table3.csv, comparisons.csv and
-claims.csv, all or none. Needs Debian's python3-numpy, python3-matplotlib and python3-jinja2. Exit code: 0 written,
+Reads DIR/loop.json, or DIR/study.json, rows.csv and series/; writes DIR/report.html and report.json, for the paper's
+study also table3.csv, comparisons.csv and claims.csv, all or none. Needs Debian's python3-numpy, python3-matplotlib and python3-jinja2. Exit code: 0 written,
 whatever its verdicts; 1 without these packages; 2 bad input or a file that can't be read or written; 130 interrupted,
 nothing written.
 """
 import argparse
 import base64
-import contextlib
 import csv
-import html
 import importlib.util
 import io
 import json
 import math
 import os
-import re
 import signal
 import sys
 from pathlib import Path
@@ -29,35 +26,14 @@ missing = [name for name in ("numpy", "matplotlib", "jinja2") if importlib.util.
 if missing:
     sys.exit(f"{Path(sys.argv[0]).name}: no {missing[0]} here. On Debian or Ubuntu, as root: apt-get install python3-" +
              " python3-".join(missing))
-import jinja2  # noqa: E402
-
+import report_beyond  # noqa: E402
+import report_loop  # noqa: E402
 from report_claims import (  # noqa: E402
     CLAIMS, DISCUSSIONS, EPOCHS, ERROR, INFORMED_S, MEASURES, PAIRS, SEEDS, SUSPECT, TABLE_2, TABLE_3, VANILLA_S,
     VERDICTS, all_comparisons, compare, further_comparisons, judged_claims, mean_and_deviation, model_words, pair_text,
     paper_change)
+from report_page import BadOutput, json_file, quantity, shown, shown_p, whole_page, write_all  # noqa: E402
 from report_rows import MODELS, BadInput, Settings, Study, read_bytes, read_rows, read_series  # noqa: E402
-
-HERE = Path(__file__).resolve().parent
-PAGE = HERE.parent / "page"
-
-
-# Figures in the page's signs.
-
-def shown(value, decimals, plus=False):
-    return f"{value:{'+' * plus}.{decimals}f}".replace("-", "−") if math.isfinite(value) else "–"
-
-
-def quantity(text):
-    text = "−" + text[1:] if text.startswith("-") else text
-    return text.replace("e-3", "×10⁻³").replace(" deg", "°").replace(" %", "\u00a0%")
-
-
-def shown_p(p):
-    """Two significant figures; powers of ten below a thousandth."""
-    if p >= 0.001:
-        return f"{p:.{2 if p >= 0.1 else 3}f}"
-    digits, power = f"{p:.1e}".split("e-")
-    return digits + "×10⁻" + str(int(power)).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
 def kind_of(says):
@@ -317,14 +293,7 @@ def page(figures, study, settings, series, comparisons):
         "errors_d2": report_charts.errors(study, (11, 12), "Test error on D2, with ground effect"),
         "errors_d3": report_charts.errors(study, (13, 14), "Test error on D3, with periodic wind")}
 
-    def without_control(value):  # HTML has no place for them
-        return re.sub(r"[\x00-\x1f\x7f]", " ", value) if type(value) is str else value
-
-    body = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined,
-                              finalize=without_control).from_string((HERE / "report.html").read_text())
-    parts = {"title": html.escape(figures["title"]), "body": body.render(figures, drawings=drawings),
-             "style": (PAGE / "palette.css").read_text() + (PAGE / "text.css").read_text()}
-    return re.sub(r"\{\{\{?(\w+)\}?\}\}", lambda name: parts[name[1]], (PAGE / "page.html").read_text())
+    return whole_page("report.html", figures, drawings)
 
 
 def csv_text(head, rows):
@@ -374,31 +343,6 @@ def claims_csv(claims):
     return csv_text(["id", "discussion", "verdict", "statement", "rule", "figures"], rows)
 
 
-class BadOutput(Exception):
-    pass
-
-
-def write_all(folder, files):
-    """All are whole beside their places before the first is put there; a link's target is replaced."""
-    with contextlib.ExitStack() as abandoned:
-        whole = []
-        for name, text in files.items():
-            path = folder / name
-            target = path.resolve()
-            partial = target.with_name(f"{target.name}.partial-{os.getpid()}")
-            try:
-                if target.is_dir() or target.exists() and not os.access(target, os.W_OK):
-                    why = "a folder" if target.is_dir() else "write-protected"
-                    raise BadOutput(f"cannot write {path}: it is {why}")
-                abandoned.callback(partial.unlink, missing_ok=True)
-                partial.write_text(text, encoding="utf-8")
-            except OSError as error:
-                raise BadOutput(f"cannot write {path}: {error.strerror}") from None
-            whole.append((partial, target))
-        for partial, target in whole:
-            partial.replace(target)
-
-
 def judged(folder):
     """What stands in the folder, judged: all that the page says, and what it says it of."""
     settings = Settings(folder / "study.json")
@@ -410,12 +354,35 @@ def judged(folder):
     return figures, study, settings, series, comparisons, further, claims
 
 
-def report(folder):
+def report_paper(folder):
     figures, study, settings, series, comparisons, further, claims = judged(folder)
     write_all(folder, {
         "report.html": page(figures, study, settings, series, comparisons),
-        "report.json": json.dumps(figures, indent=2, ensure_ascii=False) + "\n", "table3.csv": table3_csv(study),
+        "report.json": json_file(figures), "table3.csv": table3_csv(study),
         "comparisons.csv": comparisons_csv(comparisons, further), "claims.csv": claims_csv(claims)})
+
+
+def report_sections(folder, module):
+    """A page of sections: drawings and tables. Prints its tables."""
+    figures, drawings = module.judged(folder)
+    write_all(folder, {"report.html": whole_page("report_sections.html", figures, drawings()),
+                       "report.json": json_file(figures)})
+    for section in figures["sections"]:
+        for table in section["tables"] if section["told"] else []:
+            widths = [max(len(line[at]) for line in (table["titles"], *table["lines"]))
+                      for at in range(len(table["titles"]))]
+            print(": ".join(filter(None, (section["name"], section["words"]))) + f"\n  {table['name']}")
+            for first, *cells in table["titles"], *table["lines"]:
+                print(" ", first.ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(cells, widths[1:])))
+
+
+def report(folder):
+    if os.path.exists(folder / "loop.json"):  # False for a name that is too long, where Path.exists() raises
+        report_sections(folder, report_loop)
+    elif report_beyond.is_beyond(folder):
+        report_sections(folder, report_beyond)
+    else:
+        report_paper(folder)
 
 
 class Parser(argparse.ArgumentParser):
@@ -439,6 +406,9 @@ def main():
     except (BadInput, BadOutput) as error:
         print(f"{parser.prog}: {''.join(c if c.isprintable() else '?' for c in str(error))}", file=sys.stderr)
         return 2
+    except BrokenPipeError:  # the report is written; who read the tables left
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except KeyboardInterrupt:
         print(f"{parser.prog}: interrupted; nothing was written", file=sys.stderr)
         return 130

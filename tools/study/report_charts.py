@@ -18,6 +18,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.patches import PathPatch  # noqa: E402
 from matplotlib.path import Path as Line  # noqa: E402
+from matplotlib.ticker import NullFormatter  # noqa: E402
 
 from report_claims import ERROR, TABLE_2, TABLE_3, mean_and_deviation, model_words, paper_change  # noqa: E402
 from report_rows import AXES  # noqa: E402
@@ -78,6 +79,75 @@ def rows_of(axes, names):
     axes.set_ylim(len(names) - 0.5, -0.5)
     axes.grid(False, axis="y")
     axes.tick_params(axis="y", length=0)
+
+
+def marks(title, description, label, rows, series, line=None, styled=None):
+    """A line for each of `rows`, a mark for each series ({name: {row: value}}) on it; a logarithmic axis. Nothing where
+    there is no value. `styled`: names in the order of their marks, where drawings share them."""
+    if not series:
+        return ""
+    styles = dict(zip(styled or series, zip(itertools.cycle((ORANGE, BLUE, GREEN, AMBER, RED, VIOLET)),
+                                            itertools.cycle("osD^P"))))
+
+    def draw(width):
+        columns = 4 if width == WIDE else 2
+        figure = Figure((width, 0.8 + 0.24 * -(-len(series) // columns) + 0.36 * len(rows)))
+        axes = figure.subplots()
+        if line is not None:
+            axes.axvline(line, color=MUTED)
+        for at, name in enumerate(series):
+            colour, mark = styles[name]
+            levels = [rows.index(row) + 0.6 * ((at + 0.5) / len(series) - 0.5) for row in series[name]]
+            axes.plot(list(series[name].values()), levels, mark, color=colour, markersize=5, label=name, alpha=0.8)
+        rows_of(axes, rows)
+        axes.set_xscale("log")
+        axes.xaxis.set_major_formatter(lambda value, at: f"{value:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.set_xlabel(label, loc="right")
+        axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncol=columns)
+        return figure
+    return svg(title, f"{description}.", draw)
+
+
+def lines(title, description, across, up, panels):
+    """{panel: {name: (x, y)}}, one panel beside the other, below each other where the window is narrow."""
+    names = list(dict.fromkeys(name for panel in panels.values() for name in panel))
+    colours = dict(zip(names, itertools.cycle((BLUE, ORANGE, GREEN, AMBER, RED, VIOLET))))
+
+    def draw(width):
+        wide = width == WIDE
+        figure = Figure((width, 3.2 if wide else 3 * len(panels)))
+        grid = figure.subplots(*((1, len(panels)) if wide else (len(panels), 1)), squeeze=False)
+        for axes, (panel, shown) in zip(grid.flat, panels.items()):
+            for name, (x, y) in shown.items():
+                axes.plot(x, y, "-" if names.index(name) < 6 else "--", color=colours[name], label=name)
+            axes.set(title=panel, xlabel=across, ylabel=up)
+            axes.legend(fontsize=8)
+        return figure
+    return svg(title, f"{description}.", draw)
+
+
+def bars(title, label, values, most):
+    """{name: value}; a bar that is longer than `most` is broken there."""
+    if not values:
+        return ""
+    end = min(most, 1.15 * max(values.values()))
+
+    def draw(width):
+        figure = Figure((width, 0.7 + 0.28 * len(values)))
+        axes = figure.subplots()
+        for row, value in enumerate(values.values()):
+            axes.barh(row, value, 0.6, color=BLUE)
+            inside = value > 0.9 * end
+            axes.annotate(f"{value:.2f}", (min(value, end), row), xytext=(-4 if inside else 4, 0), va="center",
+                          ha="right" if inside else "left", textcoords="offset points",
+                          color=PALETTE["background"] if inside else TEXT)
+        axes.axvline(1, color=MUTED, linewidth=1)
+        rows_of(axes, list(values))
+        axes.set_xlim(0, end)
+        axes.set_xlabel(label, loc="right")
+        return figure
+    return svg(title, f"{label}: " + ", ".join(f"{name} {value:.2f}" for name, value in values.items()) + ".", draw)
 
 
 def schedule(settings, epochs):

@@ -34,7 +34,6 @@ inline std::vector<double> column(const StoredRows& stored, const Contender& con
 
 /// Rows are models and flights; mean and deviation over the seeds.
 inline void print_summary(const Plan& plan, const StoredRows& stored) {
-  if (plan.shard.count > 1) return;  // a part says nothing
   std::printf("%-22s %-10s %18s %16s %16s %16s %18s\n", "model", "flight", "error, 1e-3", "roll, deg", "pitch, deg",
               "yaw, deg", "validation, 1e-3");
   for (const Contender& contender : plan.contenders) {

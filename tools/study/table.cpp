@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "command_line/options.hpp"
 #include "study/models.hpp"
-#include "study/shard.hpp"
 
 namespace study {
 
@@ -62,8 +62,10 @@ std::vector<Contender> chosen_models(const std::string& list) {
     begin = end + 1;
     const std::size_t dash = item.find('-');
     int first = 0, last = 0;
-    if (!parse_natural(item.substr(0, dash), first) ||
-        !parse_natural(dash == std::string::npos ? item : item.substr(dash + 1), last) || last < first) {
+    constexpr int greatest = 999999999;
+    if (!programs::parse_decimal(item.substr(0, dash), 0, greatest, first) ||
+        !programs::parse_decimal(dash == std::string::npos ? item : item.substr(dash + 1), 0, greatest, last) ||
+        last < first) {
       throw std::invalid_argument("--models " + list + ": expected numbers and ranges such as 2,4,5-8, found '" + item +
                                   "'");
     }

@@ -18,12 +18,12 @@
 
 namespace programs {
 
-using pinnquad::AxisDerivatives;
+using pinnquad::AxisSlopes;
 
 /// Derivatives of all rows, per axis.
 class DerivativeSigns {
  public:
-  void add(const AxisDerivatives& derivatives) {
+  void add(const AxisSlopes& derivatives) {
     for (std::size_t axis = 0; axis < 3; ++axis) all_[axis].push_back(derivatives[axis]);
   }
   /// NaN where a derivative is not finite in a row, or there are no rows.
@@ -48,7 +48,7 @@ class DerivativeSigns {
   std::array<std::vector<double>, 3> all_;
 };
 
-/// Over rows. `derivatives_of(sample)` gives a row's AxisDerivatives.
+/// Over rows. `derivatives_of(sample)` gives a row's AxisSlopes.
 template <class DerivativesOf>
 DerivativeFigures derivative_figures(const pinnquad::RowSet& rows, const DerivativesOf& derivatives_of) {
   DerivativeSigns signs;
@@ -65,9 +65,9 @@ class FormulaDerivatives {
       : predict_(std::move(predict)),
         signs_{airframe.signs<pinnquad::Roll>(), airframe.signs<pinnquad::Pitch>(), airframe.signs<pinnquad::Yaw>()} {}
 
-  AxisDerivatives operator()(const pinnquad::Sample& sample) const {
+  AxisSlopes operator()(const pinnquad::Sample& sample) const {
     constexpr double step_rad_s2 = 1e-3;
-    AxisDerivatives result{};
+    AxisSlopes result{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto sum_at = [&](double step) {
         pinnquad::Sample moved = sample;

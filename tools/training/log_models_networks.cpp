@@ -2,8 +2,9 @@
 // The paper's network on the paper's features, plain and physics-informed, trained as the study does; of its epochs the
 // one counts that is best on the validation flights.
 #include <memory>
+#include <stdexcept>
 
-#include "training/log_closed_form.hpp"
+#include "training/log_features.hpp"
 #include "training/log_kinds.hpp"
 #include "training/network_kinds.hpp"
 #include "training/paper_network.hpp"
@@ -16,12 +17,17 @@ constexpr int network_epochs = 100;
 
 template <class Features, class Loss>
 std::shared_ptr<const TrainedNetwork> trained(const FitTask& fit, const Loss& loss, double weight_decay) {
-  using Context = LogContext<Features>;
-  const Context context = log_context<Context>(fit, fit.training);
+  using Context = pinnquad::Context<Features, pinnquad::GivenAirframe>;
+  bool any = false;
+  pinnquad::each_features<Features, double>(fit.training,
+                                            [&any](const pinnquad::Flight&, std::size_t, const auto&) { any = true; });
+  if (!any) throw std::invalid_argument("no row has all features that are asked for");
+  const auto context = pinnquad::make_context<Context>(fit.training, fit.given_airframe());
   const auto network = std::make_unique<PaperNetwork<Features>>(trained_network<PaperNetwork<Features>>(
       fit, context, loss, best::optimizer(weight_decay), fit.epochs > 0 ? fit.epochs : network_epochs,
       KeptEpoch::best_on_validation));
-  return log_model_of(*network, context, fit.training);
+  return std::make_shared<ExportableNetwork>(
+      pinnquad::ground_model(pinnquad::make_trained_model(*network, context, fit.training)), fit.training);
 }
 
 std::shared_ptr<const TrainedNetwork> fit_vanilla(const FitTask& fit) {

@@ -1,30 +1,122 @@
 // SPDX-License-Identifier: MIT
 // The structured kinds, for the features that the flights have: velocity and battery where they were measured, the
 // altitude where the validation rows gain by it.
-#include <type_traits>
 
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "command_line/interrupt.hpp"
+#include "pinnquad/deploy/structured_model.hpp"
 #include "training/log_features.hpp"
 #include "training/log_kinds.hpp"
-#include "training/structured_kind.hpp"
 
 namespace programs {
 
 namespace {
 
-/// Of what an asked motion can have, as far as the flights have it.
+/// A structured model, how it was chosen whether it is shown the altitude, and what is known of its slopes. Where they
+/// are by instruments, it is judged by features without their noise.
+class StructuredNetwork : public ExportableNetwork {
+ public:
+  /// Limits of trust are of models without a window, and found by rows that they were not fitted to.
+  StructuredNetwork(pinnquad::GroundModel<float> model, pinnquad::FitContext context, const pinnquad::RowSet& training,
+                    const AltitudeChoice& altitude, const pinnquad::MeasuredSlopes& slopes, bool fits_validation)
+      : ExportableNetwork(std::move(model), training, !context.is_windowed() && !fits_validation),
+        altitude_(altitude),
+        slopes_(slopes),
+        context_(std::move(context)) {}
+  Predictions predictions(const pinnquad::RowSet& rows) const override {
+    if (!slopes_.by_instruments()) return ExportableNetwork::predictions(rows);
+    Predictions result = without_answer(rows);
+    pinnquad::each_denoised(context_, slopes_, rows, [&](std::size_t row, const std::vector<double>& x) {
+      result[row] = this->block()->commands(x);
+    });
+    return result;
+  }
+  Answers answers(const pinnquad::RowSet& rows) const override {
+    Answers result = ExportableNetwork::answers(rows);
+    if (slopes_.by_instruments()) result.predictions = predictions(rows);
+    return result;
+  }
+  AltitudeChoice altitude() const override { return altitude_; }
+  pinnquad::SlopesOfSums slopes() const override { return slopes_.of; }
+
+ private:
+  AltitudeChoice altitude_;
+  pinnquad::MeasuredSlopes slopes_;
+  pinnquad::FitContext context_;
+};
+
+/// Work of fit_structured(): one fit after the other, with progress; Ctrl-C stops it.
+class StructuredWork : public pinnquad::FitWork {
+ public:
+  StructuredWork(const FitTask& task, int epochs) : task_(task), epochs_(epochs) {}
+
+  void run(std::size_t count, const std::function<bool(std::size_t)>& job) const override {
+    fits_ = static_cast<double>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!job(i)) throw Interrupted{};
+      done_ += 1;
+    }
+  }
+  bool goes_on(int epoch) const override {
+    task_.share_done((done_ + static_cast<double>(epoch) / epochs_) / fits_);
+    return !interrupted();
+  }
+
+ private:
+  const FitTask& task_;
+  int epochs_;
+  mutable double fits_ = 1, done_ = 0;
+};
+
+/// As many steps as a recipe takes on the 9,000 training rows of a flight of the paper, over all groups left out.
+int structured_epochs(const FitTask& task) {
+  if (task.epochs > 0) return task.epochs;
+  const double groups = static_cast<double>(pinnquad::left_out_groups(task.training).size());
+  const double rows = static_cast<double>(task.training.size()) * (task.settings.fit_validation ? groups : 1);
+  return std::clamp(static_cast<int>(recipe_epochs * 9000.0 / std::max(rows, 1.0)), 12, recipe_epochs);
+}
+
+pinnquad::StructuredSet structured_set(const FitTask& task, TimeReach reach, bool with_altitude) {
+  using pinnquad::StructuredResidual, pinnquad::detail::residual_trainer;
+  pinnquad::GroundFeatures features = inverse_features(task, reach, with_altitude);
+  const bool few = features.size() - 3 * features.accelerations.size() <= 16;  // else up to 32
+  return pinnquad::structured_set(
+      std::move(features), task.given_airframe(),
+      few ? residual_trainer<StructuredResidual<16>>() : residual_trainer<StructuredResidual<32>>());
+}
+
 template <TimeReach Reach>
 std::shared_ptr<const TrainedNetwork> fit_structured_kind(const FitTask& task) {
-  using namespace pinnquad;
-  const auto fit = [&task](auto lower, auto higher) {
-    using Lower = LogFeatures<Reach, typename decltype(lower)::type, InverseAccelerations>;
-    using Higher = LogFeatures<Reach, typename decltype(higher)::type, InverseAccelerations>;
-    StructuredSets sets{structured_export<Lower>(task.given_airframe())};
-    if constexpr (!std::is_same_v<Lower, Higher>) sets.higher = structured_export<Higher>(task.given_airframe());
-    return fit_structured_on(task, sets);
-  };
-  if (!task.lacks("velocity")) return with_battery<InverseFeatures, InverseFeaturesWithAltitude>(task, fit);
-  using Without = InverseFeaturesWithoutVelocity;
-  return with_battery<Without, Without>(task, fit);
+  using Rule = pinnquad::StructuredSettings::Altitude;
+  pinnquad::StructuredSettings settings;
+  settings.residual.epochs = structured_epochs(task);
+  settings.pinned_slopes = task.settings.pinned_slopes;
+  settings.fit_validation = task.settings.fit_validation;
+  settings.altitude = task.lacks("altitude")    ? Rule::no
+                      : !task.settings.altitude ? Rule::by_validation
+                      : *task.settings.altitude ? Rule::yes
+                                                : Rule::no;
+  settings.first_seed = task.seed;
+  settings.seeds = 1;
+  const pinnquad::StructuredSet lower = structured_set(task, Reach, false);
+  std::optional<pinnquad::StructuredSet> higher;  // none where there is no altitude to choose
+  if (!task.lacks("velocity")) higher = structured_set(task, Reach, true);
+  const pinnquad::RowSplit split{task.training, task.validation, {}};
+  const auto fits = pinnquad::fit_structured(lower, higher ? &*higher : nullptr, split, settings,
+                                             StructuredWork(task, settings.residual.epochs));
+  AltitudeChoice altitude;
+  altitude.applies = higher.has_value();
+  altitude.taken = fits.altitude.taken;
+  altitude.error_with = fits.altitude.error_with.value_or(pinnquad::not_a_number);
+  altitude.error_without = fits.altitude.error_without.value_or(pinnquad::not_a_number);
+  const pinnquad::StructuredModelFit& best = fits.best();
+  const pinnquad::StructuredSet& set = best.with_altitude ? *higher : lower;
+  return std::make_shared<StructuredNetwork>(best.model, set.context(pinnquad::detail::fitted_rows(split, settings)),
+                                             task.training, altitude, best.slopes, settings.fit_validation);
 }
 
 template <TimeReach Reach>
@@ -35,7 +127,7 @@ ModelKind structured(const char* key, const char* title, std::string (*not_appli
           true,
           not_applicable,
           fit_structured_kind<Reach>,
-          fits_validation,
+          [](const FitSettings& settings) { return settings.fit_validation; },
           pinnquad::structured_in_words};
 }
 

@@ -28,6 +28,9 @@ struct FitSettings {
   bool fit_validation = false;    ///< of the structured model: no rows are left to find limits of trust by
 };
 
+/// Epochs of a recipe where --epochs does not say another number.
+inline constexpr int recipe_epochs = 300;
+
 /// The target of a fit.
 struct FitTask {
   const NamedAirframe& airframe;

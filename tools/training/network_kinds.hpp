@@ -53,9 +53,6 @@ using PearsonTerm = pinnquad::Weighted<pinnquad::PearsonCorrelation<Axis>, pinnq
 using PearsonLoss = pinnquad::PhysicsInformed<pinnquad::Mse, PearsonTerm<pinnquad::Roll>, PearsonTerm<pinnquad::Pitch>,
                                               PearsonTerm<pinnquad::Yaw>>;
 
-/// Of a recipe where --epochs does not say another number.
-inline constexpr int recipe_epochs = 300;
-
 namespace detail {
 
 /// `Parts` is what differs between recipes: type Network; losses annealed(), constant(), pearson(); optimisers

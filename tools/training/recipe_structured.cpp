@@ -45,7 +45,8 @@ Recipe structured_recipe() {
       "structured: affine map of " + std::to_string(pinnquad::InverseFeatures::size) + " features, " +
       std::to_string(pinnquad::MonotoneBase<pinnquad::InverseFeatures>::parameter_count) +
       " numbers, and on what it leaves " +
-      network_in_words<pinnquad::detail::StructuredResidual<pinnquad::InverseFeatures>>("2 x 32 ReLU") +
+      network_in_words<pinnquad::StructuredResidual<pinnquad::residual_inputs<pinnquad::InverseFeatures>>>(
+          "2 x 32 ReLU") +
       ", kept where the validation rows gain";
   recipe.still_features = still_features_of_both;
   return recipe;

@@ -519,7 +519,7 @@ inline std::string training_page(const TrainingPage& in) {
         {"ellipses", inline_svg(ellipses_chart(ellipses))}};
     page["moments"] = detail::moments_json(in, shown);
   }
-  return text_page(training_page_template, page);
+  return text_page("training_page.html", page);
 }
 
 }  // namespace programs

@@ -112,7 +112,7 @@ class InverseCore {
     if (report.worst_feature >= 0) {
       const auto worst = static_cast<std::size_t>(report.worst_feature);
       answer.beyond_envelope = static_cast<float>(report.excess[worst]);
-      answer.worst_feature = Model::feature_names[worst];
+      answer.worst_feature = Model::Features::names[worst];
     }
     if (report.squared_distance > 0) answer.squared_distance = static_cast<float>(report.squared_distance);
   }

@@ -11,7 +11,7 @@
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/core/types.hpp"
-#include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/exported/model_facts.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 
@@ -55,10 +55,10 @@ constexpr BiasSettings<Scalar> bias_settings() noexcept {
     return {};
   }
 }
-/// Of a block's records: those of a ModelView, a RunTimeModel.
-template <class Scalar, class Number>
-constexpr BiasSettings<Scalar> bias_settings(const ModelRecords<Number>& records) noexcept {
-  return records.has_bias ? detail::bias_settings_of<Scalar>(records.bias_time_constants_s) : BiasSettings<Scalar>{};
+/// The same of a block's facts: those of a ModelView, a RunTimeModel.
+template <class Scalar>
+constexpr BiasSettings<Scalar> bias_settings(const ModelFacts& facts) noexcept {
+  return facts.has_bias ? detail::bias_settings_of<Scalar>(facts.bias_time_constants_s) : BiasSettings<Scalar>{};
 }
 
 /// Most that the bias changes each command, either way: |A| most, A the inverse of the signs. The bound of a

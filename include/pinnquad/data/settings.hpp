@@ -5,12 +5,10 @@
 #pragma once
 
 #include <limits>
-#include <locale>
-#include <sstream>
-#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
+#include "pinnquad/core/body.hpp"
 #include "pinnquad/core/detected.hpp"
 
 namespace pinnquad {
@@ -37,13 +35,7 @@ constexpr bool has_whole_check() noexcept {
   }
 }
 
-template <class Number>
-[[noreturn]] void refuse_setting(const char* setting, const char* expected, Number found) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << setting << ": expected " << expected << ", found " << found;
-  throw std::invalid_argument(text.str());
-}
+[[noreturn]] void refuse_setting(const char* setting, const char* expected, double found);
 
 /// Usable in constant expressions: there a setting that is refused is a compile error.
 constexpr void expect_finite(const char* setting, double value) {
@@ -68,3 +60,7 @@ constexpr void check_settings(const Policy& policy) {
 }
 
 }  // namespace pinnquad
+
+#ifndef PINNQUAD_COMPILED
+#include "pinnquad/data/impl/settings.hpp"
+#endif

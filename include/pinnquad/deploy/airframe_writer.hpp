@@ -3,11 +3,7 @@
 // only when a program runs becomes a type for the next compiler. Every number reads back bit for bit in double.
 #pragma once
 
-#include <array>
-#include <locale>
-#include <ostream>
-#include <sstream>
-#include <stdexcept>
+#include <iosfwd>
 #include <string>
 
 #include "pinnquad/core/body.hpp"

@@ -16,56 +16,15 @@
 #include <vector>
 
 #include "pinnquad/core/body.hpp"
-#include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/deploy/exact_derivatives.hpp"
 #include "pinnquad/exported/run_time_certificate.hpp"
-#include "pinnquad/exported/stated_certificate.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/text_file.hpp"
+#include "pinnquad/training/ground_features.hpp"
 
 namespace pinnquad {
 
 namespace detail {
-
-/// Motions of a flight's rows as a run-time model asks for them. Throws std::invalid_argument for a flight without a
-/// column that the model asks for.
-template <class Scalar>
-class RunTimeFlightInputs {
- public:
-  using Inputs = RunTimeInputs<Scalar>;
-
-  RunTimeFlightInputs(const RunTimeFeatures& features, const FlightRows& rows) : features_(&features), rows_(rows) {
-    for (int i = 0; i < features.column_count(); ++i) {
-      const auto [name, unit] = features.column(i);
-      columns_.push_back(&column_values(*rows.flight, std::string(name), std::string(unit)));
-    }
-  }
-
-  /// `taps`: as many as the window has, the present first. False where the rows do not hold them.
-  bool read(std::size_t row, Inputs* taps) const {
-    taps[0] = present(row);
-    const RunTimeWindow& window = features_->window();
-    const auto read_row = [this](std::size_t i, Inputs& inputs) {
-      inputs = present(i);
-      return true;
-    };
-    return window.taps == 1 || read_window<Scalar>(window, rows_, row, read_row, taps + 1);
-  }
-
-  /// Of a row alone.
-  Inputs present(std::size_t row) const {
-    Inputs inputs;
-    static_cast<MotionInputsWithAltitude<Scalar>&>(inputs) =
-        sample_inputs<MotionInputsWithAltitude<Scalar>>((*rows_.flight)[row]);
-    for (std::size_t i = 0; i < columns_.size(); ++i) inputs.columns[i] = static_cast<Scalar>((*columns_[i])[row]);
-    return inputs;
-  }
-
- private:
-  const RunTimeFeatures* features_;
-  FlightRows rows_;
-  std::vector<const std::vector<double>*> columns_;
-};
 
 /// No activation, no bound.
 bool is_affine(const RunTimeNetwork& network);
@@ -74,8 +33,8 @@ bool is_affine(const RunTimeNetwork& network);
 
 /// The answer of a model to a row.
 struct AnsweredRow {
-  Commands<double> commands{};    ///< in the model's own scalar
-  AxisDerivatives derivatives{};  ///< in double; of a window by an acceleration that is held
+  Commands<double> commands{};  ///< in the model's own scalar
+  AxisSlopes derivatives{};     ///< in double; of a window by an acceleration that is held
   bool inside_envelope = true;
   std::vector<double> features{};  ///< in physical units, as the model's own scalar holds them
 };
@@ -90,7 +49,7 @@ enum class SignProof {
 /// s^2/rad: by the present angular acceleration alone, and by one that is held over the window.
 struct ProvenSigns {
   SignProof by = SignProof::structure;
-  AxisDerivatives slope{}, held_slope{};
+  AxisSlopes slope{}, held_slope{};
 };
 
 /// A block of a file, ready to predict: in float or double, as it was written.
@@ -158,7 +117,7 @@ class BlockModel {
 
   /// Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of all taps is
   /// moved; else the present alone.
-  AxisDerivatives derivatives(const std::vector<double>& x, bool held = true) const;
+  AxisSlopes derivatives(const std::vector<double>& x, bool held = true) const;
 
   /// Calls `take(row, AnsweredRow)` for the rows that have features, `row` counted through the set. Throws
   /// std::invalid_argument for a flight without a column that the model asks for.

@@ -60,8 +60,8 @@ std::vector<std::string> provenance_texts(const WrittenRecords& records);
 template <class Scalar>
 std::vector<std::uint64_t> unrounded_numbers(const WrittenRecords& records) {
   const auto exact = [](double value, double held) { return double_bits(value) == double_bits(held); };
-  const double lower = records.command_lower, upper = records.command_upper;
-  const double period = records.sample_period_s, lag = records.lag_removed_s;
+  const double lower = records.facts.command_lower, upper = records.facts.command_upper;
+  const double period = records.facts.sample_period_s, lag = records.facts.lag_removed_s;
   bool same = exact(lower, static_cast<double>(static_cast<Scalar>(lower))) &&
               exact(upper, static_cast<double>(static_cast<Scalar>(upper))) &&
               exact(period, seconds_of(nanoseconds(period))) && exact(lag, seconds_of(nanoseconds(lag)));
@@ -109,9 +109,10 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
     out.append(body.bytes);
     ++count;
   };
-  record(BlockRecord::commands, mandatory, static_cast<std::uint32_t>(records.command_meaning.value()), nothing,
-         records.command_lower, records.command_upper);
-  record(BlockRecord::clock, mandatory, nanoseconds(records.sample_period_s), nanoseconds(records.lag_removed_s));
+  const ModelFacts& facts = records.facts;
+  record(BlockRecord::commands, mandatory, static_cast<std::uint32_t>(facts.command_meaning), nothing,
+         facts.command_lower, facts.command_upper);
+  record(BlockRecord::clock, mandatory, nanoseconds(facts.sample_period_s), nanoseconds(facts.lag_removed_s));
   record(BlockRecord::window, mandatory, records.window_taps, std::uint32_t{records.causal});
   if (!records.column_names.empty()) {
     std::vector<std::string> texts;
@@ -120,17 +121,8 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
   }
   record(BlockRecord::allocation, mandatory, records.allocation);
   if (!records.base.empty()) record(BlockRecord::base, mandatory, records.base);
-  if (records.judged) record(BlockRecord::verdict, optional, *records.judged, nothing);
-  if (records.slope_signs) {
-    std::vector<signed char> signs;
-    for (const auto& rotor : *records.slope_signs) signs.insert(signs.end(), rotor.begin(), rotor.end());
-    record(BlockRecord::slope_signs, optional, signs);
-  }
-  if (records.residual_range) {
-    record(BlockRecord::residual_range, optional, records.residual_range->lower, records.residual_range->upper);
-  }
-  if (const auto& distance = records.distance) {
-    record(BlockRecord::distance, optional, distance->mean, distance->inverse_cholesky, distance->limit);
+  if (facts.has_verdict) {
+    record(BlockRecord::verdict, optional, judged_bits(facts.worse_than_mean, facts.beats_linear_regression), nothing);
   }
   record(BlockRecord::answer, mandatory, records.answer);
   record(BlockRecord::features, mandatory, closed(records.feature_texts));
@@ -146,21 +138,10 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
            double_bits(trust->residual_factor), double_bits(trust->residual_limit),
            double_bits(trust->residual_cleared), double_bits(trust->update_period_s), trust->mean, trust->whitening);
   }
-  if (const auto& proven = records.certificate) {
-    std::vector<std::uint64_t> numbers;
-    const auto add = [&](const auto& values) {
-      for (const double value : values) numbers.push_back(double_bits(value));
-    };
-    add(proven->slope);
-    add(proven->held_slope);
-    add(std::array<double, 2>{proven->thrust_slope, proven->held_thrust_slope});
-    add(proven->command_bound);
-    record(BlockRecord::certificate, optional, numbers);
-  }
   if (const auto numbers = unrounded_numbers<Scalar>(records); !numbers.empty()) {
     record(BlockRecord::unrounded, optional, numbers);
   }
-  if (records.bias_time_constants_s) record(BlockRecord::bias, optional, *records.bias_time_constants_s);
+  if (facts.has_bias) record(BlockRecord::bias, optional, facts.bias_time_constants_s);
   const std::vector<unsigned char> provenance = closed(provenance_texts(records));
   if (provenance.size() > longest_provenance) {
     throw std::invalid_argument("export: name, training data and loss of a model are too long together");

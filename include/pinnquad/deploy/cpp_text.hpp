@@ -13,8 +13,8 @@
 
 #include "pinnquad/core/body.hpp"
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/core/type_text.hpp"
 #include "pinnquad/io/file_error.hpp"
+#include "pinnquad/training/described_predictor.hpp"
 
 namespace pinnquad {
 
@@ -54,14 +54,6 @@ inline constexpr std::string_view taken_names[] = {
 bool is_identifier(std::string_view name);
 /// Throws std::invalid_argument for a name that is none; `what` was given it.
 void require_identifier(const std::string& what, const std::string& name);
-
-/// "pinnquad::Network<float, pinnquad::InputSize<16>, ...>" (core/type_text.hpp), lists closed as ">>".
-template <class T>
-std::string type_name() {
-  std::string name(detail::type_text<T>());
-  for (std::size_t at = name.find("> >"); at != std::string::npos; at = name.find("> >", at)) name.erase(at + 1, 1);
-  return name;
-}
 
 namespace detail {
 

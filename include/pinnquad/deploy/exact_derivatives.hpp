@@ -11,11 +11,9 @@
 #include "pinnquad/exported/run_time_certificate.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/nn/kernel/pack.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 
 namespace pinnquad {
-
-/// d(signed command sum) / d(angular acceleration) about roll, pitch and yaw, s^2/rad.
-using AxisDerivatives = std::array<double, 3>;
 
 /// A feature that shows the angular acceleration about an axis, at the present instant or at another tap of a window.
 struct AccelerationPlace {
@@ -74,7 +72,7 @@ class ExactDerivatives {
 
   /// Of features in physical units. `held`: of a window the angular acceleration of all taps is moved; else the present
   /// alone. At the kink of a ReLU it is the derivative from below, as in nn/jacobian.hpp.
-  AxisDerivatives operator()(const double* features, bool held = true) const;
+  AxisSlopes operator()(const double* features, bool held = true) const;
 
   /// Signed sums of commands about roll, pitch, yaw.
   std::array<double, 3> signed_sums(const Commands<double>& u) const;

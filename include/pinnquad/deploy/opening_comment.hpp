@@ -27,6 +27,9 @@ std::string known_slopes_in_words(const SlopesOfSums& slopes, double own_thrust,
 
 namespace detail {
 
+/// Lines of a comment, broken at blanks.
+void write_comment(std::ostream& out, const std::string& text);
+
 /// Lines of a comment. `own`: the airframe that the slopes are compared with.
 void write_opening_comment(std::ostream& out, const WrittenRecords& records, const Airframe<double>& own);
 

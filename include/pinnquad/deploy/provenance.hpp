@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The words of an export beside its numbers: where a model comes from, in which terms it was trained, what was found
-// out about it. Header (exported/model_records.hpp) and block (exported/model_block.hpp) write the same records of it.
+// out about it. Header (exported/model.hpp) and block (exported/model_block.hpp) write the same records of it.
 #pragma once
 
 #include <cmath>
@@ -18,28 +18,17 @@
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_block.hpp"
+#include "pinnquad/exported/model_facts.hpp"
 #include "pinnquad/exported/run_time_outputs.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
-#include "pinnquad/training/described_predictor.hpp"
+#include "pinnquad/training/ground_outputs.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"
 
 namespace pinnquad {
 
 /// Where a model comes from; printed into the header as strings.
 struct Provenance {
-  /// The bounds of a residual, one of each per output, in the outputs' units.
-  struct ResidualRange {
-    std::vector<double> lower;
-    std::vector<double> upper;
-  };
-  /// Where the training features lie together: x is near them if |L^-1 (x - mean)| <= limit, L L^T their covariance.
-  struct DistanceStatistics {
-    std::vector<double> mean;              ///< one per feature
-    std::vector<double> inverse_cholesky;  ///< lower triangle of L^-1, row by row: n (n + 1) / 2
-    double limit = 0;                      ///< above 0
-  };
-
   std::string training_data;             ///< name of the flight, not a path of the machine
   std::uint64_t training_data_hash = 0;  ///< content_hash() of the flight
   std::size_t training_rows = 0;
@@ -63,10 +52,6 @@ struct Provenance {
   std::string do_not_fly{};    ///< why not, a sentence without a full stop; empty: nothing is said
   bool airframe_known = true;  ///< false: slopes are not told over those of the airframe, which is another one
 
-  // what was found out besides, for guards and certificates
-  std::optional<detail::TorqueSigns> slope_signs = std::nullopt;  ///< proven signs of du/d(ang. acc.)
-  std::optional<ResidualRange> residual_range = std::nullopt;
-  std::optional<DistanceStatistics> distance = std::nullopt;
   /// Of the bias that an inverse of this model learns in flight, sum by sum; 0: none of this sum.
   std::optional<std::array<double, 4>> bias_time_constants_s = std::nullopt;
 };
@@ -82,8 +67,8 @@ struct WrittenRecords : Provenance {
   };
 
   AllocationMatrix<double> allocation{};
-  std::optional<std::uint32_t> judged{};  ///< judged_bits()
-  std::uint32_t window_taps = 1;          ///< 1: the present alone
+  ModelFacts facts{};             ///< those of the training's words that are numbers, as they are written
+  std::uint32_t window_taps = 1;  ///< 1: the present alone
   bool causal = true;
   std::vector<std::string> column_names, column_units;
   std::string answer;  ///< description of what the parameters are of
@@ -104,28 +89,6 @@ struct WrittenRecords : Provenance {
   std::optional<Trust> trust{};
 };
 
-/// Commands at outputs 0 and by each output, 4 + 4 x size, of a linear schema of a user's own; empty for another one.
-template <class Outputs, class Scalar>
-std::vector<double> affine_schema(const Airframe<Scalar>& airframe) {
-  std::vector<double> numbers;
-  using Map = OutputMap<Outputs>;
-  if constexpr (!Map::takes_features && !is_known_schema<Outputs> && is_detected<IsLinear, Outputs>) {
-    const auto setting = Map::setting(airframe);
-    Scalar outputs[Map::size]{}, commands[rotor_count]{}, slopes[Map::slope_count]{};
-    const Scalar* none = nullptr;
-    Map::commands(none, static_cast<const Scalar*>(outputs), setting, static_cast<Scalar*>(commands));
-    Map::slopes(none, static_cast<const Scalar*>(outputs), setting, static_cast<Scalar*>(slopes));
-    for (const Scalar command : commands) numbers.push_back(static_cast<double>(command));
-    for (int rotor = 0; rotor < rotor_count; ++rotor) {
-      for (int k = 0; k < Map::size; ++k) {
-        const bool reads = k >= Map::first_output(rotor) && k < Map::last_output(rotor);
-        numbers.push_back(reads ? static_cast<double>(slopes[Map::slope_index(rotor, k)]) : 0.0);
-      }
-    }
-  }
-  return numbers;
-}
-
 /// A figure of a judgement, rounded as far as sums over the test rows are the same on every machine.
 double stated_figure(double value);
 
@@ -139,7 +102,7 @@ void append_texts(std::vector<std::string>& to, const Names& names, const Units&
 }
 
 /// Adds an airframe as it is and as the model's Scalar has it.
-template <class Outputs, class Scalar>
+template <class Scalar>
 void take_airframe(WrittenRecords& records, const std::string& name, const Airframe<double>& airframe,
                    const Airframe<Scalar>& flown) {
   records.vehicle_name = name;
@@ -147,6 +110,12 @@ void take_airframe(WrittenRecords& records, const std::string& name, const Airfr
   records.flown_airframe.clear();
   each_number(flown, [&](auto number) { records.flown_airframe.push_back(static_cast<double>(number)); });
   records.allocation = allocation(airframe);
+}
+/// The same, and the schema's own map for it.
+template <class Outputs, class Scalar>
+void take_airframe(WrittenRecords& records, const std::string& name, const Airframe<double>& airframe,
+                   const Airframe<Scalar>& flown) {
+  take_airframe(records, name, airframe, flown);
   records.affine = affine_schema<Outputs>(flown);
 }
 
@@ -172,44 +141,16 @@ WrittenRecords records_of_types() {
   return records;
 }
 
-/// Throws std::invalid_argument for a range that is none, a time beyond 0 to 4 s, another period than the window's
-/// (`window_s`; 0 without one), and for statistics of another length than the model's, or that are not finite.
-void require_provenance(const Provenance& from, double window_s, std::size_t inputs, std::size_t outputs);
+/// The facts of a training for an airframe, figures rounded as they are written.
+ModelFacts facts_of(const Provenance& from, const Airframe<double>& airframe);
 
-/// States the proof of records.certificate: signs and range of the residual, outward as the model's Scalar holds it.
-/// Throws std::invalid_argument where nothing is proven.
-template <class Scalar>
-void state_proof(WrittenRecords& records) {
-  const Certificate& certificate = *records.certificate;
-  if (!certificate.proven()) {
-    throw std::invalid_argument("export: " + std::string(certificate.bounded
-                                                             ? "a slope of the model is not above its floor"
-                                                             : "the bounds of the residual are none"));
-  }
-  records.slope_signs = motor_torque_signs(records.airframe);
-  Provenance::ResidualRange range;
-  const auto outward = [](double bound, double to) {
-    const auto rounded = static_cast<Scalar>(bound);
-    return std::abs(bound) > 0 ? static_cast<double>(std::nextafter(rounded, static_cast<Scalar>(to))) : 0.0;
-  };
-  for (const double bound : certificate.residual_lower) range.lower.push_back(outward(bound, -1e30));
-  for (const double bound : certificate.residual_upper) range.upper.push_back(outward(bound, 1e30));
-  records.residual_range = range;
-}
+/// Throws std::invalid_argument, one line, for facts that no model has.
+void require_sound(const ModelFacts& facts);
 
-/// Adds the facts of a training to the records of a model; what is proven of one with a certificate is among them.
-/// Throws std::invalid_argument where require_provenance() and state_proof() do.
-template <class Scalar>
-void take_provenance(WrittenRecords& records, const Provenance& from, double window_s) {
-  static_cast<Provenance&>(records) = from;
-  if (records.certificate) state_proof<Scalar>(records);
-  require_provenance(records, window_s, records.feature_texts.size() / 2, records.output_texts.size() / 2);
-  if (!from.command_meaning) records.command_meaning = command_meaning_of(records.airframe);
-  if (window_s > 0) records.sample_period_s = window_s;
-  if (from.verdict) {
-    records.judged = judged_bits(from.verdict->worse_than_mean(), from.verdict->beats_linear_regression());
-  }
-}
+/// Adds the facts of a training to the records of a model. Throws std::invalid_argument for facts that no model has
+/// (exported/model_facts.hpp), for another period than the window's (`window_s`; 0 without one), and for a certificate
+/// that proves nothing.
+void take_provenance(WrittenRecords& records, const Provenance& from, double window_s);
 
 /// The same numbers in another type.
 template <class To, class Numbers>
@@ -222,8 +163,6 @@ std::vector<To> converted(const Numbers& numbers) {
 template <class M>
 using WordsOf = std::void_t<decltype(M::name), decltype(M::training_data), decltype(M::seed), decltype(M::epochs),
                             decltype(M::loss)>;
-template <class M>
-using FiguresOf = std::void_t<decltype(M::test_r_squared), decltype(M::linear_regression_r_squared)>;
 
 /// The records of an exported header.
 template <class M>
@@ -231,7 +170,6 @@ WrittenRecords records_of_header() {
   WrittenRecords records = records_of_types<M>();
   take_airframe<typename M::Outputs>(records, M::Vehicle::name, airframe_value<typename M::Vehicle, double>(),
                                      airframe_value<typename M::Vehicle, typename M::Scalar>());
-  if constexpr (has_certificate<M>) records.certificate = certificate_of<M>();
   if constexpr (is_detected<WordsOf, M>) {
     records.name = M::name;
     records.training_data = M::training_data;
@@ -239,39 +177,9 @@ WrittenRecords records_of_header() {
     records.epochs = M::epochs;
     records.loss = M::loss;
   }
-  if constexpr (is_detected<FiguresOf, M>) {
-    records.verdict = Verdict{};
-    records.verdict->test_r_squared = M::test_r_squared;
-    records.verdict->linear_regression_r_squared = M::linear_regression_r_squared;
-  }
   records.contents_hash = contents_hash_of<M>();
-  records.command_meaning = M::command_meaning;
-  records.sample_period_s = M::sample_period_s;
-  records.command_lower = M::command_lower;
-  records.command_upper = M::command_upper;
-  records.lag_removed_s = M::lag_removed_s;
+  records.facts = facts_of_header<M>();
   records.allocation = M::allocation;
-  records.answer = M::answer;
-  records.base = M::base;
-  if constexpr (is_detected<StatedVerdictOf, M>) {
-    records.judged = judged_bits(M::worse_than_mean, M::beats_linear_regression);
-  }
-  if constexpr (is_detected<SlopeSignsOf, M>) records.slope_signs = M::slope_signs;
-  if constexpr (is_detected<ResidualRangeOf, M>) {
-    records.residual_range =
-        Provenance::ResidualRange{converted<double>(M::residual_lower), converted<double>(M::residual_upper)};
-  }
-  if constexpr (is_detected<BiasTimeConstantsOf, M>) {
-    records.bias_time_constants_s.emplace();
-    for (std::size_t i = 0; i < 4; ++i) {
-      (*records.bias_time_constants_s)[i] = static_cast<double>(M::bias_time_constants_s[i]);
-    }
-  }
-  if constexpr (is_detected<DistanceStatisticsOf, M>) {
-    records.distance = Provenance::DistanceStatistics{converted<double>(M::distance_mean),
-                                                      converted<double>(M::distance_inverse_cholesky),
-                                                      static_cast<double>(M::distance_limit)};
-  }
   return records;
 }
 

@@ -35,22 +35,6 @@ struct BlockNumbers {
   const Scalar* parameters() const noexcept { return golden_commands() + golden * rotor_count; }
 };
 
-/// As StatedStructure, of a type or of a description.
-struct BlockStructure {
-  bool known = false, has_residual = false;
-  std::size_t bounds_at = 0;  ///< among the parameters, where there is a residual
-};
-
-template <class Answer>
-constexpr BlockStructure block_structure() noexcept {
-  using Structure = StatedStructure<Answer>;
-  if constexpr (Structure::known) {
-    return {true, Structure::at >= 0, Structure::at >= 0 ? std::size_t(Structure::at) : 0};
-  } else {
-    return {};
-  }
-}
-
 /// A vehicle as a block's readers have it: row-major, of Airframe<double>. `signs`: motor_torque_signs().
 struct BlockVehicle {
   const double* allocation;
@@ -128,8 +112,9 @@ class BlockContents {
   bool rounds() const noexcept {
     if (said_.unrounded == nullptr) return true;
     const double period = unrounded(2), lag = unrounded(3);
-    bool same = is_clock_time(period) && is_clock_time(lag) && same_scalar(unrounded(0), said_.command_lower) &&
-                same_scalar(unrounded(1), said_.command_upper);
+    bool same = is_clock_time(period) && is_clock_time(lag) &&
+                same_scalar(unrounded(0), static_cast<Scalar>(said_.command_lower)) &&
+                same_scalar(unrounded(1), static_cast<Scalar>(said_.command_upper));
     same = same && nanoseconds(period) == said_.sample_period_ns && nanoseconds(lag) == said_.lag_removed_ns;
     for (std::size_t i = 0; i < allocation_size; ++i) same = same && same_scalar(unrounded(4 + i), said_.allocation[i]);
     return same;
@@ -162,11 +147,9 @@ class BlockContents {
                             vehicle = seed_of("vehicle_name"), order = seed_of("motor_torque_signs"),
                             airframe = seed_of("Vehicle"), signs = seed_of("slope_signs"),
                             lower = seed_of("residual_lower"), upper = seed_of("residual_upper"),
-                            mean = seed_of("distance_mean"), triangle_seed = seed_of("distance_inverse_cholesky"),
-                            limit = seed_of("distance_limit"), input = seed_of("input"), output = seed_of("output"),
-                            least = seed_of("envelope_lower"), most = seed_of("envelope_upper"),
-                            golden = seed_of("golden_features"), commands = seed_of("golden_commands"),
-                            weights = seed_of("parameters");
+                            input = seed_of("input"), output = seed_of("output"), least = seed_of("envelope_lower"),
+                            most = seed_of("envelope_upper"), golden = seed_of("golden_features"),
+                            commands = seed_of("golden_commands"), weights = seed_of("parameters");
     constexpr SpinPlaces spins = spin_places();
     const std::size_t inputs = numbers_.inputs, sums = numbers_.outputs;
     const Scales<Scalar> scales = numbers_.scales();
@@ -217,15 +200,13 @@ class BlockContents {
     sum += one.hash;
     if (said_.slope_signs != nullptr) {
       one = {signs};
-      for (int i = 0; i < 3 * rotor_count; ++i) one.add_word(static_cast<std::uint32_t>(int{said_.slope_signs[i]}));
+      for (int i = 0; i < 3 * rotor_count; ++i) {
+        one.add_word(static_cast<std::uint32_t>(int{static_cast<signed char>(said_.slope_signs[i])}));
+      }
       sum += one.hash;
     }
     if (said_.residual_range != nullptr) {
       sum += scalars(lower, said_.residual_range, sums) + scalars(upper, said_.residual_range + sums, sums);
-    }
-    if (const Scalar* distance = said_.distance) {
-      sum += scalars(mean, distance, inputs) + scalars(triangle_seed, distance + inputs, triangle(inputs)) +
-             scalars(limit, distance + inputs + triangle(inputs), 1);
     }
     sum += scalars(input, scales.input_mean, 2 * inputs) + scalars(output, scales.output_mean, 2 * sums);
     sum += scalars(least, scales.lower, inputs) + scalars(most, scales.upper, inputs);
@@ -252,10 +233,10 @@ class BlockContents {
       return hash.hash;
     };
     std::uint64_t sum = records + meanings[static_cast<unsigned>(said_.command_meaning)];
-    sum += number(lower, stated ? unrounded(0) : static_cast<double>(said_.command_lower));
-    sum += number(upper, stated ? unrounded(1) : static_cast<double>(said_.command_upper));
-    sum += number(period, stated ? unrounded(2) : seconds_of(said_.sample_period_ns));
-    sum += number(lag, stated ? unrounded(3) : seconds_of(said_.lag_removed_ns));
+    sum += number(lower, stated ? unrounded(0) : said_.command_lower);
+    sum += number(upper, stated ? unrounded(1) : said_.command_upper);
+    sum += number(period, stated ? unrounded(2) : said_.sample_period_s);
+    sum += number(lag, stated ? unrounded(3) : said_.lag_removed_s);
     RunTimeHash one{answer};
     one.add_text(said_.answer);
     sum += one.hash;
@@ -299,33 +280,19 @@ class BlockContents {
 /// The first fault of a block whose records were read and fit its shape.
 template <class Scalar>
 StatedNumber fault_of_block(const BlockRecords<Scalar>& said, const BlockNumbers<Scalar>& numbers,
-                            const BlockStructure& structure, const BlockVehicle& vehicle) noexcept {
+                            const BlockVehicle& vehicle) noexcept {
   const Scales<Scalar> scales = numbers.scales();
-  const std::size_t inputs = numbers.inputs, outputs = numbers.outputs;
+  const std::size_t inputs = numbers.inputs;
   const Scalar* features = numbers.golden_features();
   const Scalar* commands = numbers.golden_commands();
   const StatedNumber fault = fault_of_numbers(
-      FiniteNumber{}, scales, inputs, outputs, numbers.parameters(), numbers.parameter_count,
+      FiniteNumber{}, scales, inputs, numbers.outputs, numbers.parameters(), numbers.parameter_count,
       [&](std::size_t i) { return features + i * inputs; }, [&](std::size_t i) { return commands + i * rotor_count; },
       numbers.golden);
   if (fault != StatedNumber::none) return fault;
-  if (said.distance != nullptr && !inside_envelope(scales.lower, said.distance, scales.upper, inputs)) {
-    return StatedNumber::distance_mean;
-  }
   if (said.trust != nullptr) {
     const auto* mean = static_cast<const Scalar*>(static_cast<const void*>(said.trust + 5 * sizeof(double)));
     if (!inside_envelope(scales.lower, mean, scales.upper, inputs)) return StatedNumber::trust_mean;
-  }
-  if (structure.known) {
-    for (int i = 0; said.slope_signs != nullptr && i < 3 * rotor_count; ++i) {
-      if (!true_slope_sign(said.slope_signs[i], vehicle.signs[i])) return StatedNumber::torque_sign;
-    }
-    const Scalar* range = said.residual_range;
-    if (range != nullptr &&
-        !same_residual_range(range, range + outputs, structure.has_residual, numbers.parameters() + structure.bounds_at,
-                             scales.output_deviation, outputs)) {
-      return StatedNumber::residual_bounds;
-    }
   }
   const BlockContents<Scalar> contents(said, numbers, vehicle);
   if (!contents.rounds()) return StatedNumber::unrounded;

@@ -13,29 +13,6 @@
 
 namespace pinnquad {
 
-inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// A block's records, as far as they are not compared with the shape. As made, none is stated.
-template <class Scalar>
-struct ModelRecords {
-  CommandMeaning command_meaning = CommandMeaning::thrust;
-  Scalar command_lower = Scalar(0);
-  Scalar command_upper = Scalar(1);
-  std::uint32_t sample_period_ns = 0;  ///< 0: not said
-  std::uint32_t lag_removed_ns = 0;    ///< of the rotors, taken out of the commands before the training
-  bool has_verdict = false;
-  bool worse_than_mean = false;  ///< than the mean of the commands, and exported all the same
-  bool beats_linear_regression = false;
-  bool has_bias = false;              ///< the next is said
-  Scalar bias_time_constants_s[4]{};  ///< sum by sum, of a bias learnt in flight; 0: none of this sum
-  // In the block, or null; as BlockRecord describes them.
-  const signed char* slope_signs = nullptr;
-  const Scalar* residual_range = nullptr;
-  const Scalar* distance = nullptr;
-};
-
-}  // namespace PINNQUAD_INSTRUCTION_SET
-
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
@@ -55,7 +32,9 @@ struct BlockText {
 
 /// All records of a block, in the block. A text or pointer that is null is not said.
 template <class Scalar>
-struct BlockRecords : ModelRecords<Scalar> {
+struct BlockRecords : ModelFacts {
+  std::uint32_t sample_period_ns = 0;  ///< as the block has the times of its facts
+  std::uint32_t lag_removed_ns = 0;
   std::uint32_t window_taps = 1;
   std::uint32_t causal = 1;
   BlockText columns, base, answer, features, outputs, vehicle_name, provenance;
@@ -65,7 +44,8 @@ struct BlockRecords : ModelRecords<Scalar> {
   std::uint64_t contents_hash = 0;
   const unsigned char* records_hash = nullptr;  ///< u64, of all records
   const unsigned char* trust = nullptr;         ///< five f64
-  const unsigned char* certificate = nullptr;   ///< twelve f64
+  const unsigned char* slope_signs = nullptr;   ///< of an older writer, as the next
+  const Scalar* residual_range = nullptr;
   const Scalar* affine = nullptr;
   const unsigned char* unrounded = nullptr;  ///< twenty f64
   const unsigned char* whole = nullptr;      ///< the first record
@@ -74,6 +54,10 @@ struct BlockRecords : ModelRecords<Scalar> {
   StatedFault fault{};     ///< where take() refuses
 
   constexpr bool said(BlockRecord record) const noexcept { return (seen >> static_cast<unsigned>(record) & 1u) != 0; }
+  /// An older writer's word that its monotony is proven.
+  constexpr bool claims_proof() const noexcept {
+    return said(BlockRecord::slope_signs) || said(BlockRecord::certificate);
+  }
   /// Says all that a block must.
   constexpr bool describes_itself() const noexcept {
     constexpr BlockRecord must[] = {BlockRecord::commands,   BlockRecord::clock,   BlockRecord::window,
@@ -101,27 +85,22 @@ struct BlockRecords : ModelRecords<Scalar> {
       case BlockRecord::commands: {
         const std::uint32_t meaning = read_u32(bytes);
         const Scalar* range = scalars + 8 / sizeof(Scalar);
-        const bool sound = are_finite(finite, range, 2) &&
-                           is_command_range(static_cast<double>(range[0]), static_cast<double>(range[1]));
-        if (!sound) return refuse(StatedNumber::command_range);
         if (read_u32(bytes + 4) != 0) return refuse(StatedNumber::command_meaning);
         if (meaning >= command_meaning_count) {
           fault = {StatedNumber::command_meaning};
           return Status::block_incompatible;
         }
-        this->command_meaning = static_cast<CommandMeaning>(meaning);
-        this->command_lower = range[0];
-        this->command_upper = range[1];
+        command_meaning = static_cast<CommandMeaning>(meaning);
+        command_lower = static_cast<double>(range[0]);
+        command_upper = static_cast<double>(range[1]);
         break;
       }
-      case BlockRecord::clock: {
-        this->sample_period_ns = read_u32(bytes);
-        this->lag_removed_ns = read_u32(bytes + 4);
-        const double period_s = seconds_of(this->sample_period_ns), lag_s = seconds_of(this->lag_removed_ns);
-        if (!in_range<StatedNumber::sample_period_s>(period_s)) return refuse(StatedNumber::sample_period_s, period_s);
-        if (!in_range<StatedNumber::lag_removed_s>(lag_s)) return refuse(StatedNumber::lag_removed_s, lag_s);
+      case BlockRecord::clock:
+        sample_period_ns = read_u32(bytes);
+        lag_removed_ns = read_u32(bytes + 4);
+        sample_period_s = seconds_of(sample_period_ns);
+        lag_removed_s = seconds_of(lag_removed_ns);
         break;
-      }
       case BlockRecord::window:
         window_taps = read_u32(bytes);
         causal = read_u32(bytes + 4);
@@ -133,36 +112,13 @@ struct BlockRecords : ModelRecords<Scalar> {
       case BlockRecord::verdict: {
         const std::uint32_t bits = read_u32(bytes);
         if (bits > judged_bits(true, true) || read_u32(bytes + 4) != 0) return refuse(StatedNumber::verdict);
-        this->has_verdict = true;
-        this->worse_than_mean = (bits & judged_bits(true, false)) != 0;
-        this->beats_linear_regression = (bits & judged_bits(false, true)) != 0;
+        has_verdict = true;
+        worse_than_mean = (bits & judged_bits(true, false)) != 0;
+        beats_linear_regression = (bits & judged_bits(false, true)) != 0;
         break;
       }
-      case BlockRecord::slope_signs:
-        this->slope_signs = static_cast<const signed char*>(static_cast<const void*>(bytes));
-        for (std::size_t i = 0; i < length; ++i) {
-          const int sign = this->slope_signs[i];
-          if (sign < -1 || sign > 1) return refuse(StatedNumber::slope_sign, sign);
-        }
-        break;
-      case BlockRecord::residual_range:
-        this->residual_range = scalars;
-        if (!are_finite(finite, scalars, 2 * outputs_count)) return refuse(StatedNumber::residual_range);
-        for (std::size_t i = 0; i < outputs_count; ++i) {
-          if (!(scalars[i] <= scalars[outputs_count + i])) return refuse(StatedNumber::residual_range);
-        }
-        break;
-      case BlockRecord::distance: {
-        const Scalar limit = scalars[inputs + triangle(inputs)];
-        this->distance = scalars;
-        if (!are_finite(finite, scalars, inputs) || !is_triangle(finite, scalars + inputs, inputs, false)) {
-          return refuse(StatedNumber::distance);
-        }
-        if (!is_finite(limit) || !in_range<StatedNumber::distance_limit>(static_cast<double>(limit))) {
-          return refuse(StatedNumber::distance_limit, static_cast<double>(limit));
-        }
-        break;
-      }
+      case BlockRecord::slope_signs: slope_signs = bytes; break;
+      case BlockRecord::residual_range: residual_range = scalars; break;
       case BlockRecord::answer: answer = text; break;
       case BlockRecord::features: features = text; break;
       case BlockRecord::outputs: outputs = text; break;
@@ -186,10 +142,10 @@ struct BlockRecords : ModelRecords<Scalar> {
         if (fault.number != StatedNumber::none) return Status::block_corrupt;
         const Scalar* mean = scalars + 5 * sizeof(double) / sizeof(Scalar);
         if (!are_finite(finite, mean, inputs)) return refuse(StatedNumber::trust_mean);
-        if (!is_triangle(finite, mean + inputs, inputs, true)) return refuse(StatedNumber::trust_whitening);
+        if (!is_triangle(mean + inputs, inputs)) return refuse(StatedNumber::trust_whitening);
         break;
       }
-      case BlockRecord::certificate: certificate = bytes; break;
+      case BlockRecord::certificate: break;
       case BlockRecord::provenance: {
         provenance = text;
         std::uint32_t ends = 0;
@@ -198,14 +154,8 @@ struct BlockRecords : ModelRecords<Scalar> {
         break;
       }
       case BlockRecord::bias:
-        this->has_bias = true;
-        for (std::size_t i = 0; i < 4; ++i) {
-          const Scalar time_s = scalars[i];
-          this->bias_time_constants_s[i] = time_s;
-          if (!is_finite(time_s) || !in_range<StatedNumber::bias_time_constant_s>(static_cast<double>(time_s))) {
-            return refuse(StatedNumber::bias_time_constant_s, static_cast<double>(time_s));
-          }
-        }
+        has_bias = true;
+        for (std::size_t i = 0; i < 4; ++i) bias_time_constants_s[i] = static_cast<double>(scalars[i]);
         break;
       case BlockRecord::affine:
         affine = scalars;
@@ -246,7 +196,7 @@ Status read_records(const unsigned char* first, std::size_t available, std::size
     const std::uint32_t length = read_u32(at + 4);
     if (word > 0xffff || length > left - Header::record_head) return Status::block_corrupt;
     const std::uint32_t type = word & (mandatory_record - 1u);
-    if (type >= 1 && type <= block_record_types) {
+    if (is_block_record(type)) {
       if ((records.seen >> type & 1u) != 0) return Status::block_corrupt;
       records.seen |= 1u << type;
       const Status status =
@@ -262,7 +212,8 @@ Status read_records(const unsigned char* first, std::size_t available, std::size
     left -= whole;
   }
   if (left != 0) return Status::block_corrupt;
-  records.fault = {};
+  records.fault = fault_of(records, FiniteNumber{});
+  if (records.fault.number != StatedNumber::none) return Status::block_corrupt;
   size = Header::record_counts + bytes;
   return Status::ok;
 }
@@ -321,8 +272,8 @@ struct RecordReader {
   }
 
   /// Where the shape is an exported header: its commands mean the same, as often.
-  static bool fits_header(const ModelRecords<Scalar>& records) noexcept {
-    if constexpr (is_detected<RecordsOf, Shape>) {
+  static bool fits_header(const BlockRecords<Scalar>& records) noexcept {
+    if constexpr (is_detected<DescriptionOf, Shape>) {
       constexpr std::uint32_t period = nanoseconds(Shape::sample_period_s);  // worked out by the compiler
       return records.command_meaning == Shape::command_meaning &&
              (period == 0 || same_period_ns(records.sample_period_ns, period));

@@ -1,36 +1,33 @@
 // SPDX-License-Identifier: MIT
-// A number over all that an exported header says: one that was edited afterwards does not compile. The writer makes it
-// (deploy/header_writer.hpp), the compiler and the program compare. It finds accidents, not forgeries.
-//   contents_hash = sum over the constants of FNV-1a(name, value), in words of 32 bits: no order plays a part
+// Two hashes that header and block state of a model. shape_hash: what its numbers are for. contents_hash: all that
+// counts. The writer makes them (deploy/header_writer.hpp); compiler and readers make them again, and refuse a model
+// that was edited afterwards. They find accidents, not forgeries.
+//   contents_hash = sum over the facts of FNV-1a(name, value), in words of 32 bits: no order plays a part
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <string_view>
 #include <type_traits>
 
 #include "pinnquad/core/fnv1a.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
+#include "pinnquad/exported/model_facts.hpp"
 #include "pinnquad/exported/model_records.hpp"
 #include "pinnquad/nn/scaler.hpp"
+#include "pinnquad/outputs/output_schema.hpp"
 
 namespace pinnquad {
 
-/// The constants that count, where a header has them; `Vehicle` is its airframe's value. The model's name, and where it
-/// comes from in words, may be edited. contents_hash_of() lists their values in this order.
-inline constexpr std::string_view hashed_constants[] = {
-    // clang-format off
-    "format_version", "training_data_hash", "training_rows", "worse_than_mean", "beats_linear_regression", "frame",
-    "feature_names", "feature_units", "output_names", "output_units", "vehicle_name",
-    "motor_torque_signs", "Vehicle", "records", "answer", "command_meaning", "command_lower", "command_upper",
-    "sample_period_s", "lag_removed_s", "window_taps", "causal", "column_names", "column_units", "allocation", "base",
-    "slope_signs", "residual_lower", "residual_upper", "distance_mean", "distance_inverse_cholesky", "distance_limit",
-    "input", "output", "envelope_lower", "envelope_upper", "golden_features", "golden_commands", "parameters"};
-// clang-format on
+/// The format of blocks, and of both hashes: this library writes it and reads no other one.
+inline constexpr int model_format_version = 4;
 
 namespace detail {
+
+/// The records that a reader of this format must understand, as contents_hash says them.
+inline constexpr std::array<std::string_view, 7> known_records = {"answer",  "commands",   "clock", "window",
+                                                                  "columns", "allocation", "base"};
 
 #if defined(__clang__) || __GNUC__ >= 11
 inline constexpr bool reads_bits_of_constants = true;
@@ -45,8 +42,11 @@ class ConstantHash {
 
   constexpr std::uint64_t value() const noexcept { return hash_; }
 
-  constexpr void add(std::string_view text) noexcept {
+  constexpr void add_letters(std::string_view text) noexcept {
     for (const char letter : text) add_word(static_cast<unsigned char>(letter));
+  }
+  constexpr void add(std::string_view text) noexcept {
+    add_letters(text);
     add_word(0x100);  // no letter: "ab", "c" is not "a", "bc"
   }
   constexpr void add(const char* text) noexcept { add(std::string_view(text)); }
@@ -106,35 +106,72 @@ constexpr std::uint64_t constant_hash(std::string_view name, const Value& value)
   return hash.value();
 }
 
-/// The place of a name among hashed_constants, their number where it is none of them.
-constexpr std::size_t hashed_place(std::string_view name) noexcept {
-  std::size_t place = 0;
-  while (place < std::size(hashed_constants) && hashed_constants[place] != name) ++place;
-  return place;
-}
-constexpr bool is_hashed(std::string_view name) noexcept { return hashed_place(name) < std::size(hashed_constants); }
+/// The letters of a description, spaces among them.
+struct DescribedHash {
+  ConstantHash hash;
 
-/// The value that the header's constant must have, from its members as they are.
+  constexpr void add(std::string_view text) noexcept { hash.add_letters(text); }
+  constexpr void add(int number) noexcept {
+    if (number >= 10) add(number / 10);
+    const char digit = static_cast<char>('0' + number % 10);
+    hash.add_letters({&digit, 1});
+  }
+};
+template <class T>
+constexpr std::uint64_t description_hash(std::string_view name) noexcept {
+  DescribedHash sink{ConstantHash(name)};
+  describe<T>(sink);
+  sink.hash.add(std::string_view());
+  return sink.hash.value();
+}
+template <class Texts>
+constexpr std::uint64_t texts_hash(std::string_view name, const Texts& texts) noexcept {
+  ConstantHash hash(name);
+  for (const auto& text : texts) hash.add(std::string_view(text));
+  return hash.value();
+}
+
+/// The value that a header's contents_hash must have: of its constants, and of what its types say.
 template <class M>
 constexpr std::uint64_t contents_hash_of() noexcept {
+  using Features = typename M::Features;
+  using Map = OutputMap<typename M::Outputs>;
+  using Window = WindowOf<Features>;
   std::uint64_t sum = 0;
-  const auto add = [&sum](std::string_view first, const auto&... values) {  // and those that follow it
-    std::size_t place = hashed_place(first);
-    ((sum += constant_hash(hashed_constants[place++], values)), ...);
-  };
-  add("format_version", M::format_version, M::training_data_hash, M::training_rows);
-  if constexpr (is_detected<StatedVerdictOf, M>) add("worse_than_mean", M::worse_than_mean, M::beats_linear_regression);
-  add("frame", M::frame, M::feature_names, M::feature_units, M::output_names, M::output_units, M::vehicle_name,
-      M::motor_torque_signs, airframe_value<typename M::Vehicle, double>(), M::records, M::answer, M::command_meaning,
-      M::command_lower, M::command_upper, M::sample_period_s, M::lag_removed_s, M::window_taps, M::causal,
-      M::column_names, M::column_units, M::allocation, M::base);
-  if constexpr (is_detected<SlopeSignsOf, M>) add("slope_signs", M::slope_signs);
-  if constexpr (is_detected<ResidualRangeOf, M>) add("residual_lower", M::residual_lower, M::residual_upper);
-  if constexpr (is_detected<DistanceStatisticsOf, M>) {
-    add("distance_mean", M::distance_mean, M::distance_inverse_cholesky, M::distance_limit);
+  const auto add = [&sum](std::string_view name, const auto& value) { sum += constant_hash(name, value); };
+  add("format_version", model_format_version);
+  add("training_data_hash", M::training_data_hash);
+  add("training_rows", M::training_rows);
+  if constexpr (is_detected<StatedVerdictOf, M>) {
+    add("worse_than_mean", M::worse_than_mean);
+    add("beats_linear_regression", M::beats_linear_regression);
   }
-  add("input", M::input, M::output, M::envelope_lower, M::envelope_upper, M::golden_features, M::golden_commands,
-      M::parameters);
+  add("frame", model_frame);
+  sum += texts_hash("feature_names", Features::names) + texts_hash("feature_units", Features::units);
+  sum += texts_hash("output_names", Map::names) + texts_hash("output_units", Map::units);
+  add("vehicle_name", M::Vehicle::name);
+  add("motor_torque_signs", motor_torque_signs<typename M::Vehicle>());
+  add("Vehicle", airframe_value<typename M::Vehicle, double>());
+  add("records", known_records);
+  sum += description_hash<typename M::Network>("answer");
+  add("command_meaning", M::command_meaning);
+  add("command_lower", M::command_lower);
+  add("command_upper", M::command_upper);
+  add("sample_period_s", M::sample_period_s);
+  add("lag_removed_s", M::lag_removed_s);
+  add("window_taps", Window::taps);
+  add("causal", Window::causal);
+  sum += texts_hash("column_names", extra_column_names<Features>);
+  sum += texts_hash("column_units", extra_column_units<Features>);
+  add("allocation", M::allocation);
+  sum += description_hash<typename BaseOf<typename M::Outputs>::type>("base");
+  add("input", M::input);
+  add("output", M::output);
+  add("envelope_lower", M::envelope_lower);
+  add("envelope_upper", M::envelope_upper);
+  add("golden_features", M::golden_features);
+  add("golden_commands", M::golden_commands);
+  add("parameters", M::parameters);
   return sum;
 }
 
@@ -149,4 +186,50 @@ constexpr bool same_contents() noexcept {
 }
 
 }  // namespace detail
+
+namespace detail {
+/// All texts are one.
+template <class Texts>
+constexpr bool one_unit(const Texts& texts) noexcept {
+  for (const auto& text : texts) {
+    if (std::string_view(text) != std::string_view(texts[0])) return false;
+  }
+  return true;
+}
+
+/// All that a shape says behind its answer; texts of any kind.
+template <class Names, class Units, class OutputNames, class OutputUnits>
+constexpr void absorb_shape(Fnv1a& fnv, const Names& names, const Units& units, const OutputNames& output_names,
+                            const OutputUnits& output_units, std::string_view vehicle_name,
+                            const TorqueSigns& signs) noexcept {
+  fnv.absorb_text(model_frame);
+  for (const auto& name : names) fnv.absorb_text(name);
+  for (const auto& unit : units) fnv.absorb_text(unit);
+  for (const auto& name : output_names) fnv.absorb_text(name);
+  // one unit for all is said once
+  const std::size_t said = output_units.size() > 1 && one_unit(output_units) ? 1 : output_units.size();
+  for (std::size_t i = 0; i < said; ++i) fnv.absorb_text(output_units[i]);
+  fnv.absorb_text(vehicle_name);
+  for (const auto& rotor : signs) {
+    for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
+  }
+}
+
+/// `vehicle_name` and `signs`: of the vehicle, which need not be known to the compiler.
+template <class Shape>
+constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name, const TorqueSigns& signs) noexcept {
+  using Map = OutputMap<typename Shape::Outputs>;
+  Fnv1a fnv;
+  absorb_description<typename Shape::Network>(fnv);
+  absorb_shape(fnv, Shape::Features::names, Shape::Features::units, Map::names, Map::units, vehicle_name, signs);
+  return fnv.hash;
+}
+}  // namespace detail
+
+/// Names what a block's weights are for: the answer's description (model/description.hpp), frame, feature names and
+/// units, output names and units, vehicle name and motor order.
+template <class Shape>
+inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>(Shape::Vehicle::name,
+                                                                         motor_torque_signs<typename Shape::Vehicle>());
+
 }  // namespace pinnquad

@@ -9,7 +9,7 @@
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/exported/contents_hash.hpp"
-#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/exported/model_facts.hpp"
 #include "pinnquad/exported/model_records.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/model/predictor.hpp"
@@ -20,19 +20,15 @@
 
 namespace pinnquad {
 
-/// The format of headers and blocks, one number for both: this library writes it and reads no other one.
-/// A header has the types Scalar, Network, Features, Outputs, Vehicle; the arrays parameters, envelope_lower,
-/// envelope_upper, golden_features, golden_commands; the scalers input, output; format_version, frame, feature_names,
-/// feature_units, output_names, output_units, vehicle_name, motor_torque_signs, training_data_hash, training_rows;
-/// records, and what they name (exported/model_records.hpp); contents_hash, over all of it
-/// (exported/contents_hash.hpp). Optional, of a model that was judged: test_r_squared, linear_regression_r_squared
-/// (finite), worse_than_mean, beats_linear_regression (evaluation/errors.hpp). A Vehicle that is none of the library's
-/// stands before the model, in the same header. The block beside the header says the same hash
-/// (exported/model_block.hpp).
-inline constexpr int model_format_version = 4;
-
-/// The frames of every feature set, as a header states them.
-inline constexpr const char* model_frame = "body FRD, world NED";
+/// The format of headers: this library writes it and reads no other one. A header has the types Scalar, Network,
+/// Features, Outputs, Vehicle; the arrays parameters, envelope_lower, envelope_upper, golden_features, golden_commands,
+/// allocation (Eq. (2) at the rated density); the scalers input, output; format_version, training_data_hash,
+/// training_rows; its facts (exported/model_facts.hpp): command_meaning, command_lower, command_upper, sample_period_s,
+/// lag_removed_s; shape_hash and contents_hash (exported/contents_hash.hpp). Optional facts: worse_than_mean,
+/// beats_linear_regression, test_r_squared, linear_regression_r_squared (finite) of a model that was judged
+/// (evaluation/errors.hpp); bias_time_constants_s, of which no hash is. A Vehicle that is none of the library's stands
+/// before the model, in the same header. The block beside the header says the same hashes (exported/model_block.hpp).
+inline constexpr int header_format_version = 5;
 
 /// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of
 /// about ten to spare.
@@ -62,21 +58,39 @@ template <class M>
 using FormatOf = decltype(int{M::format_version});
 template <class M>
 using DescriptionOf =
-    std::void_t<FormatOf<M>, decltype(M::frame), decltype(M::feature_names), decltype(M::feature_units),
-                decltype(M::output_names), decltype(M::output_units), decltype(M::vehicle_name),
-                decltype(M::motor_torque_signs), decltype(std::uint64_t{M::training_data_hash}),
-                decltype(int{M::training_rows}), RecordsOf<M>, decltype(std::uint64_t{M::contents_hash})>;
+    std::void_t<FormatOf<M>, decltype(std::uint64_t{M::training_data_hash}), decltype(int{M::training_rows}),
+                decltype(CommandMeaning{M::command_meaning}), decltype(M::command_lower), decltype(M::command_upper),
+                decltype(M::sample_period_s), decltype(M::lag_removed_s), decltype(M::allocation),
+                decltype(std::uint64_t{M::shape_hash}), decltype(std::uint64_t{M::contents_hash})>;
 
-/// All texts are one.
-template <class Texts>
-constexpr bool one_unit(const Texts& texts) noexcept {
-  for (const auto& text : texts) {
-    if (!same_values(text, texts[0])) return false;
+template <class M>
+constexpr void require_facts() noexcept {
+  constexpr bool four = [] {
+    if constexpr (is_detected<BiasTimeConstantsOf, M>) return M::bias_time_constants_s.size() == 4;
+    return true;
+  }();
+  static_assert(four, "pinnquad: the model's time constants of a bias are not four (bias_time_constants_s)");
+  if constexpr (four) {
+    constexpr StatedNumber fault = fault_of(facts_of_header<M>(), FiniteConstant{}).number;
+    static_assert(fault != StatedNumber::command_range,
+                  "pinnquad: the range of the model's commands is none, or beyond -1 to 1: a command is a share of the "
+                  "full one (command_lower, command_upper)");
+    static_assert(fault != StatedNumber::sample_period_s && fault != StatedNumber::lag_removed_s,
+                  "pinnquad: the model's sample period or removed lag is no time of 0 to 4 s that it can be: a period "
+                  "is 0 (not said) or 0.00001 s and more, a lag 1 s at most (sample_period_s, lag_removed_s)");
+    static_assert(fault != StatedNumber::r_squared,
+                  "pinnquad: an R^2 of the model is above 1 or no number (test_r_squared, "
+                  "linear_regression_r_squared)");
+    static_assert(fault != StatedNumber::judged_figures,
+                  "pinnquad: the model's verdict is not that of its R^2 (test_r_squared, linear_regression_r_squared, "
+                  "worse_than_mean, beats_linear_regression)");
+    static_assert(fault != StatedNumber::bias_time_constant_s,
+                  "pinnquad: a time constant of the model's bias is no time of 0 to 60 s that a bias can have: 0 "
+                  "(none of this sum), or 0.02 s and more (bias_time_constants_s)");
   }
-  return true;
 }
 
-/// The first fault of the numbers that every model has.
+/// The first fault of an exported header's numbers.
 template <class M>
 constexpr StatedNumber fault_of_header() noexcept {
   return fault_of_numbers(
@@ -86,75 +100,41 @@ constexpr StatedNumber fault_of_header() noexcept {
 }
 
 template <class M>
-using TestFigureOf = decltype(double{M::test_r_squared});
-template <class M>
-using LinearFigureOf = decltype(double{M::linear_regression_r_squared});
-
-template <class M>
-constexpr bool are_header_figures() noexcept {
-  bool sound = true;
-  if constexpr (is_detected<TestFigureOf, M>) sound = sound && in_range<StatedNumber::r_squared>(M::test_r_squared);
-  if constexpr (is_detected<LinearFigureOf, M>) {
-    sound = sound && in_range<StatedNumber::r_squared>(M::linear_regression_r_squared);
-  }
-  return sound;
+constexpr void require_numbers() noexcept {
+  constexpr StatedNumber fault = fault_of_header<M>();
+  static_assert(fault != StatedNumber::weight, "pinnquad: a weight of the model is NaN or infinite");
+  static_assert(fault != StatedNumber::scaler, "pinnquad: a scaler's number is NaN or infinite");
+  static_assert(fault != StatedNumber::border, "pinnquad: a border of the model's envelope is NaN or infinite");
+  static_assert(fault != StatedNumber::deviation, "pinnquad: a scaler's standard deviation is not positive");
+  static_assert(fault != StatedNumber::envelope,
+                "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean "
+                "and standard deviation can have been (envelope_lower, envelope_upper, input)");
+  static_assert(fault != StatedNumber::golden_command, "pinnquad: a golden command is NaN or infinite");
+  static_assert(fault != StatedNumber::golden_vector, "pinnquad: a golden vector lies outside the model's envelope");
 }
 
-/// A linear regression whose R^2 was no number is not stated; the model beats it.
-template <class M>
-constexpr bool header_verdict_is_borne_out() noexcept {
-  if constexpr (is_detected<StatedVerdictOf, M> && is_detected<TestFigureOf, M>) {
-    double linear = -no_bound;
-    if constexpr (is_detected<LinearFigureOf, M>) linear = M::linear_regression_r_squared;
-    return bears_out(M::worse_than_mean, M::beats_linear_regression, M::test_r_squared, linear);
-  }
-  return true;
-}
-
-/// Compares the words of a header with its types.
+/// Compares what a header says with its types and with what a model can say.
 template <class M>
 constexpr void require_description() noexcept {
   static_assert(is_detected<DescriptionOf, M>,
-                "pinnquad: the model lacks what its format demands: frame, names, units, vehicle, motor order, hash of "
-                "the training data, records, contents_hash (exported/model.hpp)");
+                "pinnquad: the model lacks what its format demands: meaning and range of the commands, clock, "
+                "allocation, hash of the training data, shape_hash, contents_hash (exported/model.hpp)");
   if constexpr (is_detected<DescriptionOf, M>) {
-    using Features = typename M::Features;
-    using Outputs = typename M::Outputs;
-    static_assert(same_values(M::frame, model_frame), "pinnquad: the model was trained in other frames (frame)");
-    static_assert(same_values(M::feature_names, Features::names),
-                  "pinnquad: the model was trained on other features than its feature set now has (feature_names)");
-    static_assert(same_values(M::feature_units, Features::units),
-                  "pinnquad: the model was trained in other units than its feature set now has (feature_units)");
-    static_assert(same_values(M::output_names, OutputMap<Outputs>::names),
-                  "pinnquad: the model has other outputs than its output schema now has (output_names)");
-    static_assert(same_values(M::output_units, OutputMap<Outputs>::units),
-                  "pinnquad: the model's outputs have another unit than its output schema (output_units)");
-    static_assert(same_values(M::vehicle_name, M::Vehicle::name),
-                  "pinnquad: the model was trained for another airframe than its Vehicle (vehicle_name)");
     static_assert(
-        same_values(M::motor_torque_signs, motor_torque_signs<typename M::Vehicle>()),
-        "pinnquad: the model was trained with another motor order than its Vehicle now has: a rotor sits or turns "
-        "elsewhere (motor_torque_signs)");
-    constexpr StatedNumber fault = fault_of_header<M>();
-    static_assert(fault != StatedNumber::weight, "pinnquad: a weight of the model is NaN or infinite");
-    static_assert(fault != StatedNumber::scaler, "pinnquad: a scaler's number is NaN or infinite");
-    static_assert(fault != StatedNumber::border, "pinnquad: a border of the model's envelope is NaN or infinite");
-    static_assert(fault != StatedNumber::deviation, "pinnquad: a scaler's standard deviation is not positive");
-    static_assert(fault != StatedNumber::envelope,
-                  "pinnquad: the model's envelope is upside down, or ends where no training on features of its mean "
-                  "and standard deviation can have been (envelope_lower, envelope_upper, input)");
-    static_assert(fault != StatedNumber::golden_command, "pinnquad: a golden command is NaN or infinite");
-    static_assert(fault != StatedNumber::golden_vector, "pinnquad: a golden vector lies outside the model's envelope");
-    static_assert(are_header_figures<M>(),
-                  "pinnquad: an R^2 of the model is above 1 or no number (test_r_squared, "
-                  "linear_regression_r_squared)");
-    static_assert(header_verdict_is_borne_out<M>(),
-                  "pinnquad: the model's verdict is not that of its R^2 (test_r_squared, linear_regression_r_squared, "
-                  "worse_than_mean, beats_linear_regression)");
-    require_records<M>();
+        M::shape_hash == pinnquad::shape_hash<M>,
+        "pinnquad: the model was trained for another shape than its types now have: a layer, a name or unit of a "
+        "feature or an output, the airframe's name or the motor order (a rotor sits or turns elsewhere) is another "
+        "(shape_hash)");
+    using Window = WindowOf<typename M::Features>;
+    static_assert(Window::period_s <= 0.0 || same_period(M::sample_period_s, Window::period_s),
+                  "pinnquad: the model's sample period is another than its window's (sample_period_s)");
+    static_assert(same_header_allocation<M>(),
+                  "pinnquad: the model was trained for another allocation than its Vehicle now has (allocation)");
+    require_facts<M>();
+    require_numbers<M>();
     static_assert(same_contents<M>(),
                   "pinnquad: the header, or the airframe that it was trained for, was edited since it was exported: "
-                  "a number, a name or a text is another (contents_hash); export it again");
+                  "a number is another, or window, columns or base of its types are (contents_hash); export it again");
   }
 }
 
@@ -170,7 +150,7 @@ constexpr bool require_format() noexcept {
 template <class M>
 constexpr bool is_of_this_format() noexcept {
   if constexpr (is_detected<FormatOf, M>) {
-    return M::format_version == model_format_version;
+    return M::format_version == header_format_version;
   } else {
     return true;
   }
@@ -235,7 +215,7 @@ constexpr bool require_model() noexcept {
   } else if constexpr (!is_model<M> || model_kind<M> != ModelKind::header) {
     return is_model<M>;
   } else if constexpr (!detail::is_of_this_format<M>()) {
-    return detail::require_format<M::format_version, model_format_version>();
+    return detail::require_format<M::format_version, header_format_version>();
   } else {
     static_assert(require_shape<M>());
     static_assert(M::parameters.size() == static_cast<std::size_t>(M::Network::parameter_count),

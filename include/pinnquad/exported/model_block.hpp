@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "pinnquad/core/first_of.hpp"
-#include "pinnquad/core/fnv1a.hpp"
 #include "pinnquad/core/status.hpp"
 #include "pinnquad/exported/checksum.hpp"
 #include "pinnquad/exported/model.hpp"
@@ -56,16 +55,16 @@ struct ModelBlockHeader {
 /// zeros up to a multiple of 8. A reader refuses a mandatory record that it does not know and skips any other one.
 /// Here are the types and the bytes of each; "scalar" is the block's.
 enum class BlockRecord : std::uint16_t {
-  commands = 1,        ///< u32 CommandMeaning, u32 0, scalars lower and upper command
-  clock = 2,           ///< u32 sample period in ns (0: not said), u32 lag removed in ns
-  window = 3,          ///< u32 taps, u32 1 if causal
-  columns = 4,         ///< name and unit of each extra column, every text closed by a 0
-  allocation = 5,      ///< 16 scalars, row-major
-  base = 6,            ///< description of what the outputs add to
-  verdict = 7,         ///< u32 detail::judged_bits(), u32 0; optional
-  slope_signs = 8,     ///< 12 x i8: of du_i/d(angular acceleration), rotor by rotor about x, y, z, 0 unproven; optional
+  commands = 1,    ///< u32 CommandMeaning, u32 0, scalars lower and upper command
+  clock = 2,       ///< u32 sample period in ns (0: not said), u32 lag removed in ns
+  window = 3,      ///< u32 taps, u32 1 if causal
+  columns = 4,     ///< name and unit of each extra column, every text closed by a 0
+  allocation = 5,  ///< 16 scalars, row-major
+  base = 6,        ///< description of what the outputs add to
+  verdict = 7,     ///< u32 detail::judged_bits(), u32 0; optional
+  // an older writer said twice what parameters and airframe say: contents_hash is over 8 and 9; 10 is skipped
+  slope_signs = 8,     ///< 12 x i8: of du_i/d(angular acceleration), rotor by rotor about x, y, z; optional
   residual_range = 9,  ///< scalars: lower bounds of all outputs, then upper ones; optional
-  distance = 10,  ///< scalars: means of all features, lower triangle of L^-1 row by row, limit of the norm; optional
   // with those a block describes itself (exported/run_time_model.hpp)
   answer = 11,    ///< description of the predictor (model/description.hpp)
   features = 12,  ///< name and unit of each feature, every text closed by a 0
@@ -75,7 +74,7 @@ enum class BlockRecord : std::uint16_t {
                   ///< an older writer left the second one out
   trust = 16,  ///< f64 limit of the squared distance; factor, limit, cleared, period of the command residual; scalars:
                ///< means of all features, whitening triangle column by column; optional
-  certificate = 17,  ///< f64 slope (3), held slope (3), thrust slope, held thrust slope, command bound (4); optional
+  certificate = 17,  ///< of an older writer, 12 f64; read as the word that there is one; optional
   provenance = 18,   ///< name and value in turn, every text closed by a 0; optional
   affine = 19,       ///< scalars: commands at outputs 0, then by each output, of a schema that no library has; optional
   bias = 20,         ///< scalars: time constants of the bias of the four signed sums, s, 0 none is learnt; optional
@@ -89,6 +88,9 @@ inline constexpr std::uint16_t mandatory_record = 0x8000;
 namespace detail {
 
 inline constexpr std::uint32_t block_record_types = 21;
+PINNQUAD_ALWAYS_INLINE constexpr bool is_block_record(std::uint32_t type) noexcept {
+  return type >= 1 && type <= block_record_types && type != 10;
+}
 
 /// The most bytes of a block's provenance.
 inline constexpr std::uint32_t longest_provenance = 4096;
@@ -115,7 +117,6 @@ struct RecordLengths {
 };
 constexpr RecordLengths record_lengths(std::uint32_t scalar, std::uint32_t inputs, std::uint32_t outputs) noexcept {
   constexpr std::uint32_t rotors = rotor_count;
-  const std::uint32_t distance = (inputs + std::uint32_t(triangle(inputs))) * scalar;
   return {{0,
            8 + 2 * scalar,
            8,
@@ -126,13 +127,13 @@ constexpr RecordLengths record_lengths(std::uint32_t scalar, std::uint32_t input
            8,
            3 * rotors,
            2 * outputs * scalar,
-           distance + scalar,
+           0,
            0,
            0,
            0,
            0,
            16,
-           5 * 8 + distance,
+           5 * 8 + (inputs + std::uint32_t(triangle(inputs))) * scalar,
            12 * 8,
            0,
            rotors * (1 + outputs) * scalar,
@@ -228,42 +229,6 @@ struct ModelBlockLayout {
     return bytes;
   }
 };
-
-namespace detail {
-/// All that a shape says behind its answer; texts of any kind.
-template <class Names, class Units, class OutputNames, class OutputUnits>
-constexpr void absorb_shape(Fnv1a& fnv, const Names& names, const Units& units, const OutputNames& output_names,
-                            const OutputUnits& output_units, std::string_view vehicle_name,
-                            const TorqueSigns& signs) noexcept {
-  fnv.absorb_text(model_frame);
-  for (const auto& name : names) fnv.absorb_text(name);
-  for (const auto& unit : units) fnv.absorb_text(unit);
-  for (const auto& name : output_names) fnv.absorb_text(name);
-  // one unit for all is said once
-  const std::size_t said = output_units.size() > 1 && one_unit(output_units) ? 1 : output_units.size();
-  for (std::size_t i = 0; i < said; ++i) fnv.absorb_text(output_units[i]);
-  fnv.absorb_text(vehicle_name);
-  for (const auto& rotor : signs) {
-    for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
-  }
-}
-
-/// `vehicle_name` and `signs`: of the vehicle, which need not be known to the compiler.
-template <class Shape>
-constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name, const TorqueSigns& signs) noexcept {
-  using Map = OutputMap<typename Shape::Outputs>;
-  Fnv1a fnv;
-  absorb_description<typename Shape::Network>(fnv);
-  absorb_shape(fnv, Shape::Features::names, Shape::Features::units, Map::names, Map::units, vehicle_name, signs);
-  return fnv.hash;
-}
-}  // namespace detail
-
-/// Names what a block's weights are for: the answer's description (model/description.hpp), frame, feature names and
-/// units, output names and units, vehicle name and motor order.
-template <class Shape>
-inline constexpr std::uint64_t shape_hash = detail::hash_of_shape<Shape>(Shape::Vehicle::name,
-                                                                         motor_torque_signs<typename Shape::Vehicle>());
 
 namespace detail {
 

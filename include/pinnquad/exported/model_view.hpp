@@ -10,7 +10,6 @@
 #include "pinnquad/exported/block_contents.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_block.hpp"
-#include "pinnquad/exported/stated_certificate.hpp"
 #include "pinnquad/model/predictor.hpp"
 
 namespace pinnquad {
@@ -43,7 +42,7 @@ struct ModelScales {
   FeatureVector envelope_upper{};
   std::uint64_t training_data_hash = 0;
   std::uint32_t training_rows = 0;
-  ModelRecords<Scalar> records{};
+  ModelFacts facts{};
 };
 
 /// A predictor's weights as the vector unit's kernel reads them, and where a view finds them; nothing without a vector
@@ -67,9 +66,9 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// A model as `InverseDynamics` reads it, for weights that stay in a block. `Shape` says what the block must hold: an
 /// exported header, or any type with Scalar, Network, Features, Outputs and Vehicle.
-/// Lifetime: scalers and envelope are copied; weights, golden vectors and optional records are read in the block each
-/// time. A copy of a view looks into the same block, and at the same packed weights. As made, a view declines: its
-/// envelope is empty, its self test fails, forward() gives NaN.
+/// Lifetime: scalers, envelope and facts are copied; weights and golden vectors are read in the block each time. A copy
+/// of a view looks into the same block, and at the same packed weights. As made, a view declines: its envelope is
+/// empty, its self test fails, forward() gives NaN.
 template <class ShapeType>
 class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedWeights<typename ShapeType::Network> {
   using Place = detail::PackedWeights<typename ShapeType::Network>;
@@ -149,7 +148,7 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
     view.parameters_ = scalars + Layout::parameters(golden);
     view.training_data_hash = detail::read_u64(bytes + Header::training_data_hash);
     view.training_rows = detail::read_u32(bytes + Header::training_rows);
-    view.records = records;
+    view.facts = records;
     if constexpr (Place::exist) view.Place::packed = nullptr;
     return Status::ok;
   }
@@ -200,20 +199,17 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
   }
 
   static bool sound(const detail::BlockNumbers<Scalar>& numbers, const detail::BlockRecords<Scalar>& records) noexcept {
-    constexpr detail::BlockStructure structure = detail::block_structure<Network>();
     constexpr auto allocation = pinnquad::allocation(airframe_value<typename ShapeType::Vehicle, double>());
     constexpr detail::TorqueSigns signs = motor_torque_signs<typename ShapeType::Vehicle>();
     const detail::BlockVehicle vehicle{detail::first_of<double>(allocation), detail::first_of<int>(signs)};
     using detail::StatedNumber;
-    bool sound = detail::fault_of_block(records, numbers, structure, vehicle) == StatedNumber::none;
+    bool sound = detail::fault_of_block(records, numbers, vehicle) == StatedNumber::none;
     if constexpr (has_certificate<ShapeType>) {
       constexpr auto certified =
           detail::certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());
-      const Certificate certificate = certificate_of<ShapeType>(certified, numbers.parameters(), numbers.scales());
-      sound &= certificate.proven();
-      sound &= records.certificate == nullptr || detail::states_certificate(records.certificate, certificate);
+      sound &= certificate_of<ShapeType>(certified, numbers.parameters(), numbers.scales()).proven();
     } else {
-      sound &= records.certificate == nullptr;
+      sound &= !records.said(BlockRecord::certificate);
     }
     return sound;
   }

@@ -314,14 +314,10 @@ class RunTimeModel {
 
   /// Numbers and contents, as ModelView::open() wants them.
   Status sound(BlockFault& fault) const noexcept {
-    const RunTimePart& base = network_.part(0);
-    const bool has_residual = network_.part_count() == 2 && network_.part(1).bounded;
-    const detail::BlockStructure structure{base.axis_aligned && (network_.part_count() == 1 || has_residual),
-                                           has_residual, std::size_t(base.parameter_count)};
     const AllocationMatrix<double> own = allocation(airframe_);
     const detail::TorqueSigns signs = motor_torque_signs(airframe_);
     const detail::BlockVehicle vehicle{detail::first_of<double>(own), detail::first_of<int>(signs)};
-    const detail::StatedNumber number = detail::fault_of_block(records_, numbers_, structure, vehicle);
+    const detail::StatedNumber number = detail::fault_of_block(records_, numbers_, vehicle);
     if (number == detail::StatedNumber::none) return Status::ok;
     return refuse(fault, Status::block_corrupt, detail::StatedFault{number});
   }

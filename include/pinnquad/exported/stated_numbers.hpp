@@ -30,13 +30,6 @@ enum class StatedNumber : std::uint8_t {
   lag_removed_s,
   window,
   verdict,
-  slope_sign,
-  torque_sign,
-  residual_range,
-  residual_bounds,
-  distance,
-  distance_mean,
-  distance_limit,
   affine,
   bias_time_constant_s,
   trust_distance_limit,
@@ -92,13 +85,6 @@ inline constexpr StatedRange stated_ranges[] = {
     {0, longest_lag_s, false, "a removed lag of 0 to 1 s (record clock, lag_removed_s)", ""},
     {0, 0, false, "a window of 1 tap or more, causal or not (record window)", "another"},
     {0, 0, false, "a verdict of two bits (record verdict)", "others"},
-    {-1, 1, false, "slope signs of -1, 0 or 1 (record slope_signs)", ""},
-    {0, 0, false, "slope signs of the torques that its rotors make (record slope_signs)", "another"},
-    {-no_bound, no_bound, false, "a range of the residual in order (record residual_range)", "another"},
-    {0, 0, false, "a range of the residual as its parameters bound it (record residual_range)", "another"},
-    {-no_bound, no_bound, false, "statistics of a distance with a diagonal above 0 (record distance)", "others"},
-    {0, 0, false, "a mean of the distance inside the envelope (record distance)", "one outside of it"},
-    {1e-30, furthest_deviations, false, "a limit of the distance above 0 to 131072 (record distance)", ""},
     {-no_bound, no_bound, false, "numbers of a linear schema (record affine)", "NaN or Inf"},
     {shortest_bias_time_constant_s, longest_bias_time_constant_s, true,
      "time constants of the bias of 0.02 to 60 s, or 0 (record bias)", ""},
@@ -223,14 +209,12 @@ constexpr StatedNumber fault_of_numbers(const IsFinite& finite, const Scales<Sca
   return StatedNumber::none;
 }
 
-/// A triangle of numbers whose diagonal is above 0. `columns`: stored column after column, else row after row.
-template <class IsFinite, class Scalar>
-constexpr bool is_triangle(const IsFinite& finite, const Scalar* triangle, std::size_t size, bool columns) noexcept {
+/// A triangle of numbers, stored column after column, whose diagonal is above 0.
+template <class Scalar>
+bool is_triangle(const Scalar* triangle, std::size_t size) noexcept {
   bool sound = true;
-  for (std::size_t i = 0, at = 0; i < size; ++i) {
-    const std::size_t count = columns ? size - i : i + 1;
-    sound = sound && are_finite(finite, triangle + at, count) && triangle[columns ? at : at + i] > Scalar(0);
-    at += count;
+  for (std::size_t count = size; count > 0; triangle += count--) {
+    sound = sound && are_finite(FiniteNumber{}, triangle, count) && triangle[0] > Scalar(0);
   }
   return sound;
 }

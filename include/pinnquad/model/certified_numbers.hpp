@@ -15,10 +15,11 @@
 
 namespace pinnquad {
 
-/// A proven slope is above this share of the airframe's own at full command. Training leaves a hundredth at least
-/// (fit_monotone_base()); a network that is shown the angular acceleration may take nine tenths of it, rounding and
-/// rotors' curves half of the rest.
-inline constexpr double least_slope_share = 0.0005;
+/// A fit leaves a slope of at least this share of the airframe's own (fit_monotone_base()).
+inline constexpr double least_fitted_slope_share = 0.01;
+/// A proven slope is above this share of the airframe's own at full command: a network that is shown the angular
+/// acceleration may take nine tenths of what the fit leaves, rounding and rotors' curves half of the rest.
+inline constexpr double least_slope_share = 0.05 * least_fitted_slope_share;
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {

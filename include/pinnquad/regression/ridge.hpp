@@ -37,20 +37,11 @@ struct AffineMap {
 /// Sums of 1, x, y and their products over rows: all that least squares ask of them.
 class RegressionSums {
  public:
-  RegressionSums(int inputs, int outputs)
-      : inputs_(inputs),
-        outputs_(outputs),
-        products_(Eigen::MatrixXd::Zero(1 + inputs + outputs, 1 + inputs + outputs)) {}
+  RegressionSums(int inputs, int outputs);
 
   void add(const double* x, const double* y);
-  RegressionSums& operator+=(const RegressionSums& other) {
-    products_ += other.products_;
-    return *this;
-  }
-  RegressionSums& operator-=(const RegressionSums& other) {
-    products_ -= other.products_;
-    return *this;
-  }
+  RegressionSums& operator+=(const RegressionSums& other);
+  RegressionSums& operator-=(const RegressionSums& other);
 
   /// The same rows with one of the outputs.
   RegressionSums of_output(int output) const { return of_column(1 + inputs_ + output); }
@@ -58,16 +49,16 @@ class RegressionSums {
   RegressionSums of_input(int input) const { return of_column(1 + input); }
 
   /// Sums of 1, x, y and their products, symmetric.
-  Eigen::MatrixXd products() const { return products_.selfadjointView<Eigen::Lower>(); }
+  Eigen::MatrixXd products() const;
   /// With these instead, of as many inputs and outputs; the lower triangle is read.
   RegressionSums with(const Eigen::MatrixXd& products) const;
 
   int inputs() const noexcept { return inputs_; }
   int outputs() const noexcept { return outputs_; }
-  double rows() const { return products_(0, 0); }
+  double rows() const;
 
   /// Means of x and of y, in this order.
-  Eigen::VectorXd means() const { return products_.col(0).tail(inputs_ + outputs_) / rows(); }
+  Eigen::VectorXd means() const;
   /// Covariances of x and y, divisor n.
   Eigen::MatrixXd covariances() const;
 
@@ -80,9 +71,8 @@ class RegressionSums {
 
 namespace detail {
 
-/// A B. Each other form of Eigen's products takes each translation unit that fits a ridge up to half a second longer to
-/// compile.
-inline Eigen::MatrixXd matrix_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return a * b; }
+/// A B.
+Eigen::MatrixXd matrix_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// A = V diag(values) V', V orthogonal: a column per eigenvalue, in no order.
 struct EigenPairs {
@@ -90,8 +80,8 @@ struct EigenPairs {
   Eigen::MatrixXd vectors;
 };
 
-/// Of a symmetric matrix, by Jacobi's rotations: Eigen's solver is faster when it runs, and takes each translation unit
-/// that fits a ridge four seconds longer to compile, for a case that is rare. Blocks along the diagonal with nothing
+/// Eigenvalues and vectors of a symmetric matrix, by Jacobi's rotations: with Eigen's solver a unit that includes all
+/// headers takes five seconds longer to compile, for a case that is rare. Blocks along the diagonal with nothing
 /// between them, as equations without a common unknown make them, are turned one by one.
 EigenPairs eigen_pairs(const Eigen::MatrixXd& a);
 

@@ -11,6 +11,7 @@
 
 #include "pinnquad/core/body.hpp"
 #include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/training/ground_features.hpp"
 #include "pinnquad/training/trained_model.hpp"
 
 namespace pinnquad {
@@ -22,8 +23,6 @@ struct AskedModel {
   template <class Model, class = typename Model::Features::template Inputs<double>>
   AskedModel(const Model& model);
 
-  using Features = std::function<void(const Flight& flight, std::size_t row, const double* x)>;
-
   std::string airframe_name;
   Airframe<double> airframe{};
   std::vector<std::string> units;  ///< of the features
@@ -31,9 +30,9 @@ struct AskedModel {
   std::vector<double> envelope_lower, envelope_upper;
   bool is_double = false;
   /// Calls `visit` for each row that has features, as the model's scalar has them.
-  std::function<void(const RowSet& rows, const Features& visit)> each_row;
+  GroundFeatures::EachRow each_row;
   /// The same, worked out in double.
-  std::function<void(const RowSet& rows, const Features& visit)> each_exact_row;
+  GroundFeatures::EachRow each_exact_row;
   std::function<Commands<double>(const double* x)> predict;  ///< as TrainedModel::predict()
   /// The standardised outputs of a bounded residual, before they are bounded; empty for a model without one.
   std::function<void(const double* x, double* y)> residual;
@@ -43,20 +42,6 @@ struct AskedModel {
 };
 
 namespace detail {
-
-template <class Features, class Scalar>
-std::function<void(const RowSet&, const AskedModel::Features&)> rows_of_features() {
-  return [](const RowSet& rows, const AskedModel::Features& visit) {
-    each_features<Features, Scalar>(rows, [&visit](const Flight& flight, std::size_t row, const auto& x) {
-      if constexpr (std::is_same_v<Scalar, double>) {
-        visit(flight, row, x.data());
-      } else {
-        const std::vector<double> own(x.begin(), x.end());
-        visit(flight, row, own.data());
-      }
-    });
-  };
-}
 
 template <class FeatureVector>
 FeatureVector as_features(const double* x) {

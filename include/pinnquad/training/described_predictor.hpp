@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A predictor by its description (model/description.hpp) and its parameters: code that asks one is compiled once.
+// Types of a model as texts, and a predictor by its description (model/description.hpp) and its parameters: code that
+// asks one is compiled once.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +11,27 @@
 #include <utility>
 #include <vector>
 
+#include "pinnquad/core/type_text.hpp"
 #include "pinnquad/exported/run_time_network.hpp"
 #include "pinnquad/model/description.hpp"
 
-namespace pinnquad::detail {
+namespace pinnquad {
+
+/// "pinnquad::Network<float, pinnquad::InputSize<16>, ...>" (core/type_text.hpp), lists closed as ">>".
+template <class T>
+std::string type_name() {
+  std::string name(detail::type_text<T>());
+  for (std::size_t at = name.find("> >"); at != std::string::npos; at = name.find("> >", at)) name.erase(at + 1, 1);
+  return name;
+}
+
+/// A predictor by what names it.
+struct PredictorText {
+  std::string description;  ///< model/description.hpp
+  std::string type;         ///< as a header names it
+};
+
+namespace detail {
 
 /// A description as a text (model/description.hpp).
 struct DescriptionText {
@@ -28,6 +46,11 @@ std::string description_text() {
   return sink.text;
 }
 
+template <class Predictor>
+PredictorText predictor_text() {
+  return {description_text<Predictor>(), type_name<Predictor>()};
+}
+
 /// A predictor by its description, with the bits of the compiled one.
 class DescribedPredictor {
  public:
@@ -39,6 +62,8 @@ class DescribedPredictor {
     }
     network_ = std::move(network);
   }
+  DescribedPredictor(const PredictorText& text, std::vector<float> parameters)
+      : DescribedPredictor(text.description, std::move(parameters)) {}
   /// Inputs of the last layer of its first part.
   int last_width() const {
     const RunTimePart& part = network_->part(0);
@@ -67,4 +92,5 @@ class DescribedPredictor {
   std::vector<float> parameters_;
 };
 
-}  // namespace pinnquad::detail
+}  // namespace detail
+}  // namespace pinnquad

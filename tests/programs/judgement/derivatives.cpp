@@ -71,7 +71,7 @@ void check_against_differences(const char* what) {
   const auto derivatives = ExactDerivatives::of_trained(model);
   int both_signs[2] = {0, 0};
   for (const Sample& row : samples(50, engine)) {
-    const programs::AxisDerivatives found = derivatives(sample_features<PaperFeatures, double>(row).data());
+    const programs::AxisSlopes found = derivatives(sample_features<PaperFeatures, double>(row).data());
     for (std::size_t axis = 0; axis < 3; ++axis) {
       CAPTURE(axis);
       // small: a kink of ReLU in between is not to be expected
@@ -119,7 +119,7 @@ TEST_CASE("derivatives of a sum through a window: by an angular acceleration tha
   for (int draw = 0; draw < 50; ++draw) {
     Model::FeatureVector x{};
     for (double& feature : x) feature = any(engine);
-    const programs::AxisDerivatives found = derivatives(x.data());
+    const programs::AxisSlopes found = derivatives(x.data());
     for (std::size_t axis = 0; axis < 3; ++axis) {
       constexpr double step = 1e-6;
       auto above = x, below = x;
@@ -144,7 +144,7 @@ TEST_CASE("derivatives of a residual are its base's too") {
   const auto derivatives = ExactDerivatives::of_trained(model);
   std::mt19937_64 engine(3);
   for (const Sample& row : samples(3, engine)) {
-    const programs::AxisDerivatives found = derivatives(sample_features<PaperFeatures, double>(row).data());
+    const programs::AxisSlopes found = derivatives(sample_features<PaperFeatures, double>(row).data());
     const double thrust_N = airframe.max_rotor_thrust_N();
     CHECK(found[0] == doctest::Approx(airframe.inertia_kg_m2[0] / (std::abs(airframe.rotors[0].y_m) * thrust_N)));
     CHECK(found[1] == doctest::Approx(airframe.inertia_kg_m2[1] / (std::abs(airframe.rotors[0].x_m) * thrust_N)));
@@ -188,7 +188,7 @@ TEST_CASE("model 1 commands J / (lever x thrust) per angular acceleration") {
     const double scale =
         standard_atmosphere_density_kg_m3(site.elevation_m + row.altitude_m) / standard_air_density_kg_m3<double>;
     const double thrust_N = scale * airframe.max_rotor_thrust_N();
-    const programs::AxisDerivatives found = derivatives(row);
+    const programs::AxisSlopes found = derivatives(row);
     CHECK(found[0] == doctest::Approx(airframe.inertia_kg_m2[0] / (std::abs(airframe.rotors[0].y_m) * thrust_N)));
     CHECK(found[1] == doctest::Approx(airframe.inertia_kg_m2[1] / (std::abs(airframe.rotors[0].x_m) * thrust_N)));
     CHECK(found[2] == doctest::Approx(airframe.inertia_kg_m2[2] / (scale * airframe.max_rotor_torque_N_m())));
@@ -203,7 +203,7 @@ TEST_CASE("the share counts rows below 0; what is not finite is told") {
   int row = 0;
   const programs::DerivativeFigures found = programs::derivative_figures(rows, [&row](const Sample&) {
     ++row;
-    return programs::AxisDerivatives{row == 2 ? -1e-9 : 0.0, row < 4 ? -1.0 - row : 1.0, row == 1 ? std::nan("") : 1.0};
+    return programs::AxisSlopes{row == 2 ? -1e-9 : 0.0, row < 4 ? -1.0 - row : 1.0, row == 1 ? std::nan("") : 1.0};
   });
   CHECK(found.wrong_share[0] == 0.25);
   CHECK(found.wrong_share[1] == 0.75);
@@ -214,7 +214,7 @@ TEST_CASE("the share counts rows below 0; what is not finite is told") {
   CHECK(found.sees_acceleration);
   CHECK(std::isnan(found.least[2]));
   const programs::DerivativeFigures none =
-      programs::derivative_figures({}, [](const Sample&) { return programs::AxisDerivatives{}; });
+      programs::derivative_figures({}, [](const Sample&) { return programs::AxisSlopes{}; });
   CHECK(std::isnan(none.wrong_share[0]));
   CHECK(std::isnan(none.least[0]));
 }

@@ -73,21 +73,6 @@ constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 const std::vector<Lie<Residual>> residual_lies = {
     {"bounds_of_residual_a_million_times", [](Residual& b) { b.scale(first_bound, 8, 1e6); }},
-    {"one_bound_a_hundredth_more", [](Residual& b) { b.scale(first_bound + 5, 1, 1.01); }},
-    {"stated_range_halved", [](Residual& b) { b.scale_record(BlockRecord::residual_range, 0, 8, 0.5); }},
-    {"stated_range_1e30",
-     [](Residual& b) {
-       for (std::size_t i = 0; i < 8; ++i) {
-         b.set_in_record(BlockRecord::residual_range, 4 * i, i < 4 ? -1e30F : 1e30F);
-       }
-     }},
-    {"slope_signs_negated",
-     [](Residual& b) {
-       for (std::size_t i = 0; i < 12; ++i) {
-         unsigned char& sign = b.bytes[b.record(BlockRecord::slope_signs) + i];
-         sign = static_cast<unsigned char>(0x100U - sign);
-       }
-     }},
     {"slope_1e-45", [](Residual& b) { b.bytes.set_scalar(first_parameter + 1, 1e-45F); }},
     {"slope_0", [](Residual& b) { b.bytes.set_scalar(first_parameter + 1, 0.0F); }},
     {"slope_negative", [](Residual& b) { b.scale(first_parameter, 1, -1); }},
@@ -129,19 +114,11 @@ const std::vector<Lie<Residual>> residual_lies = {
     {"window_of_three", [](Residual& b) { b.bytes.set_u32(b.record(BlockRecord::window), 3); }},
 };
 
-constexpr std::size_t racer_inputs = Window::Layout::inputs;
 const std::vector<Lie<Window>> window_lies = {
     {"window_taps_changed", [](Window& b) { b.bytes.set_u32(b.record(BlockRecord::window), 3); }},
     {"window_not_causal", [](Window& b) { b.bytes.set_u32(b.record(BlockRecord::window) + 4, 0); }},
     {"period_of_another_window", [](Window& b) { b.bytes.set_u32(b.record(BlockRecord::clock), 20000000U); }},
     {"column_renamed", [](Window& b) { b.bytes[b.record(BlockRecord::columns)] ^= 1U; }},
-    {"distance_limit_nan",
-     [](Window& b) {
-       b.set_in_record(BlockRecord::distance, 8 * (racer_inputs + detail::triangle(racer_inputs)),
-                       std::numeric_limits<double>::quiet_NaN());
-     }},
-    {"distance_mean_outside", [](Window& b) { b.set_in_record(BlockRecord::distance, 0, 1e6); }},
-    {"distance_diagonal_negative", [](Window& b) { b.scale_record(BlockRecord::distance, 8 * racer_inputs, 1, -1); }},
 };
 
 template <class Model>

@@ -55,8 +55,8 @@ void draw(const std::string& folder) {
   const programs::AxisSeries series = ellipse_cloud();
   const auto write = [&](const char* name, const programs::Chart& chart) {
     programs::write_svg(folder + "/" + name + ".svg", chart);
-    std::ofstream(folder + "/" + name + ".html")
-        << programs::whole_page("charts", programs::text_style, "<figure>" + programs::inline_svg(chart) + "</figure>");
+    std::ofstream(folder + "/" + name + ".html") << programs::whole_page(
+        "charts", programs::page_file("text.css"), "<figure>" + programs::inline_svg(chart) + "</figure>");
   };
   write("trajectory", programs::trajectory_chart(spiral(8)));
   write("slow_trajectory", programs::trajectory_chart(spiral(3)));

@@ -231,7 +231,7 @@ class NeuralController {
   PINNQUAD_NOINLINE void take_model(const Inverse& inverse) noexcept {
     if (checksum_ != 0) biases_.another_model();
     checksum_ = models_.checksum(&inverse);
-    const BiasSettings<float> own = pinnquad::bias_settings<float>(inverse.model().records);
+    const BiasSettings<float> own = pinnquad::bias_settings<float>(inverse.model().facts);
     biases_.time_constants(detail::bias_time_constants_s(settings_, own));
   }
 

@@ -2,6 +2,12 @@
 // Bodies of airframe_writer.hpp.
 #pragma once
 
+#include <array>
+#include <locale>
+#include <ostream>
+#include <sstream>
+#include <stdexcept>
+
 #include "pinnquad/deploy/airframe_writer.hpp"
 
 namespace pinnquad {

@@ -28,16 +28,15 @@ void BlockModel::open_as() {
     refuse(fault.expected, *fault.found == 0 ? number_text(fault.number) : fault.found);
   }
   derivatives_ = ExactDerivatives(*model);
-  const bool says_signs = model->records().slope_signs != nullptr;
-  const unsigned char* stated = model->records().certificate;
+  const auto& said = model->records();
+  const bool claims_proof = said.claims_proof(), brings_certificate = said.said(BlockRecord::certificate);
   model_ = std::unique_ptr<const RunTimeModel<Scalar>>(std::move(model));
   require_words();
   if (!(golden_difference() <= golden_tolerance)) refuse("golden commands that its weights give", "others");
-  if (!says_signs && stated == nullptr) return;
+  if (!claims_proof) return;
   const std::optional<Certificate> proof = certificate();
   if (proof && !proof->proven()) refuse("slopes and bounds of which its certificate is proven", "others");
-  if (stated == nullptr) return;
-  if (!proof || !detail::states_certificate(stated, *proof)) refuse(detail::StatedNumber::certificate, "others");
+  if (!proof && brings_certificate) refuse(detail::StatedNumber::certificate, "others");
 }
 
 PINNQUAD_BODY void BlockModel::open() {
@@ -185,7 +184,7 @@ PINNQUAD_BODY Commands<double> BlockModel::commands(const std::vector<double>& x
   });
 }
 
-PINNQUAD_BODY AxisDerivatives BlockModel::derivatives(const std::vector<double>& x, bool held) const {
+PINNQUAD_BODY AxisSlopes BlockModel::derivatives(const std::vector<double>& x, bool held) const {
   return derivatives_(x.data(), held);
 }
 
@@ -198,23 +197,17 @@ PINNQUAD_BODY void BlockModel::require_words() const {
   };
   require_whole("seed", StatedNumber::seed);
   require_whole("epochs", StatedNumber::epochs);
-  double figures[2]{};
-  bool stated = true;
-  for (const char* word : {"test_r_squared", "linear_regression_r_squared"}) {
-    const std::string text = provenance(word);
-    double& figure = figures[word[0] == 't' ? 0 : 1];
-    stated = stated && !text.empty();
-    if (text.empty()) continue;
-    if (!parse_number(text, figure) || !is_finite(figure) || !detail::in_range<StatedNumber::r_squared>(figure)) {
-      refuse(StatedNumber::r_squared, text);
-    }
+  ModelFacts facts = with([](const auto& model) -> ModelFacts { return model.records(); });
+  facts.has_r_squared = true;
+  for (double* figure : {&facts.test_r_squared, &facts.linear_regression_r_squared}) {
+    const bool test = figure == &facts.test_r_squared;
+    const std::string text = provenance(test ? "test_r_squared" : "linear_regression_r_squared");
+    facts.has_r_squared = facts.has_r_squared && !text.empty();
+    if (!text.empty() && !parse_number(text, *figure)) refuse(StatedNumber::r_squared, text);
   }
-  const bool borne_out = with([&](const auto& model) {
-    const auto& said = model.records();
-    return !said.has_verdict ||
-           detail::bears_out(said.worse_than_mean, said.beats_linear_regression, figures[0], figures[1]);
-  });
-  if (stated && !borne_out) refuse(StatedNumber::judged_figures, "another");
+  const detail::StatedFault fault = detail::fault_of(facts, detail::FiniteNumber{});
+  if (fault.number == StatedNumber::r_squared) refuse(fault.number, number_text(fault.value));
+  if (fault.number != StatedNumber::none) refuse(fault.number, "another");
 }
 
 PINNQUAD_BODY void BlockModel::refuse(detail::StatedNumber number, const std::string& found) const {

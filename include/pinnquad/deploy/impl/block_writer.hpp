@@ -23,11 +23,10 @@ PINNQUAD_BODY std::vector<std::string> provenance_texts(const WrittenRecords& re
                                     "features",      records.features_type,
                                     "outputs",       records.outputs_type,
                                     "pinnquad",      PINNQUAD_VERSION};
-  const auto& verdict = records.verdict;
-  if (verdict && is_finite(verdict->test_r_squared) && is_finite(verdict->linear_regression_r_squared)) {
+  const ModelFacts& facts = records.facts;
+  if (facts.has_r_squared && facts.linear_regression_r_squared > -no_bound) {
     append_texts(texts, std::array{"test_r_squared", "linear_regression_r_squared"},
-                 std::array{number_text(stated_figure(verdict->test_r_squared)),
-                            number_text(stated_figure(verdict->linear_regression_r_squared))});
+                 std::array{number_text(facts.test_r_squared), number_text(facts.linear_regression_r_squared)});
   }
   for (std::string& text : texts) text = printable(text);
   return texts;

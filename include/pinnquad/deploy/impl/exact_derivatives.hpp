@@ -6,7 +6,7 @@
 
 namespace pinnquad {
 
-PINNQUAD_BODY AxisDerivatives ExactDerivatives::operator()(const double* features, bool held) const {
+PINNQUAD_BODY AxisSlopes ExactDerivatives::operator()(const double* features, bool held) const {
   // a value, its derivatives by three angular accelerations, and zeros that fill a pack
   constexpr int numbers = padded<NativePack<double>>(4);
   using Entry = RunTimeNetwork::Values<double, numbers>;
@@ -35,7 +35,7 @@ PINNQUAD_BODY AxisDerivatives ExactDerivatives::operator()(const double* feature
       by_acceleration[axis][rotor] += by_x[rotor * read + feature];
     }
   });
-  AxisDerivatives result{};
+  AxisSlopes result{};
   for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = signed_sum(signs_[axis], by_acceleration[axis]);
   return result;
 }

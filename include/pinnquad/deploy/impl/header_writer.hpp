@@ -2,6 +2,8 @@
 // Bodies of header_writer.hpp.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <locale>
 #include <sstream>
 #include <string_view>
@@ -19,6 +21,12 @@
 namespace pinnquad {
 namespace detail {
 
+/// Where a model comes from, in words and figures, and what an inverse may learn: no hash is over them.
+PINNQUAD_BODY bool is_editable(std::string_view name) {
+  return name == "name" || name == "training_data" || name == "epochs" || name == "loss" || name == "test_r_squared" ||
+         name == "linear_regression_r_squared" || name == "bias_time_constants_s";
+}
+
 /// The constants of a struct, written one after the other, and the hash over those that count
 /// (exported/contents_hash.hpp).
 class ConstantWriter {
@@ -26,10 +34,10 @@ class ConstantWriter {
   explicit ConstantWriter(std::ostream& out) : out_(out) {}
 
   std::uint64_t contents_hash() const { return sum_; }
-  /// Takes into the hash a value that is no constant.
+  /// Takes a value into the hash, that of a constant that may not be edited.
   template <class Value>
   void count(std::string_view name, const Value& value) {
-    if (!is_hashed(name)) return;
+    if (is_editable(name)) return;
     ConstantHash hash(name);
     add(hash, value);
     sum_ += hash.value();
@@ -85,8 +93,8 @@ class ConstantWriter {
   using ElementOf = decltype(*std::declval<const Value&>().begin());
   template <class Value>
   static void add(ConstantHash& hash, const Value& value) {
-    if constexpr (std::is_convertible_v<Value, std::string>) {
-      hash.add(std::string_view(printable(value)));
+    if constexpr (std::is_convertible_v<Value, std::string_view>) {
+      hash.add(std::string_view(printable(std::string(value))));
     } else if constexpr (is_detected<ElementOf, Value>) {
       for (const auto& one : value) add(hash, one);
     } else {
@@ -98,52 +106,40 @@ class ConstantWriter {
   std::uint64_t sum_ = 0;
 };
 
-/// Writes the records of a header into a struct, whose texts around them are `out`'s.
-template <class Scalar>
-void write_header_records(std::ostream& out, ConstantWriter& write, const WrittenRecords& records) {
-  const std::string scalar = std::is_same_v<Scalar, float> ? "float" : "double";
-  out << "\n  // records: a reader that does not know one of them must not fly the model "
-         "(exported/model_records.hpp)\n";
-  std::vector<std::string> names;
-  for (const std::string_view record : known_records) names.emplace_back(record);
-  write.list("const char*", "records", names);
-  write.text("answer", records.answer);
-  write.constant("auto", "command_meaning",
-                 std::string("pinnquad::CommandMeaning::") + to_string(*records.command_meaning),
-                 *records.command_meaning);
-  write.number("command_lower", records.command_lower);
-  write.number("command_upper", records.command_upper);
-  write.number("sample_period_s", records.sample_period_s);
-  write.number("lag_removed_s", records.lag_removed_s);
-  write.number("window_taps", static_cast<int>(records.window_taps));
-  write.truth("causal", records.causal);
-  write.list("const char*", "column_names", records.column_names);
-  write.list("const char*", "column_units", records.column_units);
-  out << "  // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density\n";
-  write.table("double", "allocation", records.allocation);
-  write.text("base", records.base);
-  if (records.slope_signs) write.table("int", "slope_signs", *records.slope_signs);
-  if (records.residual_range) {
-    write.list(scalar, "residual_lower", converted<Scalar>(records.residual_range->lower));
-    write.list(scalar, "residual_upper", converted<Scalar>(records.residual_range->upper));
+/// Takes into the hash what the types of a header say.
+PINNQUAD_BODY void count_types(ConstantWriter& write, const WrittenRecords& model) {
+  const auto features = names_and_units(model.feature_texts, 0);
+  const auto outputs = names_and_units(model.output_texts, 1);  // behind the schema's description
+  write.count("frame", std::string(model_frame));
+  write.count("feature_names", features.names);
+  write.count("feature_units", features.units);
+  write.count("output_names", outputs.names);
+  write.count("output_units", outputs.units);
+  write.count("vehicle_name", model.vehicle_name);
+  write.count("motor_torque_signs", motor_torque_signs(model.airframe));
+  write.count("Vehicle", model.airframe);
+  write.count("records", known_records);
+  write.count("answer", model.answer);
+  write.count("window_taps", static_cast<int>(model.window_taps));
+  write.count("causal", model.causal);
+  write.count("column_names", model.column_names);
+  write.count("column_units", model.column_units);
+  write.count("base", model.base);
+}
+
+/// "s_z [m/s^2], wdot_x [rad/s^2]".
+PINNQUAD_BODY std::string in_words(const std::vector<std::string>& texts, std::size_t first) {
+  std::string words;
+  for (std::size_t i = first; i + 1 < texts.size(); i += 2) {
+    words += (i == first ? "" : ", ") + texts[i] + " [" + texts[i + 1] + "]";
   }
-  if (records.distance) {
-    write.list(scalar, "distance_mean", converted<Scalar>(records.distance->mean));
-    write.list(scalar, "distance_inverse_cholesky", converted<Scalar>(records.distance->inverse_cholesky));
-    const auto limit = static_cast<Scalar>(records.distance->limit);
-    write.constant(scalar.c_str(), "distance_limit", literal(limit), limit);
-  }
-  if (records.bias_time_constants_s) {
-    out << "  // of the bias that is learnt in flight (control/motion_bias.hpp): sum of the commands, roll, pitch, "
-           "yaw\n";
-    write.list(scalar, "bias_time_constants_s", converted<Scalar>(*records.bias_time_constants_s));
-  }
+  std::replace(words.begin(), words.end(), '\\', '/');  // at the end of a line it would go on
+  return printable(words);
 }
 
 template <class Scalar>
 std::uint64_t write_struct(std::ostream& out, const WrittenModel<Scalar>& model) {
   const std::string scalar = type_name<Scalar>();
-  const auto signs = motor_torque_signs(model.airframe);
   ConstantWriter write(out);
 
   out << "// Inverse-dynamics model, exported by pinnquad " << PINNQUAD_VERSION
@@ -157,6 +153,8 @@ std::uint64_t write_struct(std::ostream& out, const WrittenModel<Scalar>& model)
     write_airframe(out, vehicle, model.vehicle_name, model.airframe);
     out << '\n';
   }
+  write_comment(out, "Features: " + in_words(model.feature_texts, 0) + ".");
+  write_comment(out, "Outputs: " + in_words(model.output_texts, 1) + ".");
   out << "struct " << model.name << " {\n"
       << "  using Scalar = " << scalar << ";\n"
       << "  using Network = " << model.network_type << ";\n"
@@ -164,7 +162,8 @@ std::uint64_t write_struct(std::ostream& out, const WrittenModel<Scalar>& model)
       << "  using Outputs = " << model.outputs_type << ";\n"
       << "  using Vehicle = " << vehicle << ";\n"
       << "  using Inputs = Features::Inputs<Scalar>;\n\n";
-  write.number("format_version", model_format_version);
+  out << "  static constexpr int format_version = " << header_format_version << ";\n";
+  write.count("format_version", model_format_version);
   write.text("name", model.name);
   out << "\n  // provenance\n";
   write.text("training_data", model.training_data);
@@ -174,29 +173,34 @@ std::uint64_t write_struct(std::ostream& out, const WrittenModel<Scalar>& model)
   out << "  static constexpr std::uint64_t seed = " << model.seed << "u;\n";
   write.number("epochs", model.epochs);
   write.text("loss", model.loss);
-  if (model.verdict) {
-    const Verdict& verdict = *model.verdict;
-    const auto figure = [&](const char* name, double value) {
-      if (is_finite(value)) write.number(name, stated_figure(value));
-    };
+  const ModelFacts& facts = model.facts;
+  if (facts.has_verdict) {
     out << "\n  // how it was judged, on rows that it was not trained on: R^2, mean over the commands\n";
-    figure("test_r_squared", verdict.test_r_squared);
-    figure("linear_regression_r_squared", verdict.linear_regression_r_squared);
-    write.truth("worse_than_mean", verdict.worse_than_mean());
-    write.truth("beats_linear_regression", verdict.beats_linear_regression());
+    if (facts.has_r_squared) write.number("test_r_squared", facts.test_r_squared);
+    if (facts.linear_regression_r_squared > -no_bound) {
+      write.number("linear_regression_r_squared", facts.linear_regression_r_squared);
+    }
+    write.truth("worse_than_mean", facts.worse_than_mean);
+    write.truth("beats_linear_regression", facts.beats_linear_regression);
   }
-  const auto features = names_and_units(model.feature_texts, 0);
-  const auto outputs = names_and_units(model.output_texts, 1);  // behind the schema's description
-  out << "\n  // what it was trained for; require_model() compares with Features, Outputs and Vehicle\n";
-  write.text("frame", model_frame);
-  write.list("const char*", "feature_names", features.names);
-  write.list("const char*", "feature_units", features.units);
-  write.list("const char*", "output_names", outputs.names);
-  write.list("const char*", "output_units", outputs.units);
-  write.text("vehicle_name", model.vehicle_name);
-  out << "  // rotor by rotor: signs of its torque about x, y, z\n";
-  write.table("int", "motor_torque_signs", signs);
-  write_header_records<Scalar>(out, write, model);
+  out << "\n  // commands and clock of its training (exported/model_facts.hpp)\n";
+  write.constant("auto", "command_meaning",
+                 std::string("pinnquad::CommandMeaning::") + to_string(facts.command_meaning), facts.command_meaning);
+  write.number("command_lower", facts.command_lower);
+  write.number("command_upper", facts.command_upper);
+  write.number("sample_period_s", facts.sample_period_s);
+  write.number("lag_removed_s", facts.lag_removed_s);
+  out << "  // thrust [N], roll, pitch and yaw torque [N m] of each rotor at full command, rated density\n";
+  write.table("double", "allocation", model.allocation);
+  if (facts.has_bias) {
+    out << "  // of the bias that is learnt in flight (control/motion_bias.hpp): sum of the commands, roll, pitch, "
+           "yaw\n";
+    write.list(scalar, "bias_time_constants_s",
+               std::array{static_cast<Scalar>(facts.bias_time_constants_s[0]),
+                          static_cast<Scalar>(facts.bias_time_constants_s[1]),
+                          static_cast<Scalar>(facts.bias_time_constants_s[2]),
+                          static_cast<Scalar>(facts.bias_time_constants_s[3])});
+  }
   out << "\n  // standardisation: (value - mean) / spread\n";
   write.scaler(scalar, "input", model.input_mean, model.input_deviation);
   write.scaler(scalar, "output", model.output_mean, model.output_deviation);
@@ -210,8 +214,10 @@ std::uint64_t write_struct(std::ostream& out, const WrittenModel<Scalar>& model)
 
   out << "\n  // layer by layer: weights row-major (row = output, column = input), then biases\n";
   write.list(scalar, "parameters", model.parameters);
-  write.count("Vehicle", model.airframe);
-  out << "\n  // over all of this: what was edited does not compile (exported/contents_hash.hpp)\n"
+  count_types(write, model);
+  out << "\n  // over what the types say: layers, names and units, frame, airframe's name, motor order\n"
+      << "  static constexpr std::uint64_t shape_hash = " << hexadecimal(hash_of_shape(model)) << ";\n"
+      << "  // over all of this: what was edited does not compile (exported/contents_hash.hpp)\n"
       << "  static constexpr std::uint64_t contents_hash = " << hexadecimal(write.contents_hash()) << ";\n";
   out << "};\n\nstatic_assert(pinnquad::require_model<" << model.name << ">());\n";
   if (model.certificate) {

@@ -32,7 +32,6 @@ PINNQUAD_BODY std::string known_slopes_in_words(const SlopesOfSums& slopes, doub
 
 namespace detail {
 
-/// Lines of a comment, broken at blanks.
 PINNQUAD_BODY void write_comment(std::ostream& out, const std::string& text) {
   constexpr std::size_t widest = 117;  // beside "// "
   std::size_t from = 0;
@@ -71,7 +70,7 @@ PINNQUAD_BODY void write_opening_comment(std::ostream& out, const WrittenRecords
            "input\n// (pinnquad certify). Slopes"
         << (over_own ? " over the airframe's own in hover" : " in s^2/rad") << ": roll " << share(0) << ", pitch "
         << share(1) << ", yaw " << share(2) << ".\n";
-    if (records.bias_time_constants_s) {
+    if (records.facts.has_bias) {
       const Commands<double> most = largest_bias(own);
       out << "// With the bias that AdaptiveInverse learns in flight they hold as they are, for it is of the past; the "
              "bound of\n// each command widens by "

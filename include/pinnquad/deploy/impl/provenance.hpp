@@ -2,7 +2,10 @@
 // Bodies of provenance.hpp.
 #pragma once
 
+#include <algorithm>
+
 #include "pinnquad/deploy/provenance.hpp"
+#include "pinnquad/io/decimal.hpp"
 
 namespace pinnquad {
 namespace detail {
@@ -12,47 +15,50 @@ PINNQUAD_BODY double stated_figure(double value) {
   return std::abs(value) < digits ? std::round(value * digits) / digits : value;
 }
 
-PINNQUAD_BODY void require_provenance(const Provenance& from, double window_s, std::size_t inputs,
-                                      std::size_t outputs) {
-  const auto refuse = [](const std::string& what) { throw std::invalid_argument("export: " + what); };
-  if (!is_command_range(from.command_lower, from.command_upper)) {
-    refuse("the range of the commands is none, or beyond -1 to 1");
+PINNQUAD_BODY ModelFacts facts_of(const Provenance& from, const Airframe<double>& airframe) {
+  ModelFacts facts;
+  facts.command_meaning = from.command_meaning.value_or(command_meaning_of(airframe));
+  facts.command_lower = from.command_lower;
+  facts.command_upper = from.command_upper;
+  facts.sample_period_s = from.sample_period_s;
+  facts.lag_removed_s = from.lag_removed_s;
+  if (const auto& verdict = from.verdict) {
+    facts.has_verdict = true;
+    facts.worse_than_mean = verdict->worse_than_mean();
+    facts.beats_linear_regression = verdict->beats_linear_regression();
+    facts.has_r_squared = is_finite(verdict->test_r_squared);
+    if (facts.has_r_squared) facts.test_r_squared = stated_figure(verdict->test_r_squared);
+    const double linear = verdict->linear_regression_r_squared;
+    if (is_finite(linear)) facts.linear_regression_r_squared = stated_figure(linear);
   }
-  if (!in_range<StatedNumber::sample_period_s>(from.sample_period_s)) {
-    refuse("the sample period is not one of 0 to 4 s, or below 0.00001 s");
+  if (from.bias_time_constants_s) {
+    facts.has_bias = true;
+    std::copy_n(from.bias_time_constants_s->begin(), 4, static_cast<double*>(facts.bias_time_constants_s));
   }
-  if (!in_range<StatedNumber::lag_removed_s>(from.lag_removed_s)) refuse("the lag removed is not one of 0 to 1 s");
-  if (window_s > 0 && from.sample_period_s > 0 && !same_period(from.sample_period_s, window_s)) {
-    refuse("the sample period is not that of the features' window");
+  return facts;
+}
+
+PINNQUAD_BODY void require_sound(const ModelFacts& facts) {
+  const StatedFault fault = fault_of(facts, FiniteNumber{});
+  if (fault.number == StatedNumber::none) return;
+  const StatedRange& range = stated_ranges[static_cast<std::size_t>(fault.number)];
+  throw std::invalid_argument(std::string("export: expected ") + range.expected + ", found " +
+                              (*range.found == 0 ? number_text(fault.value) : range.found));
+}
+
+PINNQUAD_BODY void take_provenance(WrittenRecords& records, const Provenance& from, double window_s) {
+  static_cast<Provenance&>(records) = from;
+  if (records.certificate && !records.certificate->proven()) {
+    throw std::invalid_argument(records.certificate->bounded ? "export: a slope of the model is not above its floor"
+                                                             : "export: the bounds of the residual are none");
   }
-  if (const auto& range = from.residual_range) {
-    if (range->lower.size() != outputs || range->upper.size() != outputs) {
-      refuse("the range of a residual is not one of bounds for every output");
-    }
-    require_finite(range->lower, "the lower bounds of the residual");
-    require_finite(range->upper, "the upper bounds of the residual");
-    for (std::size_t i = 0; i < outputs; ++i) {
-      if (!(range->lower[i] <= range->upper[i])) refuse("a lower bound of the residual lies above the upper one");
-    }
+  records.facts = facts_of(from, records.airframe);
+  require_sound(records.facts);
+  if (window_s <= 0) return;
+  if (from.sample_period_s > 0 && !same_period(from.sample_period_s, window_s)) {
+    throw std::invalid_argument("export: the sample period is not that of the features' window");
   }
-  if (from.bias_time_constants_s && !are_bias_time_constants(*from.bias_time_constants_s)) {
-    bool fast = true;
-    for (const double time_s : *from.bias_time_constants_s) {
-      fast = fast && time_s >= 0 && time_s <= longest_bias_time_constant_s;
-    }
-    refuse(fast ? "a time constant of the bias is below 0.02 s"
-                : "a time constant of the bias is not one of 0 to 60 s");
-  }
-  if (const auto& distance = from.distance) {
-    if (distance->mean.size() != inputs || distance->inverse_cholesky.size() != triangle(inputs)) {
-      refuse("the statistics of a distance are not those of " + std::to_string(inputs) + " features");
-    }
-    require_finite(distance->mean, "the means of the distance");
-    require_finite(distance->inverse_cholesky, "the triangle of the distance");
-    if (!in_range<StatedNumber::distance_limit>(distance->limit)) {
-      refuse("the limit of the distance is no number above 0 to 131072");
-    }
-  }
+  records.facts.sample_period_s = window_s;
 }
 
 }  // namespace detail

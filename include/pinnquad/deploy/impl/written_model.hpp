@@ -59,7 +59,7 @@ WrittenModel<Scalar> written_model(const GroundModel<Scalar>& model, const std::
     }
   }
   require_numbers(written);
-  take_provenance<Scalar>(written, provenance, model.window_s);
+  take_provenance(written, provenance, model.window_s);
   written.name = name;
   return written;
 }

@@ -94,6 +94,11 @@ PINNQUAD_BODY std::vector<std::size_t> locate_columns(const std::string& path,
         throw InputError(path, 1, 0, "commas between the cells (export the table with them)",
                          semicolons ? "semicolons" : "tabs");
       }
+      const std::string quantity = name.substr(0, name.find(" ["));
+      for (std::size_t i = 0; i < header.size(); ++i) {
+        if (quantity != header[i].substr(0, header[i].find(" ["))) continue;
+        throw InputError(path, 1, i + 1, "a column named " + name, quoted_cell(header[i]));
+      }
       throw InputError(path, 1, 0, "a column named " + name,
                        "none of that name among " + std::to_string(header.size()) + " columns");
     }

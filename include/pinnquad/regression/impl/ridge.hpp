@@ -10,6 +10,8 @@
 namespace pinnquad {
 namespace detail {
 
+PINNQUAD_BODY Eigen::MatrixXd matrix_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return a * b; }
+
 PINNQUAD_BODY EigenPairs eigen_pairs(const Eigen::MatrixXd& a) {
   constexpr int most_sweeps = 60;  // a handful is usual: it converges quadratically
   const Eigen::Index size = a.rows();
@@ -202,6 +204,29 @@ PINNQUAD_BODY RegressionSums RegressionSums::with(const Eigen::MatrixXd& product
   RegressionSums other(inputs_, outputs_);
   other.products_ = products;
   return other;
+}
+
+PINNQUAD_BODY RegressionSums::RegressionSums(int inputs, int outputs)
+    : inputs_(inputs),
+      outputs_(outputs),
+      products_(Eigen::MatrixXd::Zero(1 + inputs + outputs, 1 + inputs + outputs)) {}
+
+PINNQUAD_BODY RegressionSums& RegressionSums::operator+=(const RegressionSums& other) {
+  products_ += other.products_;
+  return *this;
+}
+
+PINNQUAD_BODY RegressionSums& RegressionSums::operator-=(const RegressionSums& other) {
+  products_ -= other.products_;
+  return *this;
+}
+
+PINNQUAD_BODY Eigen::MatrixXd RegressionSums::products() const { return products_.selfadjointView<Eigen::Lower>(); }
+
+PINNQUAD_BODY double RegressionSums::rows() const { return products_(0, 0); }
+
+PINNQUAD_BODY Eigen::VectorXd RegressionSums::means() const {
+  return products_.col(0).tail(inputs_ + outputs_) / rows();
 }
 
 PINNQUAD_BODY Eigen::MatrixXd RegressionSums::covariances() const {

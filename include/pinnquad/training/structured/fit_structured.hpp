@@ -50,8 +50,13 @@ struct StructuredSettings {
 
 /// A feature set as fit_structured() takes it.
 struct StructuredSet {
-  std::function<FitContext(const RowSet& training)> context;
+  GroundFeatures features;
+  GivenAirframe airframe;
   ResidualKind residual;
+
+  FitContext context(const RowSet& training) const {
+    return fit_context(features, ground_outputs<AxisCommandOutputs>(airframe), airframe, training);
+  }
 };
 
 /// The model of one seed: parameters of a MonotoneBase, or of a MonotonePredictor with its residual.
@@ -87,29 +92,21 @@ struct StructuredFitsIn {
   }
 };
 
-namespace detail {
-template <class Set, class Predictor>
-using StructuredModel = TrainedModel<Predictor, Context<Set, GivenAirframe, AxisCommandOutputs>>;
-/// The residual network.
-template <class Set>
-using StructuredResidual = pinnquad::Mlp<float, InputSize<residual_inputs<Set>>, Hidden<2, 32>, OutputSize<4>, Relu>;
-template <class Set>
-using StructuredBase = StructuredModel<Set, MonotoneBase<Set>>;
-template <class Set>
-using StructuredWhole = StructuredModel<Set, MonotonePredictor<Set, StructuredResidual<Set>>>;
-}  // namespace detail
+/// The residual network of so many inputs.
+template <int Inputs>
+using StructuredResidual = Mlp<float, InputSize<Inputs>, Hidden<2, 32>, OutputSize<4>, Relu>;
 
-/// The set of these types. The residual trains with its inputs filled up to a multiple of sixteen: few networks are
-/// compiled, whatever the features, and the bits are the same.
+/// A set of features, the angular acceleration among them. `trainer`: detail::residual_trainer() of a
+/// StructuredResidual of as many inputs as there are other features, or of more: the bits are the same. Throws
+/// std::invalid_argument for features without the angular acceleration.
+StructuredSet structured_set(GroundFeatures features, const GivenAirframe& airframe, ResidualTrainer::Make trainer);
+
+/// The set of a type. The residual trains with its inputs filled up to a multiple of sixteen: few networks are
+/// compiled, whatever the features.
 template <class Features>
 StructuredSet structured_set(const GivenAirframe& airframe) {
-  using Setting = Context<Features, GivenAirframe, AxisCommandOutputs>;
-  using Residual = detail::StructuredResidual<Features>;
-  using Trained =
-      pinnquad::Mlp<float, InputSize<(residual_inputs<Features> + 15) / 16 * 16>, Hidden<2, 32>, OutputSize<4>, Relu>;
-  return {[airframe](const RowSet& training) { return fit_context(make_context<Setting>(training, airframe)); },
-          detail::residual_kind<Trained, Residual, MonotonePredictor<Features, Residual>, MonotoneBase<Features>>(
-              false, detail::NoProjection{})};
+  return structured_set(ground_features<Features>(), airframe,
+                        detail::residual_trainer<StructuredResidual<(residual_inputs<Features> + 15) / 16 * 16>>());
 }
 
 /// Runs the fits of fit_structured(): one after the other. A class of one's own, with threads, progress and interrupts,
@@ -129,14 +126,14 @@ class FitWork {
   virtual void chose(const StructuredAltitude& /*choice*/) const {}
 };
 
+namespace detail {
+
 /// Fits a structured model from each seed. The first seed tries both feature sets where the altitude is chosen
 /// by_validation; `higher` is null where there is no such choice. Throws std::invalid_argument for rows that are too
 /// few.
-StructuredFitsIn<StructuredFit> fit_structured(const StructuredSet& without_altitude, const StructuredSet* higher,
-                                               const RowSplit& split, const StructuredSettings& settings = {},
-                                               const FitWork& work = FitWork());
-
-namespace detail {
+StructuredFitsIn<StructuredFit> fit_structured_sets(const StructuredSet& without_altitude, const StructuredSet* higher,
+                                                    const RowSplit& split, const StructuredSettings& settings,
+                                                    const FitWork& work);
 
 /// The rows that a model is fitted to.
 RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings);
@@ -144,6 +141,11 @@ RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings);
 }  // namespace detail
 }  // namespace pinnquad
 
-#ifndef PINNQUAD_COMPILED
+#ifdef PINNQUAD_COMPILED
+namespace pinnquad::detail {
+extern template class ResidualTrainerOf<StructuredResidual<16>, NoProjection>;
+extern template class ResidualTrainerOf<StructuredResidual<32>, NoProjection>;
+}  // namespace pinnquad::detail
+#else
 #include "pinnquad/training/structured/impl/fit_structured.hpp"
 #endif

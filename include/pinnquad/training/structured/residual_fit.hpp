@@ -93,7 +93,7 @@ auto fit_monotone(const ContextType& context, const RowSet& training, const RowS
   using Features = typename ContextType::Features;
   using Predictor = MonotonePredictor<Features, Residual>;
   const ResidualKind kind =
-      detail::residual_kind<Residual, Residual, Predictor, MonotoneBase<Features>>(false, detail::NoProjection{});
+      detail::residual_kind<Residual, Predictor, MonotoneBase<Features>>(false, detail::NoProjection{});
   return detail::with_types<Features, Predictor>(
       detail::fit_residual(fit_context(context), kind, training, validation, map, how, engine, goes_on));
 }

@@ -56,6 +56,9 @@ FitRows fit_rows(const FitContext& context, const RowSet& from);
 /// A residual in training: the network's type is behind it.
 class ResidualTrainer {
  public:
+  using Make = std::function<std::unique_ptr<ResidualTrainer>(const FitContext& context, const FitRows& training,
+                                                              const FitRows& unseen, const ResidualTraining& how,
+                                                              std::mt19937_64& engine)>;
   virtual ~ResidualTrainer() = default;
   virtual void epoch(const Progress& progress, std::mt19937_64& engine) = 0;
   /// Mean absolute error on the rows that it is not trained on, in the units of the outputs.
@@ -68,14 +71,11 @@ class ResidualTrainer {
 
 /// The residual of a model, as a value: its place in the predictor, and its training.
 struct ResidualKind {
-  std::string network;    ///< description (model/description.hpp) of the residual alone
-  std::string base;       ///< of the base alone
-  std::string predictor;  ///< of base and bounded residual
+  PredictorText network;    ///< the residual alone
+  PredictorText base;       ///< the base alone
+  PredictorText predictor;  ///< base and bounded residual
   bool shown_accelerations = false;
-  std::function<std::unique_ptr<ResidualTrainer>(const FitContext& context, const FitRows& training,
-                                                 const FitRows& unseen, const ResidualTraining& how,
-                                                 std::mt19937_64& engine)>
-      trainer;
+  ResidualTrainer::Make trainer;
 };
 
 namespace detail {
@@ -189,15 +189,20 @@ struct NoProjection {
   void operator()(Trainer& /*trainer*/) const {}
 };
 
-/// `Trained`: the network that trains, of as many inputs as `Residual` or of more.
-template <class Trained, class Residual, class Predictor, class Base, class AfterBatch>
+/// `Trained`: the network that trains, of as many inputs as the residual or of more.
+template <class Trained, class AfterBatch = NoProjection>
+ResidualTrainer::Make residual_trainer(const AfterBatch& after_batch = {}) {
+  return [after_batch](const FitContext& context, const FitRows& training, const FitRows& unseen,
+                       const ResidualTraining& how, std::mt19937_64& engine) -> std::unique_ptr<ResidualTrainer> {
+    return std::make_unique<ResidualTrainerOf<Trained, AfterBatch>>(context, training, unseen, how, engine,
+                                                                    after_batch);
+  };
+}
+
+template <class Residual, class Predictor, class Base, class AfterBatch>
 ResidualKind residual_kind(bool shown_accelerations, const AfterBatch& after_batch) {
-  return {description_text<Residual>(), description_text<Base>(), description_text<Predictor>(), shown_accelerations,
-          [after_batch](const FitContext& context, const FitRows& training, const FitRows& unseen,
-                        const ResidualTraining& how, std::mt19937_64& engine) -> std::unique_ptr<ResidualTrainer> {
-            return std::make_unique<ResidualTrainerOf<Trained, AfterBatch>>(context, training, unseen, how, engine,
-                                                                            after_batch);
-          }};
+  return {predictor_text<Residual>(), predictor_text<Base>(), predictor_text<Predictor>(), shown_accelerations,
+          residual_trainer<Residual>(after_batch)};
 }
 
 }  // namespace detail

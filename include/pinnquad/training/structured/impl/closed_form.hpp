@@ -72,13 +72,13 @@ PINNQUAD_BODY std::vector<RegressionSums> regression_sums(const FitContext& cont
 PINNQUAD_BODY MonotoneShape monotone_shape(const FitContext& context) {
   MonotoneShape shape;
   shape.inputs = context.inputs();
-  shape.places = context.accelerations;
+  shape.places = context.features.accelerations;
   shape.input_deviation = context.input_deviation;
   shape.output_deviation = context.output_deviation;
   shape.airframe_slopes = hover_slopes(context.airframe);
-  shape.thrusts = context.thrusts;
+  shape.thrusts = context.features.thrusts();
   for (int i = 0; i < shape.inputs && !context.is_windowed(); ++i) {
-    const std::string_view unit = context.units[static_cast<std::size_t>(i)];
+    const std::string_view unit = context.features.units[static_cast<std::size_t>(i)];
     if (unit == "m/s^2" || unit == "rad/s" || unit == "rad/s^2" || unit == "rad^2/s^2") shape.noisy.push_back(i);
   }
   return shape;
@@ -96,7 +96,7 @@ PINNQUAD_BODY std::vector<bool> features_of_output(const MonotoneShape& shape, i
 
 PINNQUAD_BODY std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, int output,
                                                     const std::optional<AxisSlopes>& pinned) {
-  constexpr double least_share = 0.01;
+  constexpr double least_share = least_fitted_slope_share;
   const int axis = output - 1;
   const auto factor = [&](int place) {
     return shape.output_deviation[static_cast<std::size_t>(output)] /

@@ -9,6 +9,8 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -102,7 +104,7 @@ class StructuredFitter {
   /// would use to take them back.
   std::vector<float> with_measured_slopes(std::vector<float> parameters) const {
     if (!slopes_.by_instruments()) return parameters;
-    const std::vector<float> base = base_parameters(context_.accelerations, measured_);
+    const std::vector<float> base = base_parameters(context_.features.accelerations, measured_);
     std::copy(base.begin(), base.end(), parameters.begin());
     for (std::size_t k = 0; k < slopes_.of.size() && parameters.size() > base.size(); ++k) {
       if (slopes_.of[k].by_instruments) parameters[base.size() + k] = parameters[base.size() + 4 + k] = 0;
@@ -150,7 +152,7 @@ class StructuredFitter {
   /// residual are fitted to all rows.
   template <class Done>
   std::optional<StructuredFit> fit_by_groups(std::uint64_t seed, const GoesOn& goes_on, const Done& done) const {
-    const std::vector<float> base = base_parameters(context_.accelerations, map_);
+    const std::vector<float> base = base_parameters(context_.features.accelerations, map_);
     if (groups_.size() < 2) {  // nothing to choose by
       return done(base, false, std::numeric_limits<double>::quiet_NaN());
     }
@@ -220,13 +222,12 @@ class StructuredFitter {
   bool whole_flights_ = false;
 };
 
-}  // namespace detail
-
-PINNQUAD_BODY StructuredFitsIn<StructuredFit> fit_structured(const StructuredSet& without_altitude,
-                                                             const StructuredSet* higher, const RowSplit& split,
-                                                             const StructuredSettings& settings, const FitWork& work) {
+PINNQUAD_BODY StructuredFitsIn<StructuredFit> fit_structured_sets(const StructuredSet& without_altitude,
+                                                                  const StructuredSet* higher, const RowSplit& split,
+                                                                  const StructuredSettings& settings,
+                                                                  const FitWork& work) {
   using Altitude = StructuredSettings::Altitude;
-  std::optional<detail::StructuredFitter> fitters[2];  // without the altitude, with it
+  std::optional<StructuredFitter> fitters[2];  // without the altitude, with it
   const Altitude rule = higher != nullptr ? settings.altitude : Altitude::no;
   if (rule != Altitude::no) fitters[1].emplace(*higher, split, settings);
   if (rule != Altitude::yes) fitters[0].emplace(without_altitude, split, settings);
@@ -261,5 +262,44 @@ PINNQUAD_BODY StructuredFitsIn<StructuredFit> fit_structured(const StructuredSet
   }
   return fits;
 }
+
+/// The residual, the base, and both, of these features: as descriptions, or as types of a header, which have other
+/// words for three things.
+PINNQUAD_BODY std::array<std::string, 3> monotone_texts(const GroundFeatures& features, std::string network,
+                                                        const std::string& inputs, const std::string& bounded,
+                                                        const std::string& masked) {
+  std::string places = std::to_string(features.size());
+  for (const int place : features.accelerations) places += ", " + std::to_string(place);
+  const std::string one = inputs + "<1>";
+  const std::size_t others = features.size() - 3 * features.accelerations.size();
+  network.replace(network.find(one), one.size(), inputs + "<" + std::to_string(others) + ">");
+  const std::string base = "pinnquad::AxisAligned<float, " + places + ">";
+  return {network, base,
+          "pinnquad::Sum<" + base + ", " + bounded + "<" + masked + "<" + network + ", " + places + ">>>"};
+}
+
+}  // namespace detail
+
+PINNQUAD_BODY StructuredSet structured_set(GroundFeatures features, const GivenAirframe& airframe,
+                                           ResidualTrainer::Make trainer) {
+  if (features.accelerations.empty()) {
+    throw std::invalid_argument("a structured model needs features that hold the angular acceleration");
+  }
+  const PredictorText one = detail::predictor_text<StructuredResidual<1>>();
+  const auto said =
+      detail::monotone_texts(features, one.description, "pinnquad::Inputs", "pinnquad::Bounded", "pinnquad::Withheld");
+  const auto types =
+      detail::monotone_texts(features, one.type, "pinnquad::InputSize", "pinnquad::Saturated", "pinnquad::Masked");
+  return {std::move(features),
+          airframe,
+          {{said[0], types[0]}, {said[1], types[1]}, {said[2], types[2]}, false, std::move(trainer)}};
+}
+
+#ifdef PINNQUAD_COMPILED
+namespace detail {
+template class ResidualTrainerOf<StructuredResidual<16>, NoProjection>;
+template class ResidualTrainerOf<StructuredResidual<32>, NoProjection>;
+}  // namespace detail
+#endif
 
 }  // namespace pinnquad

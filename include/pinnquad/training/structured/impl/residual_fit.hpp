@@ -27,7 +27,7 @@ PINNQUAD_BODY double command_error(const FitContext& context, const DescribedPre
 
 PINNQUAD_BODY FitRows shown_rows(const FitContext& context, const ResidualKind& kind, FitRows all) {
   if (kind.shown_accelerations) return all;
-  const std::vector<int> others = other_features(context.inputs(), context.accelerations);
+  const std::vector<int> others = other_features(context.inputs(), context.features.accelerations);
   FitRows rows{static_cast<int>(others.size()), {}, std::move(all.outputs)};
   for (int row = 0; row < all.size(); ++row) {
     for (const int feature : others) rows.features.push_back(all.features_of(row)[feature]);
@@ -75,7 +75,7 @@ PINNQUAD_BODY FittedResidual fit_residual(const FitContext& context, const Resid
                                           const RowSet& validation, const AffineMap& map, const ResidualTraining& how,
                                           std::mt19937_64& engine, const GoesOn& goes_on) {
   FittedResidual fit;
-  fit.base = base_parameters(context.accelerations, map);
+  fit.base = base_parameters(context.features.accelerations, map);
   const FitRows unseen = fit_rows(context, validation);
   const FitRows rows = left_by(context, kind, map, fit_rows(context, training));
   fit.base_error = fit.error = command_error(context, {kind.base, fit.base}, unseen);

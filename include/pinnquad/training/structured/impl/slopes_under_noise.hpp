@@ -98,14 +98,17 @@ PINNQUAD_BODY AffineMap by_neighbours(const MonotoneShape& shape, const std::vec
 PINNQUAD_BODY std::vector<DenoisedFeature> denoised_taps(const FitContext& context, const MonotoneShape& shape,
                                                          const RegressionSums& all) {
   const std::size_t taps = shape.thrusts.size();
+  const RunTimeWindow& window = context.features.window;
+  const auto time_s = [&window](std::size_t tap) {
+    return tap == 0 ? 0.0 : window.offset_s(static_cast<int>(tap) - 1);
+  };
   std::vector<DenoisedFeature> denoised;
   for (std::size_t tap = 0; tap < taps; ++tap) {
     std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
     for (std::size_t i = 0; i < 2 * taps; ++i) {
       const double lag_s = i < taps ? -instrument_lag_s : instrument_lag_s;
       told[static_cast<std::size_t>(shape.inputs) + i] =
-          std::abs(context.tap_times_s[i % taps] + lag_s - context.tap_times_s[tap]) >
-          instrument_lag_s - context.tap_tolerance_s;
+          std::abs(time_s(i % taps) + lag_s - time_s(tap)) > instrument_lag_s - window.tolerance_s;
     }
     const int place = shape.thrusts[tap];
     denoised.push_back({place, by_neighbours(shape, shape.thrusts, all, place, told)});
