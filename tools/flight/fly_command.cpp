@@ -323,8 +323,7 @@ void add_options(CLI::App& app, FlyOptions& options) {
              "rows to record (default: that of the flight or of --sticks)");
   add_number(app, "--interval", options.interval_ms, 2.0, 1000.0,
              "ms from row to row, rounded to control ticks of 2 ms (default: 50)");
-  app.add_option("--airframe", options.airframe,
-                 "what flies: a file (examples/airframes), or one of: " + programs::airframe_names())
+  app.add_option("--airframe", options.airframe, "what flies: see airframe list")
       ->type_name("NAME|FILE.toml")
       ->capture_default_str();
   add_number(app, "--max-speed", options.max_speed_m_s, 0.5, 8.0, "fastest the pilot flies, m/s (default: 8, d2 4)");
@@ -344,8 +343,7 @@ void add_options(CLI::App& app, FlyOptions& options) {
       ->default_str("");
   add_path(app, "--pictures", options.pictures, "DIR", "draw trajectory, correlation, ground effect and wind as SVG");
   add_path(app, "--watch", options.watch, "FILE.html", "page to watch the flight in 3D in a browser (docs/watch.md)");
-  app.add_flag("--list-airframes", options.list_airframes,
-               "print the airframes and where their values are from");
+  app.add_flag("--list-airframes", options.list_airframes, "print the airframes and where their values are from");
 }
 
 int run(const FlyOptions& options) {

@@ -139,10 +139,16 @@ SourceKind kind_of_source(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::exists(std::filesystem::path(path) / dataset_file_name, ignored)) return SourceKind::dataset;
   if (kind_of_log(path) != LogKind::csv) return SourceKind::logs;
+  const std::vector<std::string> cells = detail::csv_header(path);
+  if (cells.empty()) return SourceKind::flights;  // empty, as its reader says
   std::size_t of_a_flight = 0;
-  for (const std::string& head : detail::csv_header(path)) {
-    if (std::find(sample_field_names.begin(), sample_field_names.end(), head) != sample_field_names.end())
-      ++of_a_flight;
+  for (const std::string& cell : cells) {
+    for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+      end = cell.find_first_of(";\t", begin);  // wrong in a flight, and its reader says so
+      const std::string head = cell.substr(begin, end == std::string::npos ? end : end - begin);
+      if (std::find(sample_field_names.begin(), sample_field_names.end(), head) != sample_field_names.end())
+        ++of_a_flight;
+    }
   }
   return 2 * of_a_flight > sample_field_names.size() ? SourceKind::flights : SourceKind::logs;
 }

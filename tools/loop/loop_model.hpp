@@ -31,9 +31,9 @@ inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
   line.add_option("--column", options.columns,
                   "a column that the model asks for is held at this, not at the middle of its training envelope")
       ->type_name("NAME=VALUE");
-  line.add_option(
-      "--airframe", options.airframe,
-      "what flies in place of the model's own airframe, its motors as there: a file, or one of: " + airframe_names());
+  line.add_option("--airframe", options.airframe,
+                  "what flies in place of the model's own airframe, its motors as there: see airframe list")
+      ->type_name("NAME|FILE.toml");
 }
 
 /// Throws InputError and std::invalid_argument, one line, for what can't fly.

@@ -18,7 +18,6 @@ namespace programs {
 
 struct Recipe {
   const char* name;
-  const char* summary;             ///< for --help
   std::string network;             ///< "16 -> 10 x 25 ReLU -> 4, 6379 parameters"
   std::string optimizer;           ///< "Adam"
   nlohmann::json settings;         ///< the facts, for report.json

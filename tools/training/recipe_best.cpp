@@ -10,7 +10,6 @@ Recipe best_recipe() {
   using Network = PaperNetwork<pinnquad::PaperFeatures>;
   constexpr const char* hidden = "10 x 25 ReLU";
   return {"best",
-          "10 x 25 ReLU, as the study trains: Adam with cosine decay, each loss with the weight decay that suits it",
           network_in_words<Network>(hidden),
           best::optimizer_name,
           best::settings(hidden),

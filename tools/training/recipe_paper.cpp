@@ -28,7 +28,6 @@ Recipe paper_recipe() {
   const pinnquad::Adam adam;
   const pinnquad::CyclicalAnnealing annealing;
   return {"paper",
-          "10 x 25 ReLU, Adam at a constant rate: the paper's",
           network_in_words<Paper::Network>("10 x 25 ReLU"),
           "Adam",
           {{"network", "10 x 25 ReLU"},

@@ -9,7 +9,6 @@ Recipe small_recipe() {
                                 pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
   constexpr const char* hidden = "2 x 32 ReLU";
   return {"small",
-          "2 x 32 ReLU, the same training, for a microcontroller",
           network_in_words<Network>(hidden),
           best::optimizer_name,
           best::settings(hidden),

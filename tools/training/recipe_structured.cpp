@@ -31,9 +31,6 @@ std::vector<std::string> still_features_of_both(const FitTask& task) {
 Recipe structured_recipe() {
   Recipe recipe = paper_recipe();
   recipe.name = "structured";
-  recipe.summary =
-      "the paper's networks, and beside them a model that is monotone by construction (ridge and 2 x 32 ReLU), which "
-      "is exported";
   recipe.settings["structured"] = {{"base", "ridge, own angular acceleration"},
                                    {"residual", "2 x 32 ReLU, no angular acceleration"},
                                    {"learning_rate", pinnquad::ResidualTraining{}.learning_rate},

@@ -39,47 +39,30 @@ void add_flights(CLI::App& app, TrainOptions& options) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");
-  app.add_option("--hold-out-each", options.hold_out_each,
-                 "each in turn; the export is fitted to all")
+  app.add_option("--hold-out-each", options.hold_out_each, "each in turn; the export is fitted to all")
       ->check(CLI::IsMember({"flight", "trajectory"}))
       ->type_name("flight|trajectory");
 }
 
 void add_kinds(CLI::App& app, TrainOptions& options, GivenWords& words) {
-  std::string recipes;
-  for (const auto& make : programs::recipes) {
-    const programs::Recipe recipe = make();
-    recipes += std::string(recipes.empty() ? "" : "; ") + recipe.name + ": " + recipe.summary;
-  }
-  app.add_option(
-         "--recipe", words.recipe,
-"models to compare, and the one to export (flights): " + recipes)
-      ->capture_default_str();
-  app.add_option("--loss", words.losses,
-                 "of a recipe's networks: " + programs::listed(programs::loss_names))
+  const std::string recipes = programs::listed(programs::recipes, [](const auto& make) { return make().name; });
+  app.add_option("--recipe", words.recipe, "networks to compare: " + recipes)->type_name("NAME")->capture_default_str();
+  app.add_option("--loss", words.losses, "of a recipe's networks: " + programs::listed(programs::loss_names))
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...")
       ->default_str("vanilla,physics_informed");
-  app.add_option("--models", options.models,
-                 "instead of a recipe these kinds for logs, as report.json names them (logs: all)")
+  app.add_option("--models", options.models, "kinds for logs, in place of a recipe (docs/log_training.md)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");
-  app.add_option(
-         "--export", options.export_choice,
-         "the best that flies on measured motion (causal: the default of logs), the best that looks ahead "
-                 "(centred: planned trajectories only), or one by its name")
+  app.add_option("--export", options.export_choice, "the best on measured motion, on planned motion, or one by name")
       ->type_name("causal|centred|NAME");
-  app.add_option(
-         "--altitude", words.altitude,
-         "is the structured model shown it? auto: if its validation error falls by a fifth")
+  app.add_option("--altitude", words.altitude, "is the structured model shown it?")
       ->check(CLI::IsMember({"auto", "yes", "no"}))
       ->type_name("auto|yes|no")
       ->capture_default_str();
-  app.add_option(
-         "--slopes", words.slopes,
-         "of the structured model's command sums by the angular acceleration; pinned: those of the airframe in hover")
+  app.add_option("--slopes", words.slopes, "of the structured model by angular acceleration")
       ->check(CLI::IsMember({"learned", "pinned"}))
       ->type_name("learned|pinned")
       ->capture_default_str();
@@ -93,16 +76,14 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
       "  pinnquad train a.csv b.csv c.csv --airframe mine.toml --recipe best\n"
       "  pinnquad train logs --mapping px4 --hold-out flight7 --out my_model\n"
       "  pinnquad train my_logs --hold-out-each trajectory --out my_model\n"
-      "docs/train.md and docs/log_training.md say more of each option.\n"
+      "More of each option: docs/train.md, docs/log_training.md.\n"
       "Exit codes: 0; 1 nothing exported: no model was finished, or the best is worse than the mean of the commands;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted: the same command goes on from there.");
   add_flights(app, options);
-  app.add_option("--airframe", words.airframe,
-                 "what flew: a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
+  app.add_option("--airframe", words.airframe, "what flew: see airframe list")
+      ->type_name("NAME|FILE.toml")
       ->capture_default_str();
-  app.add_option(
-         "--lag", words.lag,
-"from command to motion, removed from the commands: estimated, or as given")
+  app.add_option("--lag", words.lag, "from command to motion, to remove from the commands")
       ->type_name("auto|SECONDS")
       ->capture_default_str();
   add_path(app, "--out", options.out, "DIR", "folder for results, report and the exported header")
@@ -115,11 +96,10 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
              "first seed (initialisation and batch order)")
       ->type_name("N");
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
-  app.add_flag("--allow-poor", options.allow_poor,
-"export even what is worse than the mean of the commands; its header says so");
+  app.add_flag("--allow-poor", options.allow_poor, "export what is worse than the mean of the commands too, marked");
 }
 
-/// What was given as flights goes where its content belongs.
+/// Puts what was given as flights where its content belongs.
 void take_source(TrainOptions& options) {
   using pinnquad::logs::SourceKind;
   const SourceKind kind = pinnquad::logs::kind_of_sources(options.flights, options.mapping);
@@ -146,7 +126,7 @@ void require_one_way(const CLI::App& line, const TrainOptions& options) {
 
 programs::Command programs::train_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
-      "train", "Trains models on flights, judges them on rows that none was trained on, exports the best as a header");
+      "train", "Trains models on flights, judges them on rows held out, exports the best as a header");
   struct Asked {
     TrainOptions options;
     GivenWords words;
@@ -155,14 +135,14 @@ programs::Command programs::train_command(CLI::App& program) {
   add_options(*line, asked->options, asked->words);
   return {line, [asked, line] {
             TrainOptions& options = asked->options;
+            const GivenWords& words = asked->words;
+            options.lag_s = programs::lag_of(words.lag);
             take_source(options);
             require_one_way(*line, options);
-            const GivenWords& words = asked->words;
             const auto given = [line](const char* name) { return line->count(name) > 0; };
             if (given("--recipe") || (!options.flights.empty() && !given("--models"))) options.recipe = words.recipe;
             options.losses = words.losses;
             if (words.altitude != "auto") options.altitude = words.altitude == "yes";
-            options.lag_s = programs::lag_of(words.lag);
             options.pinned_slopes = words.slopes == "pinned";
             if (given("--airframe")) options.airframe = words.airframe;
             if (given("--epochs")) options.epochs = words.epochs;
