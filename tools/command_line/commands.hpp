@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line/build_facts.hpp"
@@ -43,6 +44,15 @@ inline void complete(CLI::App& command, const std::string& version) {
   }
 }
 
+/// Options that there are no more, and what is written now.
+inline constexpr std::pair<const char*, const char*> gone_options[] = {
+    {"--flight", "FLIGHTS by themselves: FILE.csv ..."},
+    {"--dataset", "the dataset's folder by itself"},
+    {"--log", "LOGS by themselves, with --mapping"},
+    {"--model", "the MODEL by itself, behind the command"},
+    {"--recipe", "--models NAME,...: paper_physics_informed, best_vanilla ... (see --help)"},
+    {"--loss", "--models NAME,...: paper_physics_informed, best_vanilla ... (see --help)"}};
+
 /// Throws, one line, where a command is missing or words are left over. They are left with the program: what a command
 /// does not know is handed up. `elsewhere` ends the line about a command that there is not.
 inline void require_command(const CLI::App& program, const std::string& elsewhere) {
@@ -52,9 +62,10 @@ inline void require_command(const CLI::App& program, const std::string& elsewher
                                    [](const CLI::App* part) { return part->get_name(); });
   if (known.empty()) {
     for (const std::string& word : unknown) {
-      if (word != "--flight" && word != "--dataset" && word != "--log") continue;
-      throw std::invalid_argument("no option " + word + ": flights, datasets and logs stand by themselves: " +
-                                  command.get_name() + " FLIGHTS");
+      const std::string option = word.substr(0, word.find('='));
+      for (const auto& [gone, instead] : gone_options) {
+        if (option == gone) throw std::invalid_argument("no option " + option + ": write " + instead);
+      }
     }
     if (!unknown.empty()) throw CLI::ExtrasError(command.get_name(), unknown);
     return;

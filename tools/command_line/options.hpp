@@ -91,8 +91,9 @@ inline CLI::Option* add_paths(CLI::App& app, const std::string& name, std::vecto
 }
 
 /// FLIGHTS of a command, told apart by their content, and the mapping that logs need.
-inline void add_sources(CLI::App& app, std::vector<std::string>& flights, std::string& mapping) {
-  add_paths(app, "flights", flights, "FLIGHTS", "recorded flights (CSV), a dataset of import, or logs");
+inline void add_sources(CLI::App& app, std::vector<std::string>& flights, std::string& mapping,
+                        const std::string& name = "flights") {
+  add_paths(app, name, flights, "FLIGHTS", "recorded flights (CSV), a dataset of import, or logs");
   app.add_option("--mapping", mapping, "what the columns of logs mean: see import")->type_name("NAME|FILE.toml");
 }
 

@@ -26,7 +26,7 @@ namespace {
 using namespace pinnquad;
 
 struct EvaluateOptions {
-  std::string model;
+  std::string model, mapping;
   std::vector<std::string> flights;
   std::string rows = "all";
   bool json = false;
@@ -46,7 +46,8 @@ void print_table(const BlockModel& model, const Dataset& dataset, const programs
 
 int evaluate(const EvaluateOptions& options) {
   const BlockModel model = programs::read_model(options.model);
-  const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows, model.columns());
+  const Dataset dataset =
+      programs::read_flights(options.flights, options.mapping, minimum_flight_rows, model.columns());
   const RowSet rows = programs::rows_to_judge(dataset, options.rows);
   programs::ProgressLine progress("judging " + std::to_string(rows.size()) + " rows");
   const programs::EvaluatedModel evaluation =
@@ -71,7 +72,7 @@ programs::Command programs::evaluate_command(CLI::App& program) {
       program.add_subcommand("evaluate", "Judges an exported model on recorded flights, without compiling");
   const auto options = std::make_shared<EvaluateOptions>();
   add_model(*line, options->model);
-  add_paths(*line, "flights", options->flights, "FILE.csv", "recorded flights to judge it on")->required();
+  add_sources(*line, options->flights, options->mapping);
   line->add_option("--rows", options->rows,
                    "all: every row; test: those that pinnquad train tests on when it is given these flights")
       ->capture_default_str()

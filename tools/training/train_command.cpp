@@ -15,9 +15,7 @@
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
-#include "pinnquad/logs/read_dataset.hpp"
-#include "training/network_kinds.hpp"
-#include "training/recipe.hpp"
+#include "training/train_input.hpp"
 #include "training/train_run.hpp"
 
 namespace {
@@ -27,10 +25,7 @@ using programs::TrainOptions;
 /// As they stand in the command line.
 struct GivenWords {
   std::string airframe = pinnquad::PaperQuadrotor::name;
-  std::string recipe = programs::recipes.front()().name;
-  std::vector<std::string> losses = {programs::loss_names[0], programs::loss_names[1]};
   std::string altitude = "auto", slopes = "learned", lag = "auto";
-  int epochs = programs::recipe_epochs;
 };
 
 void add_flights(CLI::App& app, TrainOptions& options) {
@@ -45,14 +40,12 @@ void add_flights(CLI::App& app, TrainOptions& options) {
 }
 
 void add_kinds(CLI::App& app, TrainOptions& options, GivenWords& words) {
-  const std::string recipes = programs::listed(programs::recipes, [](const auto& make) { return make().name; });
-  app.add_option("--recipe", words.recipe, "networks to compare: " + recipes)->type_name("NAME")->capture_default_str();
-  app.add_option("--loss", words.losses, "of a recipe's networks: " + programs::listed(programs::loss_names))
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAME,...")
-      ->default_str("vanilla,physics_informed");
-  app.add_option("--models", options.models, "kinds for logs, in place of a recipe (docs/log_training.md)")
+  app.add_option("--models", options.models,
+                 "compare these: paper_, best_ or small_ before vanilla, physics_informed, constant_weight or pearson "
+                 "are networks; formula; " +
+                     programs::listed(programs::log_model_kinds(), [](const auto& kind) { return kind.key; }) +
+                     " (flights: " + programs::listed(programs::flight_models) + "; logs: the last " +
+                     std::to_string(programs::log_model_kinds().size()) + ")")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");
@@ -73,7 +66,7 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   app.footer(
       "Examples:\n"
       "  pinnquad train d1.csv --out my_model\n"
-      "  pinnquad train a.csv b.csv c.csv --airframe mine.toml --recipe best\n"
+      "  pinnquad train a.csv b.csv c.csv --airframe mine.toml --models best_pearson\n"
       "  pinnquad train logs --mapping px4 --hold-out flight7 --out my_model\n"
       "  pinnquad train my_logs --hold-out-each trajectory --out my_model\n"
       "More of each option: docs/train.md, docs/log_training.md.\n"
@@ -91,22 +84,13 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   add_kinds(app, options, words);
   app.add_option("--name", options.model_name, "name of the exported struct")->capture_default_str();
   add_number(app, "--seeds", options.seeds, 1, static_cast<int>(pinnquad::most_pairs), "models per kind");
-  add_number(app, "--epochs", words.epochs, 1, 100000, "training epochs (of the kinds for logs: what suits each)");
+  add_number(app, "--epochs", options.epochs, 1, 100000, "training epochs (flights: 300; logs: what suits)")
+      ->default_str("");
   add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,
              "first seed (initialisation and batch order)")
       ->type_name("N");
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
   app.add_flag("--allow-poor", options.allow_poor, "export what is worse than the mean of the commands too, marked");
-}
-
-/// Puts what was given as flights where its content belongs.
-void take_source(TrainOptions& options) {
-  using pinnquad::logs::SourceKind;
-  const SourceKind kind = pinnquad::logs::kind_of_sources(options.flights, options.mapping);
-  if (kind == SourceKind::flights) return;
-  if (kind == SourceKind::dataset) options.dataset = options.flights.front();
-  if (kind == SourceKind::logs) options.logs = options.flights;
-  options.flights.clear();
 }
 
 /// Throws std::invalid_argument, one line, for options that do not go together.
@@ -115,11 +99,6 @@ void require_one_way(const CLI::App& line, const TrainOptions& options) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument(what); };
   if (given("--lag") && !options.dataset.empty()) refuse("--lag: a dataset was imported with one");
   if (given("--hold-out") && given("--hold-out-each")) refuse("--hold-out and --hold-out-each can't be given together");
-  for (const char* of_recipes : {"--recipe", "--loss", "--altitude", "--slopes"}) {
-    if (!given(of_recipes)) continue;
-    if (given("--models")) refuse(std::string(of_recipes) + " and --models can't be given together");
-    if (options.flights.empty() && !given("--recipe")) refuse(std::string(of_recipes) + " goes with --recipe");
-  }
 }
 
 }  // namespace
@@ -137,15 +116,12 @@ programs::Command programs::train_command(CLI::App& program) {
             TrainOptions& options = asked->options;
             const GivenWords& words = asked->words;
             options.lag_s = programs::lag_of(words.lag);
-            take_source(options);
+            programs::take_source(options);
             require_one_way(*line, options);
             const auto given = [line](const char* name) { return line->count(name) > 0; };
-            if (given("--recipe") || (!options.flights.empty() && !given("--models"))) options.recipe = words.recipe;
-            options.losses = words.losses;
             if (words.altitude != "auto") options.altitude = words.altitude == "yes";
             options.pinned_slopes = words.slopes == "pinned";
             if (given("--airframe")) options.airframe = words.airframe;
-            if (given("--epochs")) options.epochs = words.epochs;
             return train(options);
           }};
 }
