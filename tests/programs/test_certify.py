@@ -69,10 +69,10 @@ def test_structured(pinnquad, trained, flight):
     report = report_of(trained)
     judged = json.loads(pinnquad("evaluate", trained / "model.hpp", flight, "--rows", "test", "--json").out)
     models = report["models"]
-    assert sorted(models) == ["linearized", "physics_informed", "structured", "vanilla"]
+    assert sorted(models) == ["formula", "paper_physics_informed", "paper_vanilla", "structured"]
     assert report["verdict"]["model"] == "structured"
     error = {name: model["mean_absolute_error"]["mean"] for name, model in models.items()}
-    assert error["structured"] < 0.7 * error["physics_informed"]
+    assert error["structured"] < 0.7 * error["paper_physics_informed"]
     assert abs(error["structured"] - judged["mean_absolute_error"]) < 1e-6
     for axis in AXES:
         wrong = models["structured"]["wrong_derivative_share"][axis]["mean"]
@@ -117,7 +117,7 @@ def test_shipped(pinnquad):
 
 def test_near_ground(pinnquad, flown):
     flight = flown("d3 --seed 1 --samples 3000")
-    pinnquad(f"train {flight} --recipe structured --altitude yes --loss vanilla --seeds 1 --epochs 1 --out near "
+    pinnquad(f"train {flight} --models structured --altitude yes --seeds 1 --epochs 1 --out near "
              "--allow-poor")
     near = json.loads(pinnquad("certify --json near/model.block").out)
     assert 0.5 * near["airframe_thrust_slope"] < near["held_thrust_slope"]

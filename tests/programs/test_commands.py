@@ -46,7 +46,8 @@ def test_help_and_version(commands):
 
 
 @pytest.mark.parametrize("words, become", [
-    ("f", "fly"), ("i", "import identify"), ("loop x --air", "--airframe"), ("fly d1 --sam", "--samples"), ("train --seeds 3 --conf", "--config"), ("fly d1 --out fi", "")])
+    ("f", "fly"), ("i", "import identify"), ("loop x --air", "--airframe"), ("fly d1 --sam", "--samples"),
+    ("train --seeds 3 --conf", "--config"), ("fly d1 --out fi", "")])
 def test_completion(pinnquad, words, become):
     script = f"""source {SOURCE}/tools/command_line/completion.bash
         COMP_WORDS=({pinnquad} {words}) COMP_CWORD={len(words.split())} COMPREPLY=()
@@ -108,6 +109,15 @@ def check_manual_page(commands):
     ("train --seeds 1", "expected FLIGHTS")])
 def test_refused(pinnquad, commands, words, keyword):
     check_refused(pinnquad, commands, words, keyword)
+
+
+@pytest.mark.parametrize("words, instead", [
+    ("train --flight f.csv", "train ... FLIGHTS"), ("train --log=f.csv", "train ... LOGS --mapping"),
+    ("identify --dataset d", "identify ... DIR"), ("evaluate --model m.block f.csv", "evaluate ... MODEL"),
+    ("evaluate m.block --flight f.csv", "evaluate ... FLIGHTS"), ("train f.csv --recipe best", "train ... --models"),
+    ("train f.csv --loss vanilla", "train ... --models")])
+def test_options_of_earlier_versions(pinnquad, words, instead):
+    pinnquad.refused(words, keyword=f"; write: {instead}")
 
 
 @pytest.mark.parametrize("words, keyword", [

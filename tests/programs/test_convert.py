@@ -841,7 +841,7 @@ def test_residual_back(pinnquad, made):
     """Of a base with a residual between bounds that is not shown the angular acceleration: gathered, clipped, added."""
     onnx, numpy = has_onnx(pinnquad), pytest.importorskip("numpy")
     folder = made("fly d3 --seed 1 --samples 9000 --out flight.csv")
-    pinnquad("train --recipe structured --loss vanilla --epochs 20 --out trained", folder / "flight.csv",
+    pinnquad("train --models structured --epochs 20 --out trained", folder / "flight.csv",
              code=(0, 1))
     if "Saturated" not in Path("trained/model.hpp").read_text():
         pytest.skip("the fit chose no residual")

@@ -24,8 +24,8 @@ def flight(flown):
 
 @pytest.fixture(scope="module")
 def trained(made, flight):
-    """A folder with a/: a network of the paper's recipe."""
-    words = "--recipe paper --seeds 2 --epochs 8 --allow-poor --out a"
+    """A folder with a/: a network trained as the paper's."""
+    words = "--models formula,paper_vanilla,paper_physics_informed --seeds 2 --epochs 8 --allow-poor --out a"
     return made(f"train {flight} {words}")
 
 
@@ -58,9 +58,9 @@ def test_judges_as_the_training_did(trained, evaluated, judged):
     assert evaluated.code == verdict["worse_than_mean"]
 
     # the report for scripts: its names, each figure over the seeds, and that of the exported network as evaluate has it
-    assert sorted(report["models"]) == ["linearized", "physics_informed", "vanilla"]
+    assert sorted(report["models"]) == ["formula", "paper_physics_informed", "paper_vanilla"]
     exported = [row["seed"] for row in of_model].index(verdict["seed"])
-    for model, seeds in {"linearized": 1, "vanilla": 2, "physics_informed": 2}.items():
+    for model, seeds in {"formula": 1, "paper_vanilla": 2, "paper_physics_informed": 2}.items():
         figures = report["models"][model]
         of_all = [(name, figures[name], judged[name]) for name in PLAIN]
         for name in BY_AXIS:
@@ -74,9 +74,9 @@ def test_judges_as_the_training_did(trained, evaluated, judged):
                 assert figure["deviation"] is None, figure
             else:
                 assert abs(figure["deviation"] - abs(each[0] - each[1]) / 2**0.5) <= 1e-12, figure
-            if model == "physics_informed":
+            if model == "paper_physics_informed":
                 assert abs(each[exported] - of_one) <= 1e-6, (name, each, of_one)
-    linearized = report["models"]["linearized"]
+    linearized = report["models"]["formula"]
     for axis in AXES:
         for figure in "wrong_derivative_share", "large_step_violations":
             assert linearized[figure][axis]["mean"] == 0, (figure, axis)
@@ -137,10 +137,20 @@ def test_own_airframe(pinnquad, flight):
     """A block brings it."""
     replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "mine.toml", ("^name = .*", 'name = "mine"'),
              ("^mass_kg = .*", "mass_kg = 1.31"))
-    pinnquad(f"train --recipe paper --airframe mine.toml {flight} --out b --seeds 1 --epochs 2 --allow-poor")
+    pinnquad(f"train --models paper_physics_informed --airframe mine.toml {flight} --out b --seeds 1 --epochs 2 "
+             "--allow-poor")
     of_block, of_header = (pinnquad(f"evaluate b/{file}", flight, code=(0, 1)).out
                            for file in ("model.block", "model.hpp"))
     assert of_block.splitlines()[1:] == of_header.splitlines()[1:] and "for mine" in of_block
+
+
+def test_of_a_dataset(pinnquad, trained, flight, dataset):
+    """Told apart from a flight, and judged as it."""
+    dataset("logs", {"one": flight})
+    of_file, of_folder = (json.loads(pinnquad("evaluate", trained / "a/model.block", source, "--json", code=(0, 1)).out)
+                          for source in (flight, "logs"))
+    assert of_file["rows"] == of_folder["rows"] and of_file["rmse"] == of_folder["rmse"]
+    pinnquad.refused("evaluate", trained / "a/model.block", "logs --rows test", keyword="--rows")
 
 
 def test_header_without_its_block(pinnquad, trained, flight):

@@ -184,7 +184,7 @@ def test_too_short(pinnquad, flown):
 
 @pytest.mark.parametrize("words, keyword", [
     ("", "expected FLIGHTS"), ("a raw.csv", "one dataset"), ("raw.csv", "without a mapping"),
-    ("--log raw.csv", "identify FLIGHTS"),
+    ("--log raw.csv", "identify ... LOGS"),
     ("b.csv --rate 100", "--rate"), ("b.csv --out vehicle.hpp", ".toml"),
     ("b.csv --mass 0", "--mass"), ("nowhere.csv", "nowhere.csv")])
 def test_options_that_make_no_sense(pinnquad, words, keyword):

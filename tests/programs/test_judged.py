@@ -94,7 +94,7 @@ def linear(line, cells):
 def test_no_better_than_linear_regression(pinnquad, good):
     """A warning, and the fact in header and report."""
     edited(good, "linear.csv", linear)
-    done = pinnquad("train linear.csv --recipe paper --out linear --epochs 3 --seeds 1")
+    done = pinnquad("train linear.csv --models paper_physics_informed --out linear --epochs 3 --seeds 1")
     assert re.search("^train: warning: .*linear regression", done.err, re.M), done
     header = Path("linear/model.hpp").read_text()
     assert "bool beats_linear_regression = false;" in header
@@ -130,7 +130,7 @@ def test_still_flight(pinnquad, good, compiler):
     name = 'yaw\udcff* "0";\n\\\n#error?\\?.csv'
     edited(good, name, still)
     for folder, words, flat in (("still_structured", "", "wdot_z, v_bz, w_z, sin_yaw, cos_yaw, w_yz, w_zx, vv_bz"),
-                                ("still", "--recipe paper",
+                                ("still", "--models paper_physics_informed",
                                  "wdot_z, v_bz, w_z, sin_yaw, cos_yaw")):
         err = pinnquad(f"train --out {folder} --epochs 4 --seeds 1 --allow-poor {words}", name).err
         assert f"train: warning: {flat}: " in err, err

@@ -21,7 +21,7 @@ def flown_by(pinnquad, words, code=0):
 def slow(made, flown):
     """A folder with s/: trained below the speed of the usual figure-eight, which is slowed down for it."""
     flight = flown("--seed 3 --samples 3000 --max-speed 3")
-    return made(f"train {flight} --recipe small --seeds 1 --epochs 60 --allow-poor --out s") / "s"
+    return made(f"train {flight} --models small_physics_informed --seeds 1 --epochs 60 --allow-poor --out s") / "s"
 
 
 @pytest.fixture(scope="module")

@@ -87,7 +87,7 @@ def test_a_residual_wrench_is_trained_and_flown(pinnquad, study):
     """From flight to block to loop: the full stack beside INDI, and beside itself without the network."""
     light = "--airframe=light_quadrotor"
     pinnquad("fly harder --interval=10 --samples=6000 --out=flight.csv", light)
-    study("wrench --flight=flight.csv --seeds=1 --epochs=40 --out=w", light)
+    study("wrench flight.csv --seeds=1 --epochs=40 --out=w", light)
     report = json.loads(Path("w/wrench.json").read_text())
     assert all(report["test_r_squared"][f"force_{axis}"] > 0.8 for axis in "xyz"), report
     assert "struct TrainedWrench" in Path("w/wrench.hpp").read_text()
@@ -107,8 +107,9 @@ def test_a_residual_wrench_is_trained_and_flown(pinnquad, study):
     study.refused("loop w/wrench.block", at="w/wrench.block")
     study.refused("loop", MODEL, *flown, keyword="--wrench")
     pinnquad("fly harder --samples=3000 --out=slow.csv", light)
-    study.refused("wrench --flight=slow.csv --out=d", light, keyword="--interval")
-    study.refused("wrench --out=d", light, keyword="--flight")
+    study.refused("wrench slow.csv --out=d", light, keyword="--interval")
+    study.refused("wrench --out=d", light, keyword="FLIGHTS")
+    study.refused("wrench --flight=slow.csv --out=d", light, keyword="wrench ... FLIGHTS")
     assert not Path("d").exists()
 
 

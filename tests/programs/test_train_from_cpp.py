@@ -39,7 +39,7 @@ column = "pack"
 def test_train_from_cpp(pinnquad, program, flown):
     train, flight = program("train"), flown("--seed 3 --samples 9000")
     shutil.copy(flight, "flight.csv")
-    pinnquad("train flight.csv --out a --name MyModel --loss vanilla --seeds 1 "
+    pinnquad("train flight.csv --out a --name MyModel --models structured --seeds 1 "
              "--epochs 20")
     said = train("b flight.csv").out
     for file in "model.hpp", "model.block", "trust.hpp":

@@ -34,11 +34,11 @@ HELD = "--hold-out flight3"
     (f"logs {HELD} --models rigde", "", "nearest: ridge"),
     (f"logs {HELD} --export rigde", "", "nearest: ridge"), (f"no {HELD}", "no", ""),
     ("logs logs/flight1.csv", "", "one dataset"), (f"logs {HELD} --lag 0", "", "a dataset"),
-    (f"logs {HELD} --mapping px4", "logs", "a dataset"), (f"--dataset logs {HELD}", "", "train FLIGHTS"),
+    (f"logs {HELD} --mapping px4", "logs", "a dataset"), (f"--dataset logs {HELD}", "", "train ... DIR"),
     ("logs --hold-out flight1 --hold-out-each flight", "", "--hold-out-each"),
-    ("--hold-out flight1", "", "expected FLIGHTS"), ("logs --hold-out flight1 --slopes pinned", "", "--recipe"),
-    ("logs --hold-out flight1 --recipe best --models ridge", "", "--models"),
-    ("logs --hold-out flight1 --recipe paper --export linearized", "", "nearest"),
+    ("--hold-out flight1", "", "expected FLIGHTS"), ("logs --hold-out flight1 --models ridge --slopes pinned", "", "--slopes"),
+    ("logs --hold-out flight1 --recipe best", "", "--models NAME"),
+    ("logs --hold-out flight1 --models formula,paper_vanilla --export formula", "", "nearest"),
     ("logs --hold-out-each row", "", "hold-out-each"),
     # a lag or a clock that no header can state, a command that stands still: found before the folder and the training
     (f"late {HELD}", "late/dataset.json", "-4 or more"), (f"slow {HELD}", "slow/flight2.csv:3:1",
@@ -162,14 +162,14 @@ def test_seed_after_a_rotation(pinnquad, write):
     assert report_of("all")["exported_seed"] == best
 
 
-def test_recipe(pinnquad, logs):
-    """The structured model of a recipe on an imported dataset, its signs proven in the report too."""
-    said = pinnquad(f"{TRAIN} --hold-out flight2,flight3 --recipe structured --loss vanilla --seeds 1 --epochs 20 "
-                    "--out recipe").out
+def test_beside_a_network(pinnquad, logs):
+    """The structured model beside a network on an imported dataset, its signs proven in the report too."""
+    said = pinnquad(f"{TRAIN} --hold-out flight2,flight3 --models formula,paper_vanilla,structured --seeds 1 --epochs 20 "
+                    "--out beside").out
     assert "proven: each signed sum" in said
-    report = report_of("recipe")
+    report = report_of("beside")
     assert report["exported_model"] == "structured" and report["certificate"]["proven"] is True
-    known = [line for line in Path("recipe/model.hpp").read_text().split("#pragma once")[0].split("\n")
+    known = [line for line in Path("beside/model.hpp").read_text().split("#pragma once")[0].split("\n")
              if line.startswith("// Their 95 % intervals by the training rows: roll ")]
     lower, upper = report["certificate"]["known"]["roll"]["interval_95"]
     own = report["certificate"]["airframe_slope"]["roll"]

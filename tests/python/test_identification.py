@@ -53,8 +53,8 @@ def test_the_vehicle_is_found_and_flies(flown):
     airframe.check()
     airframe.mass_kg = 9
     assert found.airframe.mass_kg == 1  # each a new one
-    training = pinnquad.train(pinnquad.fly(airframe=found.airframe, rows=2400), found.airframe, losses=[], seeds=1,
-                              epochs=1)
+    training = pinnquad.train(pinnquad.fly(airframe=found.airframe, rows=2400), found.airframe, models=["structured"],
+                              seeds=1, epochs=1)
     assert training.r2 > 0.8 and training.model.airframe == found.airframe
 
 

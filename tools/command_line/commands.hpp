@@ -46,12 +46,9 @@ inline void complete(CLI::App& command, const std::string& version) {
 
 /// Options that there are no more, and what is written now.
 inline constexpr std::pair<const char*, const char*> gone_options[] = {
-    {"--flight", "FLIGHTS by themselves: FILE.csv ..."},
-    {"--dataset", "the dataset's folder by itself"},
-    {"--log", "LOGS by themselves, with --mapping"},
-    {"--model", "the MODEL by itself, behind the command"},
-    {"--recipe", "--models NAME,...: paper_physics_informed, best_vanilla ... (see --help)"},
-    {"--loss", "--models NAME,...: paper_physics_informed, best_vanilla ... (see --help)"}};
+    {"--flight", "FLIGHTS"},           {"--dataset", "DIR"},
+    {"--log", "LOGS --mapping NAME"},  {"--model", "MODEL"},
+    {"--recipe", "--models NAME,..."}, {"--loss", "--models NAME,..."}};
 
 /// Throws, one line, where a command is missing or words are left over. They are left with the program: what a command
 /// does not know is handed up. `elsewhere` ends the line about a command that there is not.
@@ -61,10 +58,14 @@ inline void require_command(const CLI::App& program, const std::string& elsewher
   const std::string known = listed(command.get_subcommands([](const CLI::App*) { return true; }),
                                    [](const CLI::App* part) { return part->get_name(); });
   if (known.empty()) {
+    const bool has_arguments =
+        !command.get_options([](const CLI::Option* option) { return option->get_positional(); }).empty();
+    const bool has_models = command.get_option_no_throw("--models") != nullptr;
     for (const std::string& word : unknown) {
       const std::string option = word.substr(0, word.find('='));
       for (const auto& [gone, instead] : gone_options) {
-        if (option == gone) throw std::invalid_argument("no option " + option + ": write " + instead);
+        if (option != gone || !(*instead == '-' ? has_models : has_arguments)) continue;
+        throw std::invalid_argument("no option " + option + "; write: " + command.get_name() + " ... " + instead);
       }
     }
     if (!unknown.empty()) throw CLI::ExtrasError(command.get_name(), unknown);

@@ -105,7 +105,8 @@ int run(const BeyondOptions& options) {
     for (const study::Condition& condition : study::flown_conditions()) taken.insert(condition.name);
     constexpr std::size_t least_rows = 100;
     for (const std::string& path : options.flights) {
-      for (const pinnquad::Flight& flight : programs::read_flights({path}, options.mapping, least_rows).flights()) {
+      const pinnquad::Dataset recorded = programs::read_flights({path}, options.mapping, least_rows);
+      for (const pinnquad::Flight& flight : recorded.flights()) {
         const std::string name = condition_name(flight.name, taken);
         taken.insert(name);
         (*given)[name] = flight;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a training says of the model of fit_structured() beside its networks.
+// Facts that a training tells of the kind structured, the model of fit_structured().
 #include <algorithm>
 #include <string>
 #include <vector>

@@ -75,8 +75,8 @@ inline std::vector<ModelKind> kinds_of(const std::vector<ModelKind>& all, const 
 inline const std::vector<std::string> flight_models = {"formula", "paper_vanilla", "paper_physics_informed",
                                                        "structured"};
 
-/// Of `own` kinds, networks of every recipe and the formula those with these names, networks before the first structured
-/// one; no names: flight_models, or of logs their own. Throws std::invalid_argument, one line.
+/// Of `own` kinds, networks of every recipe and the formula those with these names, networks before the first
+/// structured one; no names: flight_models, or of logs their own. Throws std::invalid_argument, one line.
 inline Selection selection_of(std::vector<ModelKind> own, std::vector<std::string> names, bool of_flights, int epochs) {
   Selection chosen;
   chosen.epochs = epochs;
