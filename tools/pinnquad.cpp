@@ -32,7 +32,7 @@ int run(int argument_count, char** arguments, std::string& name) {
   program.footer(
       "Examples:\n"
       "  pinnquad fly d1 --seed 1 --out d1.csv                    a simulated flight\n"
-      "  pinnquad train --flight d1.csv --out my_model            my_model/model.hpp flies\n"
+      "  pinnquad train d1.csv --out my_model                     my_model/model.hpp flies\n"
       "  pinnquad --config options.toml train                     options from a file\n"
       "pinnquad COMMAND --help says more.\n"
       "Exit codes: 0 good; 1 it ran, but the answer is no; 2 bad input or a file that can't be read or written; 3 "

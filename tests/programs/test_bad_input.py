@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from conftest import SOURCE, cell, column, edited, replaced
 
-TRAIN = "train --out out --epochs 1 --seeds 1 --flight"
+TRAIN = "train --out out --epochs 1 --seeds 1"
 
 
 @pytest.fixture(scope="module")
@@ -66,12 +66,12 @@ def test_deep_toml(pinnquad, good, begin, each, end):
 def test_json(pinnquad):
     Path("nested").mkdir()
     Path("nested/dataset.json").write_text('{"format": 1, "x": ' + 100000 * '{"a": ')
-    pinnquad.refused("train --dataset nested --hold-out x --out out/d", at="nested/dataset.json:1:*",
+    pinnquad.refused("train nested --hold-out x --out out/d", at="nested/dataset.json:1:*",
                      keyword="64 levels")
     flight = {"file": "good.csv\0.csv", "name": "", "rows": 1}
     dataset = {"format": 1, "sample_period_s": 0.05, "lag_removed_s": 0, "flights": [flight]}
     Path("nested/dataset.json").write_text(json.dumps(dataset))
-    pinnquad.refused("train --dataset nested --hold-out x --out out/d", at="nested/dataset.json",
+    pinnquad.refused("train nested --hold-out x --out out/d", at="nested/dataset.json",
                      keyword="name of a file")
 
 
@@ -88,15 +88,15 @@ def test_write_protected(pinnquad, good, output):
 
 @pytest.mark.parametrize("words, at, keyword", [
     (f"{TRAIN} absent.csv", "absent.csv", "found none"),
-    ("train --flight FLIGHT --out a_file/out --epochs 1 --seeds 1", "a_file/out", ""),
+    ("train FLIGHT --out a_file/out --epochs 1 --seeds 1", "a_file/out", ""),
     ("fly --samples 10 --out a_file/flight.csv", "a_file/flight.csv", ""),
-    ("train --flight FLIGHT --airframe zeppelin --out out", "", "'zeppelin'"),
+    ("train FLIGHT --airframe zeppelin --out out", "", "'zeppelin'"),
     ("fly --airframe zeppelin --out out/f.csv", "", "'zeppelin'"),
     ("fly --airframe no.toml --out out/f.csv", "no.toml", "found none"),
     ("fly --airframe folder.toml --out out/f.csv", "folder.toml", "folder"),
     ("fly --airframe heavy.toml --out out/f.csv", "heavy.toml:4:11", "truth value"),
-    ("train --flight FLIGHT --epochs 0", "", "--epochs"), ("train --flight FLIGHT --name 3rd", "", "--name"),
-    ("train --flight FLIGHT --seeds many", "", "--seeds")])
+    ("train FLIGHT --epochs 0", "", "--epochs"), ("train FLIGHT --name 3rd", "", "--name"),
+    ("train FLIGHT --seeds many", "", "--seeds")])
 def test_files_and_options(pinnquad, good, words, at, keyword):
     Path("a_file").touch()
     Path("folder.toml").mkdir()

@@ -95,8 +95,8 @@ def answers(shipped, tmp_path_factory):
             return done.out
 
         say("fly d1 --seed 1 --samples 2400 --out", flight)
-        say("train --recipe small --epochs 20 --seeds 1 --threads 1 --flight", flight, "--out", folder / "model")
-        evaluated = [json.loads(say("evaluate --json", model, "--flight", flight))
+        say("train --models small_physics_informed --epochs 20 --seeds 1 --threads 1", flight, "--out", folder / "model")
+        evaluated = [json.loads(say("evaluate --json", model, flight))
                      for model in (SOURCE / "examples/models/demo_quadrotor.block", folder / "model/model.block")]
         found[name] = say("--version").split("\n")[1], flight.read_bytes(), *evaluated
     return found

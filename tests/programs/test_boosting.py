@@ -29,7 +29,7 @@ def test_same_rows_and_features(pinnquad, flown):
     for seed in 3, 4, 5:
         flights.append(Path(shutil.copy(flown(f"--seed {seed} --samples 2400"), f"flight{seed}.csv")))
     for of in flights[:1], flights:
-        pinnquad("train --models constant,ridge --out run --flight", *of)
+        pinnquad("train --models constant,ridge --out run", *of)
         done = boosting("run", *of, "--trees=60")
         own, report = figures(done.out)
         assert own["ridge"] == pytest.approx(report["ridge"], rel=0.03), done
@@ -41,7 +41,7 @@ def test_same_rows_and_features(pinnquad, flown):
 
 def test_refusals(pinnquad, flown):
     flight = Path(shutil.copy(flown("--seed 3 --samples 2400"), "flight.csv"))
-    pinnquad("train --models ridge --out run --flight", flight)
+    pinnquad("train --models ridge --out run", flight)
     boosting.refused("nowhere", flight, at="nowhere/report.json", keyword="expected JSON")
     boosting.refused("run", shutil.copy(flight, "other.csv"), keyword="the flight")
     boosting.refused("run", flight, "--window", keyword="a window needs a row every 0.02 s")

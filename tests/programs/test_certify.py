@@ -56,7 +56,7 @@ def flight(flown):
 
 @pytest.fixture(scope="module")
 def trained(made, flight):
-    return made(f"train --flight {flight} --seeds 1 --epochs 6 --out . --allow-poor")
+    return made(f"train {flight} --seeds 1 --epochs 6 --out . --allow-poor")
 
 
 def test_structured(pinnquad, trained, flight):
@@ -67,12 +67,12 @@ def test_structured(pinnquad, trained, flight):
     assert but_the_time(of_header, '"model":') == but_the_time(of_block, '"model":')
     assert "require_certificate<" in (trained / "model.hpp").read_text()
     report = report_of(trained)
-    judged = json.loads(pinnquad("evaluate", trained / "model.hpp", "--flight", flight, "--rows", "test", "--json").out)
+    judged = json.loads(pinnquad("evaluate", trained / "model.hpp", flight, "--rows", "test", "--json").out)
     models = report["models"]
-    assert sorted(models) == ["linearized", "physics_informed", "structured", "vanilla"]
+    assert sorted(models) == ["formula", "paper_physics_informed", "paper_vanilla", "structured"]
     assert report["verdict"]["model"] == "structured"
     error = {name: model["mean_absolute_error"]["mean"] for name, model in models.items()}
-    assert error["structured"] < 0.7 * error["physics_informed"]
+    assert error["structured"] < 0.7 * error["paper_physics_informed"]
     assert abs(error["structured"] - judged["mean_absolute_error"]) < 1e-6
     for axis in AXES:
         wrong = models["structured"]["wrong_derivative_share"][axis]["mean"]
@@ -117,7 +117,7 @@ def test_shipped(pinnquad):
 
 def test_near_ground(pinnquad, flown):
     flight = flown("d3 --seed 1 --samples 3000")
-    pinnquad(f"train --flight {flight} --recipe structured --altitude yes --loss vanilla --seeds 1 --epochs 1 --out near "
+    pinnquad(f"train {flight} --models structured --altitude yes --seeds 1 --epochs 1 --out near "
              "--allow-poor")
     near = json.loads(pinnquad("certify --json near/model.block").out)
     assert 0.5 * near["airframe_thrust_slope"] < near["held_thrust_slope"]
@@ -131,7 +131,7 @@ def judge_export(pinnquad, model, code, flights, words):
     pinnquad(f"train {words} --models constant,{model} --export {model} --seeds 1 --epochs 2 --out {model} "
              "--allow-poor")
     certified = pinnquad(f"certify {model}/model.hpp --seconds 0.5", code=code).out
-    judged = json.loads(pinnquad(f"evaluate {model}/model.hpp --json --flight", *flights, code=(0, 1)).out)
+    judged = json.loads(pinnquad(f"evaluate {model}/model.hpp --json", *flights, code=(0, 1)).out)
     trained = report_of(model)["models"][model]
     assert judged["golden_difference"] <= 1e-5
     for figure in "r2", "rmse", "mean_absolute_error":
@@ -150,7 +150,7 @@ def test_models_of_logs(pinnquad, flown, dataset, model, code):
     """A formula under the outputs, affine maps, structured ones."""
     dataset("logs", {f"flight{seed}": flown(f"--seed {seed} --samples 600") for seed in (1, 2, 3)})
     judge_export(pinnquad, model, code, ["logs/flight3.csv"],
-                 "--dataset logs --airframe paper_quadrotor --hold-out flight3")
+                 "logs --airframe paper_quadrotor --hold-out flight3")
 
 
 @pytest.mark.parametrize("model", ["ridge_causal", "ridge_centred", "structured_causal"])
@@ -160,7 +160,7 @@ def test_windows(pinnquad, recorded, made, model):
     nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
     held = "B9_trefoil_fast_rep1"  # and with it the other flight of that trajectory
     said = judge_export(pinnquad, model, 0, [nano / f"{held}.csv", nano / "B9_trefoil_medium_rep1.csv"],
-                        f"--dataset {nano} --airframe crazyflie_2_1 --hold-out {held}")
+                        f"{nano} --airframe crazyflie_2_1 --hold-out {held}")
     assert "of one that is held; of the present alone" in said
     assert model != "structured_causal" or re.search("^with rates ", said, re.M), said
     if model != "ridge_causal":
@@ -207,7 +207,7 @@ def test_held_slope(pinnquad, flown, dataset, past, code):
     dataset("logs", {name: edited(flown(f"--seed {seed} --samples 500"), f"{name}.csv", of_two_instants())
                      for seed, name in enumerate(names, start=1)})
     replaced("logs/dataset.json", "logs/dataset.json", ('"sample_period_s": 0.05', '"sample_period_s": 0.02'))
-    pinnquad("train --dataset logs --airframe paper_quadrotor --hold-out c --models constant,ridge_causal "
+    pinnquad("train logs --airframe paper_quadrotor --hold-out c --models constant,ridge_causal "
              "--export ridge_causal --seeds 1 --out held")
     found = json.loads(pinnquad("certify --json held/model.hpp", code=code).out)
     assert found["verdict"] == ("counterexample" if code else "proven")

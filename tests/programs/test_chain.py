@@ -9,7 +9,7 @@ from conftest import report_of, same_bytes
 from hostile import Case, left_alone, refused, try_all
 from test_hostile import UNREADABLE
 
-PARTS = "--flight part_1.csv part_2.csv --flight part_3.csv"
+PARTS = "part_1.csv part_2.csv part_3.csv"
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +26,7 @@ def other(flown):
 def trained(pinnquad, flight, tmp_path_factory):
     """A folder, and what train said of it."""
     folder = tmp_path_factory.mktemp("trained")
-    return folder, pinnquad(f"train --flight {flight} --seeds 2 --epochs 8 --threads 2 --out .",
+    return folder, pinnquad(f"train {flight} --seeds 2 --epochs 8 --threads 2 --out .",
                             cwd=folder).out
 
 
@@ -45,13 +45,13 @@ def exported(trained, fly_export, tmp_path_factory):
 @pytest.fixture(scope="module")
 def later(made, other):
     """Weights of a later training, of another flight."""
-    return made(f"train --flight {other} --out . --seeds 1 --epochs 6")
+    return made(f"train {other} --out . --seeds 1 --epochs 6")
 
 
 def test_trained(pinnquad, trained):
     folder, said = trained
     rows = [re.search(f"^  {model} +present .*$", said, re.M).group() for model in
-            ("structured", "vanilla", "physics-informed", "linearized")]
+            ("structured", "paper_vanilla", "paper_physics_informed", "formula of the airframe")]
     assert len({len(row) for row in rows}) == 1, "the table's columns do not stand below each other"
     assert said.count("1 held-out flight can't tell") >= 1, "one flight decided"
     assert "\n  proven: each signed sum" in said
@@ -60,7 +60,7 @@ def test_trained(pinnquad, trained):
         assert (folder / file).stat().st_size, file
     page = (folder / "report.html").read_text()
     for text in ["the end of", "What is proven, and when not to trust it", "over the airframe’s own in hover",
-                 "No limits of trust beside the envelope", "physics-informed"]:
+                 "No limits of trust beside the envelope", "paper_physics_informed"]:
         assert text in page, text
     assert "{{" not in page and "looking ahead" not in page and "nan" not in page
     # a header, the linearized model, 4 networks and 2 structured models
@@ -73,7 +73,7 @@ def test_same_bits(pinnquad, flight, other, trained):
     pinnquad("fly --seed 3 --samples 3000 --out again.csv")
     same_bytes(flight, "again.csv")
     assert flight.read_bytes() != other.read_bytes(), "another seed flew the same flight"
-    pinnquad(f"train --flight {flight} --out b --seeds 2 --epochs 8 --threads 1")
+    pinnquad(f"train {flight} --out b --seeds 2 --epochs 8 --threads 1")
     for file in "model.hpp", "model.block":
         same_bytes(trained[0] / file, f"b/{file}")
 
@@ -96,12 +96,12 @@ def test_several_flights(pinnquad, flight, other):
     # two of them named, and each in its turn: the export is fitted to all, and no flight decides alone
     pinnquad(f"train {PARTS} --hold-out part_1.csv --out n --seeds 1 --epochs 2 --allow-poor --models constant,linear")
     assert report_of("n")["held_out"] == ["part_1.csv"]
-    pinnquad(f"train {PARTS} --hold-out-each flight --recipe small --out n --seeds 1 --epochs 2 --allow-poor")
+    pinnquad(f"train {PARTS} --hold-out-each flight --models small_vanilla,small_physics_informed --out n --seeds 1 --epochs 2 --allow-poor")
     each = report_of("n")
-    assert len(each["folds"]) == 3 and each["exported_model"] == "physics_informed"
-    pinnquad.refused(f"train --out e --flight part_1.csv {other}", keyword="3 flights")
-    pinnquad.refused("train --out e --flight part_1.csv part_1.csv part_2.csv", keyword="same flight")
-    pinnquad.refused("train --out e --flight part_1.csv part_2.csv", keyword="2200 rows")
+    assert len(each["folds"]) == 3 and each["exported_model"] == "small_physics_informed"
+    pinnquad.refused(f"train --out e part_1.csv {other}", keyword="3 flights")
+    pinnquad.refused("train --out e part_1.csv part_1.csv part_2.csv", keyword="same flight")
+    pinnquad.refused("train --out e part_1.csv part_2.csv", keyword="2200 rows")
 
 
 def test_flown(exported, trained):

@@ -235,7 +235,7 @@ def test_commands_take_it(pinnquad, flown):
     report = json.loads(pinnquad("certify model/model.block --json").out)
     assert report["held_slope"]["roll"] == pytest.approx(4 * slopes[0], rel=1e-5)
     flight = flown("--seed 9 --samples 500")
-    assert "derivative" in pinnquad("evaluate model/model.block --flight", flight, code=(0, 1)).out
+    assert "derivative" in pinnquad("evaluate model/model.block", flight, code=(0, 1)).out
     # the other way round: refuted
     safetensors("affine.safetensors", {"0.weight": ((4, 4), [-w for w in weights]), "0.bias": ((4,), [0.5] * 4)})
     header = converted(pinnquad, "affine.safetensors")
@@ -841,7 +841,7 @@ def test_residual_back(pinnquad, made):
     """Of a base with a residual between bounds that is not shown the angular acceleration: gathered, clipped, added."""
     onnx, numpy = has_onnx(pinnquad), pytest.importorskip("numpy")
     folder = made("fly d3 --seed 1 --samples 9000 --out flight.csv")
-    pinnquad("train --recipe structured --loss vanilla --epochs 20 --out trained --flight", folder / "flight.csv",
+    pinnquad("train --models structured --epochs 20 --out trained", folder / "flight.csv",
              code=(0, 1))
     if "Saturated" not in Path("trained/model.hpp").read_text():
         pytest.skip("the fit chose no residual")

@@ -24,15 +24,15 @@ def flight(flown):
 
 @pytest.fixture(scope="module")
 def trained(made, flight):
-    """A folder with a/: a network of the paper's recipe."""
-    words = "--recipe paper --seeds 2 --epochs 8 --allow-poor --out a"
-    return made(f"train --flight {flight} {words}")
+    """A folder with a/: a network trained as the paper's."""
+    words = "--models formula,paper_vanilla,paper_physics_informed --seeds 2 --epochs 8 --allow-poor --out a"
+    return made(f"train {flight} {words}")
 
 
 @pytest.fixture(scope="module")
 def evaluated(pinnquad, trained, flight):
     """Exit code and what it says of the rows that trained none."""
-    return pinnquad("evaluate", trained / "a/model.block", "--flight", flight, "--rows", "test", "--json", code=(0, 1))
+    return pinnquad("evaluate", trained / "a/model.block", flight, "--rows", "test", "--json", code=(0, 1))
 
 
 @pytest.fixture(scope="module")
@@ -58,9 +58,9 @@ def test_judges_as_the_training_did(trained, evaluated, judged):
     assert evaluated.code == verdict["worse_than_mean"]
 
     # the report for scripts: its names, each figure over the seeds, and that of the exported network as evaluate has it
-    assert sorted(report["models"]) == ["linearized", "physics_informed", "vanilla"]
+    assert sorted(report["models"]) == ["formula", "paper_physics_informed", "paper_vanilla"]
     exported = [row["seed"] for row in of_model].index(verdict["seed"])
-    for model, seeds in {"linearized": 1, "vanilla": 2, "physics_informed": 2}.items():
+    for model, seeds in {"formula": 1, "paper_vanilla": 2, "paper_physics_informed": 2}.items():
         figures = report["models"][model]
         of_all = [(name, figures[name], judged[name]) for name in PLAIN]
         for name in BY_AXIS:
@@ -74,9 +74,9 @@ def test_judges_as_the_training_did(trained, evaluated, judged):
                 assert figure["deviation"] is None, figure
             else:
                 assert abs(figure["deviation"] - abs(each[0] - each[1]) / 2**0.5) <= 1e-12, figure
-            if model == "physics_informed":
+            if model == "paper_physics_informed":
                 assert abs(each[exported] - of_one) <= 1e-6, (name, each, of_one)
-    linearized = report["models"]["linearized"]
+    linearized = report["models"]["formula"]
     for axis in AXES:
         for figure in "wrong_derivative_share", "large_step_violations":
             assert linearized[figure][axis]["mean"] == 0, (figure, axis)
@@ -88,7 +88,7 @@ def test_judges_as_the_training_did(trained, evaluated, judged):
 
 
 def test_header_as_block(pinnquad, trained, flight, evaluated):
-    words = "--flight", flight, "--rows", "test"
+    words = flight, "--rows", "test"
     of_header = pinnquad("evaluate", trained / "a/model.hpp", *words, "--json", code=evaluated.code)
     assert but_the_name(of_header.out) == but_the_name(evaluated.out)
     assert "Dense<25>" in pinnquad("evaluate", trained / "a/model.block", *words, code=evaluated.code).out
@@ -137,20 +137,30 @@ def test_own_airframe(pinnquad, flight):
     """A block brings it."""
     replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "mine.toml", ("^name = .*", 'name = "mine"'),
              ("^mass_kg = .*", "mass_kg = 1.31"))
-    pinnquad(f"train --recipe paper --airframe mine.toml --flight {flight} --out b --seeds 1 --epochs 2 --allow-poor")
-    of_block, of_header = (pinnquad(f"evaluate b/{file} --flight", flight, code=(0, 1)).out
+    pinnquad(f"train --models paper_physics_informed --airframe mine.toml {flight} --out b --seeds 1 --epochs 2 "
+             "--allow-poor")
+    of_block, of_header = (pinnquad(f"evaluate b/{file}", flight, code=(0, 1)).out
                            for file in ("model.block", "model.hpp"))
     assert of_block.splitlines()[1:] == of_header.splitlines()[1:] and "for mine" in of_block
+
+
+def test_of_a_dataset(pinnquad, trained, flight, dataset):
+    """Told apart from a flight, and judged as it."""
+    dataset("logs", {"one": flight})
+    of_file, of_folder = (json.loads(pinnquad("evaluate", trained / "a/model.block", source, "--json", code=(0, 1)).out)
+                          for source in (flight, "logs"))
+    assert of_file["rows"] == of_folder["rows"] and of_file["rmse"] == of_folder["rmse"]
+    pinnquad.refused("evaluate", trained / "a/model.block", "logs --rows test", keyword="--rows")
 
 
 def test_header_without_its_block(pinnquad, trained, flight):
     """A header is taken by the block beside it, which says its hash."""
     shutil.copy(trained / "a/model.hpp", "alone.hpp")
-    pinnquad.refused("evaluate alone.hpp --flight", flight, at="alone.hpp", keyword="alone.block")
+    pinnquad.refused("evaluate alone.hpp", flight, at="alone.hpp", keyword="alone.block")
     shutil.copy(SOURCE / "examples/models/demo_quadrotor.block", "alone.block")
-    pinnquad.refused("evaluate alone.hpp --flight", flight, at="alone.block", keyword="another header")
+    pinnquad.refused("evaluate alone.hpp", flight, at="alone.block", keyword="another header")
     shutil.copy(trained / "a/model.block", "alone.block")
-    pinnquad("evaluate alone.hpp --flight", flight, code=(0, 1))
+    pinnquad("evaluate alone.hpp", flight, code=(0, 1))
 
 
 def test_worse_than_the_mean(pinnquad, trained, flight):
@@ -162,7 +172,7 @@ def test_worse_than_the_mean(pinnquad, trained, flight):
                 cells[i] = 0.5 + 0.4 * math.sin(line * (i + 1))
 
     edited(flight, "noise.csv", noise)
-    done = pinnquad("evaluate", trained / "a/model.block", "--flight", "noise.csv", code=1)
+    done = pinnquad("evaluate", trained / "a/model.block", "noise.csv", code=1)
     assert "worse than the mean" in done.err and "model.block: " in done.err, done
 
 
@@ -175,9 +185,9 @@ def test_refused(pinnquad, trained, flight):
     Path("short.block").write_bytes(whole[:30])
     for name, keyword in (("none.block", "found none"), ("flight.csv", "model block"), ("flight.hpp", "flight.block"),
                           ("cut.block", "cut short"), ("short.block", "model block")):
-        pinnquad.refused("evaluate", name, "--flight", "flight.csv", at=name, keyword=keyword)
+        pinnquad.refused("evaluate", name, "flight.csv", at=name, keyword=keyword)
     for offset in 9, 16, 30, 60, 2000, 20000:
         Path("changed.block").write_bytes(whole[:offset] + b"\xff" + whole[offset + 1 :])
-        pinnquad.refused("evaluate changed.block --flight flight.csv", at="changed.block", keyword="expected")
-    pinnquad.refused("evaluate", trained / "a/model.block", "--flight", "none.csv", at="none.csv",
+        pinnquad.refused("evaluate changed.block flight.csv", at="changed.block", keyword="expected")
+    pinnquad.refused("evaluate", trained / "a/model.block", "none.csv", at="none.csv",
                      keyword="readable file")

@@ -29,7 +29,7 @@ DISKS = ["full_disk", "full_disk_signal"]
 FEW = "fly --samples 20"
 SHORT = "--seeds 1 --epochs 1"
 PAGE_DOES_NOT_FIT = 240  # blocks that a file may have: header and replay fit, the report page does not
-ONE = f"train --flight in/flight.csv {SHORT}"
+ONE = f"train in/flight.csv {SHORT}"
 BLANK = {"TMPDIR": "/nonexistent", "HOME": "/nonexistent"}
 
 
@@ -137,26 +137,26 @@ def fly_cases():
 
 
 def train_cases():
-    yield from (refused("train --flight in/flight.csv --out run/o --epochs 1 --seeds", value)
+    yield from (refused("train in/flight.csv --out run/o --epochs 1 --seeds", value)
                 for value in WHOLE_NUMBERS)
-    yield from (refused("train --flight in/flight.csv --out run/o --seeds 1 --epochs", value)
+    yield from (refused("train in/flight.csv --out run/o --seeds 1 --epochs", value)
                 for value in WHOLE_NUMBERS)
     for option in "--seed", "--threads":
         yield from (refused(f"{ONE} --out run/o {option}", value) for value in WHOLE_NUMBERS)
     for words in ["--epochs 0", "--epochs 100001", "--seeds 0", "--threads 0", "--threads 1025", "--no-such-option",
-                  "x", "--flight in/short.csv", "--airframe", "--seed 18446744073709551615"]:
-        yield refused(f"train --flight in/flight.csv --out run/o {words}")
+                  "x", "in/short.csv", "--airframe", "--seed 18446744073709551615"]:
+        yield refused(f"train in/flight.csv --out run/o {words}")
     yield from (refused(f"{ONE} --out run/o --name", text) for text in [*NO_IDENTIFIER, "\u202emodel"])
-    yield from (left_alone("train --flight", path, *SHORT.split(), "--out", "run/o")
+    yield from (left_alone("train", path, *SHORT.split(), "--out", "run/o")
                 for path in [*UNREADABLE, "in/sticks.csv"])
     yield from (left_alone(f"{ONE} --out", path) for path in [*NO_FOLDER, "/dev/null/x"])
     for name in ["results.csv", "report.json", "report.html", "model.hpp", "model.block", "trust.hpp", "replay.txt"]:
-        yield Case(f"train --flight run/{name} {SHORT} --out run", leaves=True, after=unchanged("flight.csv", name),
+        yield Case(f"train run/{name} {SHORT} --out run", leaves=True, after=unchanged("flight.csv", name),
                    before=lambda run, name=name: shutil.copy(run / "../in/flight.csv", run / name))
         yield refused(f"{ONE} --out run", before=lambda run, name=name: os.symlink("../in/flight.csv", run / name))
         yield refused(f"{ONE} --out run", before=lambda run, name=name: (run / name).mkdir())
     for name in ["it's *.csv", '"quoted".csv', "flüg ✈.csv", "\udcff\udcfe.csv", "line\nend.csv", "\\"]:
-        yield accepted("train --flight", f"run/{name}", *SHORT.split(), "--out", f"run/out of {name}",
+        yield accepted("train", f"run/{name}", *SHORT.split(), "--out", f"run/out of {name}",
                        before=lambda run, name=name: shutil.copy(run / "../in/flight.csv", run / name))
     for how in [{"around": "closed_stdin"}, {"around": "no_threads"}, {"around": "one_thread"},
                 {"env": {"LC_ALL": "garbage"}}, {"env": BLANK}]:
@@ -206,7 +206,7 @@ def demo_cases():
     for option in "--seeds", "--epochs", "--seed":
         yield from (refused(f"demo --out run/o {option}", value) for value in WHOLE_NUMBERS)
     for words in ["--seeds 0", "--seeds 501", "--epochs 0", "--epochs 100001", "--seed", "--no-such-option", "x",
-                  "--log in/flight.csv", "--out"]:
+                  "in/flight.csv", "--out"]:
         yield refused(f"demo {words}")
     for path in NO_FOLDER:
         yield left_alone("demo --out", path)
@@ -228,6 +228,6 @@ def test_two_programs_in_one_folder(pinnquad, given):
     os.mkdir("o")
     folder = os.open("o", os.O_RDONLY)
     fcntl.flock(folder, fcntl.LOCK_EX)
-    pinnquad.refused("train --seeds 1 --epochs 1 --out o --flight", given / "flight.csv", keyword="another program")
+    pinnquad.refused("train --seeds 1 --epochs 1 --out o", given / "flight.csv", keyword="another program")
     assert not os.listdir("o")
     os.close(folder)

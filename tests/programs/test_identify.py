@@ -38,7 +38,7 @@ def flight(flown):
 
 
 def test_simulated_flight(pinnquad, flight):
-    found = identified(pinnquad, "--flight", flight, "--airframe", "px4_sih", "--out", "vehicle.toml")
+    found = identified(pinnquad, flight, "--airframe", "px4_sih", "--out", "vehicle.toml")
     thinner = 0.985  # the air at 157 m over that of the coefficients
     for turn, truth in zip(TURNS, (40, 40, 3.333)):
         assert value(found, f"{turn}_effectiveness_rad_s2") == pytest.approx(truth * thinner, rel=0.06), turn
@@ -48,12 +48,12 @@ def test_simulated_flight(pinnquad, flight):
     assert found["assumed"][0].startswith("mass 1 kg (of px4_sih)")
     assert "thrust-to-weight 2.0" in pinnquad("airframe check vehicle.toml").out
     pinnquad("fly d1 --airframe vehicle.toml --seed 4 --samples 4000 --out again.csv")
-    again = identified(pinnquad, "--flight", "again.csv", "--airframe", "vehicle.toml")
+    again = identified(pinnquad, "again.csv", "--airframe", "vehicle.toml")
     assert value(again, "thrust_m_s2") == pytest.approx(value(found, "thrust_m_s2") * thinner, rel=0.02)
 
 
 def test_told_for_people(pinnquad, flight):
-    said = pinnquad("identify --flight", flight).out
+    said = pinnquad("identify", flight).out
     for words in ("95 % interval", "roll effectiveness", "not of them", "mass 1 kg (assumed)", "arms 0.2 m"):
         assert words in said, words
     assert re.search(r"^not told: gyroscopic term of roll .*; fly: ", said, re.M), said
@@ -62,7 +62,7 @@ def test_told_for_people(pinnquad, flight):
 def test_mass_and_arms_are_taken_from_options(pinnquad, flight):
     made = {}
     for words in ("--mass 1 --arm 0.2", "--mass 2 --arm 0.2", "--mass 1 --arm 0.1"):
-        pinnquad(f"identify {words} --out made.toml --flight", flight)
+        pinnquad(f"identify {words} --out made.toml", flight)
         made[words] = tomllib.loads(Path("made.toml").read_text())
     plain, heavy, short = made.values()
     assert heavy["mass_kg"] == 2 and short["rotor"][0]["x_m"] == pytest.approx(0.1, rel=0.02)
@@ -78,7 +78,7 @@ def test_a_thrust_curve(pinnquad, flight):
             cells[at - 1] = repr(float(cells[at - 1]) ** 0.5)
 
     edited(flight, "speeds.csv", square)  # the commands as rotor speeds
-    found = identified(pinnquad, "--flight", "speeds.csv", "--thrust-curve", "fit", "--out", "curved.toml")
+    found = identified(pinnquad, "speeds.csv", "--thrust-curve", "fit", "--out", "curved.toml")
     assert value(found, "thrust_curve") == pytest.approx(1, abs=0.05)
     assert value(found, "thrust_m_s2") == pytest.approx(4.925, rel=0.02)
     assert tomllib.loads(Path("curved.toml").read_text())["rotor"][3]["thrust_curve"] > 0.9
@@ -95,7 +95,7 @@ def excited(recorded, tmp_path_factory):
 
 
 def test_px4_simulation(pinnquad, excited):
-    found = identified(pinnquad, "--log", excited / "train_excite.ulg", "--mapping", "px4")
+    found = identified(pinnquad, excited / "train_excite.ulg", "--mapping", "px4")
     for key, truth in (("thrust_m_s2", 5), ("roll_effectiveness_rad_s2", 40), ("pitch_effectiveness_rad_s2", 40),
                        ("yaw_effectiveness_rad_s2", 3.3333)):
         assert value(found, key) == pytest.approx(truth, rel=0.01), key
@@ -104,14 +104,14 @@ def test_px4_simulation(pinnquad, excited):
                        ("yaw_damping_1_s", 0.8333), ("gyroscopic_roll", -0.2), ("gyroscopic_pitch", 0.2)):
         assert holds(found, key, truth), (key, found["numbers"][key])
     assert value(found, "delay_s") == pytest.approx(0.004, abs=0.004)
-    payload = identified(pinnquad, "--log", excited / "payload.ulg", "--mapping", "px4", "--mass", "1.2")
+    payload = identified(pinnquad, excited / "payload.ulg", "--mapping", "px4", "--mass", "1.2")
     assert value(payload, "thrust_m_s2") == pytest.approx(4.1667, rel=0.01)
 
 
 def test_a_dataset_says_what_its_import_shifted(pinnquad, excited):
     pinnquad("import --mapping px4 --lag 0.036 --out shifted", excited / "payload.ulg")
-    shifted = identified(pinnquad, "--dataset", "shifted")
-    log = identified(pinnquad, "--log", excited / "payload.ulg", "--mapping", "px4")
+    shifted = identified(pinnquad, "shifted")
+    log = identified(pinnquad, excited / "payload.ulg", "--mapping", "px4")
     assert shifted["lag_removed_s"] == 0.036
     assert value(shifted, "response_s") == pytest.approx(value(log, "response_s"), abs=0.002)
 
@@ -148,7 +148,7 @@ def hovering(line, cells):
 ], ids=["frozen", "on the ground", "saturated", "motor order", "no excitation", "yaw reversed"])
 def test_refused(pinnquad, flight, change, word, code):
     edited(flight, "bad.csv", change)
-    pinnquad.refused("identify --flight bad.csv --out vehicle.toml", at="bad.csv", keyword=word, code=code)
+    pinnquad.refused("identify bad.csv --out vehicle.toml", at="bad.csv", keyword=word, code=code)
     assert not Path("vehicle.toml").exists()
     no_partial_files(".")
 
@@ -156,7 +156,7 @@ def test_refused(pinnquad, flight, change, word, code):
 def test_a_lag_that_no_quadrotor_has(pinnquad, flown, slowed):
     """A vehicle of four times the time constants: nothing is written, and the range is said."""
     slowed(flown("d1 --airframe crazyflie_2_1 --max-speed 2 --interval 10 --samples 6000"), "slow.csv")
-    said = pinnquad.refused("identify --flight slow.csv --airframe crazyflie_2_1 --out vehicle.toml", at="slow.csv",
+    said = pinnquad.refused("identify slow.csv --airframe crazyflie_2_1 --out vehicle.toml", at="slow.csv",
                             keyword="rotor lag is 0.23", code=1)
     assert "quadrotors have 0 to 0.2 s" in said.lines[0] and not Path("vehicle.toml").exists()
 
@@ -166,36 +166,40 @@ def test_roll_and_pitch_that_are_unlike(pinnquad):
     pinnquad("airframe convert px4_sih --out usual.toml")
     replaced("usual.toml", "long.toml", ("^inertia_kg_m2 = .*", "inertia_kg_m2 = [0.012, 0.048, 0.055]"))
     pinnquad("fly d1 --airframe long.toml --seed 3 --samples 6000 --out long.csv")
-    said = pinnquad("identify --flight long.csv --airframe long.toml --out made.toml").out
+    said = pinnquad("identify long.csv --airframe long.toml --out made.toml").out
     assert re.search("^warning: roll effectiveness is .* pitch effectiveness .* factor of 3", said, re.M), said
 
 
 def test_a_flight_of_a_dataset_is_named(pinnquad, flight, dataset):
     edited(flight, "bad.csv", column(FLIGHT["w_y"], to="0.25"))
     dataset("flights", {"good": flight, "bad": "bad.csv"})
-    pinnquad.refused("identify --dataset flights", at="flights/bad.csv", keyword="w_y")
+    pinnquad.refused("identify flights", at="flights/bad.csv", keyword="w_y")
 
 
 def test_too_short(pinnquad, flown):
     short = flown("d1 --samples 100")
-    pinnquad.refused("identify --out vehicle.toml --flight", short, at=short.name, keyword="10 s", code=1)
+    pinnquad.refused("identify --out vehicle.toml", short, at=short.name, keyword="10 s", code=1)
     assert not Path("vehicle.toml").exists()
 
 
 @pytest.mark.parametrize("words, keyword", [
-    ("", "--flight"), ("--dataset a --flight b.csv", "one of"), ("--log a.ulg", "--mapping"),
-    ("--flight b.csv --rate 100", "--rate"), ("--flight b.csv --out vehicle.hpp", ".toml"),
-    ("--flight b.csv --mass 0", "--mass"), ("--flight nowhere.csv", "nowhere.csv")])
+    ("", "expected FLIGHTS"), ("a raw.csv", "one dataset"), ("raw.csv", "without a mapping"),
+    ("--log raw.csv", "identify ... LOGS"),
+    ("b.csv --rate 100", "--rate"), ("b.csv --out vehicle.hpp", ".toml"),
+    ("b.csv --mass 0", "--mass"), ("nowhere.csv", "nowhere.csv")])
 def test_options_that_make_no_sense(pinnquad, words, keyword):
+    Path("a").mkdir()
+    Path("a/dataset.json").touch()
+    Path("raw.csv").write_text("a,b\n1,2\n")
     pinnquad.refused(f"identify {words}", keyword=keyword)
 
 
 def test_a_curve_is_a_number_or_fit(pinnquad, flight):
-    pinnquad.refused("identify --thrust-curve 2 --flight", flight, keyword="--thrust-curve")
+    pinnquad.refused("identify --thrust-curve 2", flight, keyword="--thrust-curve")
 
 
 def test_the_flight_is_not_overwritten(pinnquad, flight):
     shutil.copy(flight, "flight.toml")
-    pinnquad.refused("identify --flight flight.toml --out flight.toml", keyword="same file")
+    pinnquad.refused("identify flight.toml --out flight.toml", keyword="same file")
     Path("mine.toml").write_text("")
-    pinnquad.refused("identify --log flight.toml --mapping mine.toml --out mine.toml", keyword="same file")
+    pinnquad.refused("identify flight.toml --mapping mine.toml --out mine.toml", keyword="same file")

@@ -24,9 +24,9 @@ def finished(done, of):
 
 def test_train(pinnquad, flight):
     """More work than any machine does in a test, in pieces small enough for any; taken up again."""
-    process = pinnquad.start("train --out out --seeds 500 --epochs 30 --threads 2 --flight", flight)
+    process = pinnquad.start("train --out out --seeds 500 --epochs 30 --threads 2", flight)
     until(lambda: len(list(Path("out").glob("fits/*-2-1.fit"))) == 3, process)
-    pinnquad.refused("train --out out --seeds 1 --epochs 1 --flight", flight, at="out", keyword="another program")
+    pinnquad.refused("train --out out --seeds 1 --epochs 1", flight, at="out", keyword="another program")
     kept = finished(ended(process), 1501)
     assert kept >= 7 and len(list(Path("out/fits").iterdir())) == kept
     report = report_of("out")
@@ -34,10 +34,10 @@ def test_train(pinnquad, flight):
     assert report["fits"] == {"finished": kept, "wanted": 1501}
     assert not Path("out/model.hpp").exists()
     no_partial_files("out")
-    said = pinnquad("train --out out --seeds 2 --epochs 30 --flight", flight).out
+    said = pinnquad("train --out out --seeds 2 --epochs 30", flight).out
     assert "7 of 7 fits were finished by an earlier run" in said, said
     assert not Path("out/fits").exists()
-    pinnquad("train --out whole --seeds 2 --epochs 30 --flight", flight)
+    pinnquad("train --out whole --seeds 2 --epochs 30", flight)
     for file in "model.hpp", "model.block", "replay.txt":
         same_bytes(f"out/{file}", f"whole/{file}")
 
@@ -59,14 +59,14 @@ def test_hangup(study):
 
 def test_evaluate(pinnquad, made, flight):
     """It writes nothing that could be half there: it ends at once, however long the flight."""
-    exported = made(f"train --flight {flight} --out . --seeds 1 --epochs 4 --allow-poor")
+    exported = made(f"train {flight} --out . --seeds 1 --epochs 4 --allow-poor")
     header, *rows = flight.read_text().splitlines()
     step = float(rows[1].split(",")[0]) - float(rows[0].split(",")[0])
     with open("long.csv", "w") as long:
         long.write(header + "\n")
         for i in range(80 * len(rows)):
             long.write(f"{step * i:.6g},{rows[i % len(rows)].split(',', 1)[1]}\n")
-    process = pinnquad.start("evaluate", exported / "model.hpp", "--flight", "long.csv", "--json")
+    process = pinnquad.start("evaluate", exported / "model.hpp", "long.csv", "--json")
     time.sleep(0.5)
     done = ended(process)
     assert done.code == 130 and not done.out, done

@@ -38,19 +38,19 @@ def test_refused(pinnquad, good, place, keyword, change, folder):
     """Before training: it leaves no trace in a folder that is there, and makes none."""
     Path("there").mkdir()
     edited(good, "bad.csv", change)
-    pinnquad.refused(f"train --flight bad.csv --out {folder} {TRAIN}", at=f"bad.csv:{place}", keyword=keyword)
+    pinnquad.refused(f"train bad.csv --out {folder} {TRAIN}", at=f"bad.csv:{place}", keyword=keyword)
     assert not os.listdir("there") and not Path("made").exists()
 
 
 def test_refused_names(pinnquad, good):
     for name in "class", "NULL", "_Model", "my__model", "errno", "3rd", "a b":
-        pinnquad.refused(f"train --out made {TRAIN} --flight", good, "--name", name, keyword="--name")
+        pinnquad.refused(f"train --out made {TRAIN}", good, "--name", name, keyword="--name")
     assert not Path("made").exists(), "a refused training left its folder"
 
 
 def test_stands_still_in_some_test_rows(pinnquad, good):
     edited(good, "varies.csv", lambda line, cells: [*cells[:19], 0.25, *cells[20:]] if line > 2500 else None)
-    pinnquad(f"train --flight varies.csv --out varies {TRAIN} --allow-poor")
+    pinnquad(f"train varies.csv --out varies {TRAIN} --allow-poor")
 
 
 def test_worse_than_the_mean(pinnquad, good):
@@ -63,7 +63,7 @@ def test_worse_than_the_mean(pinnquad, good):
                 cells[i - 1] = (0.2 if line < 2400 else 0.8) + 0.1 * math.sin(line * i)
 
     edited(good, "noise.csv", noise)
-    train = "train --flight noise.csv --out {0} --epochs 2 --seeds 1"
+    train = "train noise.csv --out {0} --epochs 2 --seeds 1"
     pinnquad.refused(train.format("poor"), code=1, keyword="worse than the mean")
     assert {"results.csv", "report.json"} <= set(os.listdir("poor"))
     assert not {"model.hpp", "model.block", "replay.txt"} & set(os.listdir("poor"))
@@ -94,14 +94,14 @@ def linear(line, cells):
 def test_no_better_than_linear_regression(pinnquad, good):
     """A warning, and the fact in header and report."""
     edited(good, "linear.csv", linear)
-    done = pinnquad("train --flight linear.csv --recipe paper --out linear --epochs 3 --seeds 1")
+    done = pinnquad("train linear.csv --models paper_physics_informed --out linear --epochs 3 --seeds 1")
     assert re.search("^train: warning: .*linear regression", done.err, re.M), done
     header = Path("linear/model.hpp").read_text()
     assert "bool beats_linear_regression = false;" in header
     assert float(re.search(r"linear_regression_r_squared = ([\d.]+)", header).group(1)) > 0.99999
     assert '"beats_linear_regression": false' in Path("linear/report.json").read_text()
     # the same of a structured model, whose slopes are those of no vehicle: proven, and a warning each
-    err = pinnquad("train --flight linear.csv --out sloped --epochs 3 --seeds 1 --allow-poor").err
+    err = pinnquad("train linear.csv --out sloped --epochs 3 --seeds 1 --allow-poor").err
     for axis in "roll", "yaw":
         assert re.search(f"^train: warning: the {axis} slope .* --slopes pinned ", err, re.M), err
     pinnquad("certify sloped/model.hpp")
@@ -110,10 +110,10 @@ def test_no_better_than_linear_regression(pinnquad, good):
 def test_pinned_slopes_on_a_noisy_flight(pinnquad, flown):
     """The model is worse than the mean, and no network that is refuted takes its place."""
     noisy = flown("--seed 3 --samples 2400 --gyro-noise 0.1")
-    done = pinnquad("train --slopes pinned --out pinned --epochs 20 --seeds 2 --flight", noisy, code=1)
+    done = pinnquad("train --slopes pinned --out pinned --epochs 20 --seeds 2", noisy, code=1)
     assert not Path("pinned/model.hpp").exists()
     assert re.search("^train: not exported: .*--slopes learned", done.err, re.M), done
-    done = pinnquad("train --out learned --epochs 20 --seeds 2 --flight", noisy)
+    done = pinnquad("train --out learned --epochs 20 --seeds 2", noisy)
     assert "where the angular acceleration is not noisy, train --slopes pinned" in done.err, done
     pinnquad("certify learned/model.hpp")
 
@@ -130,9 +130,9 @@ def test_still_flight(pinnquad, good, compiler):
     name = 'yaw\udcff* "0";\n\\\n#error?\\?.csv'
     edited(good, name, still)
     for folder, words, flat in (("still_structured", "", "wdot_z, v_bz, w_z, sin_yaw, cos_yaw, w_yz, w_zx, vv_bz"),
-                                ("still", "--recipe paper",
+                                ("still", "--models paper_physics_informed",
                                  "wdot_z, v_bz, w_z, sin_yaw, cos_yaw")):
-        err = pinnquad(f"train --out {folder} --epochs 4 --seeds 1 --allow-poor {words} --flight", name).err
+        err = pinnquad(f"train --out {folder} --epochs 4 --seeds 1 --allow-poor {words}", name).err
         assert f"train: warning: {flat}: " in err, err
     pinnquad("certify still_structured/model.hpp")
     report = json.loads(Path("still/report.json").read_text(encoding="utf-8"))

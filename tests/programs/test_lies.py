@@ -210,5 +210,5 @@ def test_blocks(pinnquad, lies, flight):
     for block in blocks:
         if block.name == "period_of_another_window.block":
             continue  # a block says it once: a header alone can contradict it
-        for words in ("certify", block), ("evaluate", block, "--flight", flight):
+        for words in ("certify", block), ("evaluate", block, flight):
             pinnquad.refused(*words, at=block.name)

@@ -242,7 +242,7 @@ def test_import(pinnquad, logs, name):
 def test_good_flights_pass(pinnquad, logs):
     logs()
     assert told(pinnquad(f"import logs {MAPPED} --out dataset")) == []
-    assert told(pinnquad(f"identify --log logs {MAPPED}")) == []
+    assert told(pinnquad(f"identify logs {MAPPED}")) == []
 
 
 TRAIN = "train --models constant,linearized --hold-out first --seeds 1 --out trained"
@@ -256,7 +256,7 @@ def test_train_and_identify(pinnquad, logs, name, command):
     plant, names, words, _ = FAULTS[name]
     logs(plant, names)
     before = listing(".")
-    done = pinnquad(f"{command} --log logs {MAPPED}", code=(0, 1, 2))
+    done = pinnquad(f"{command} logs {MAPPED}", code=(0, 1, 2))
     lines = done.lines + done.out.splitlines()
     assert any(all(word in line for word in words) for line in lines), (words, done)
     if "swapped" in name or "negated" in name:
@@ -270,7 +270,7 @@ def test_a_payload_in_one_flight(pinnquad, logs, loaded):
     written("logs/third.csv", loaded)
     words = ("third: ", "u1 to u4", "thrust of a rotor over mass is 4.1", "17 % less than in 3 other flights")
     finds(pinnquad(f"import logs {MAPPED} --out dataset"), words)
-    done = pinnquad(f"{TRAIN} --dataset dataset --airframe px4_sih", code=(0, 1))
+    done = pinnquad(f"{TRAIN} dataset --airframe px4_sih", code=(0, 1))
     assert any(all(word in line for word in words) for line in done.lines), done
     assert "17 % less than in 3 other flights" in Path("trained/report.json").read_text()
 
@@ -284,7 +284,7 @@ def test_no_two_flights_that_agree(pinnquad, logs, flown, tmp_path):
         written(f"logs/{name}.csv", logged("flight.csv"))
     before = listing(".")
     for command in TRAIN, "identify --out vehicle.toml":
-        done = pinnquad.refused(f"{command} --log logs {MAPPED}", keyword="no two flights agree")
+        done = pinnquad.refused(f"{command} logs {MAPPED}", keyword="no two flights agree")
         assert "logs/second.csv: " in done.lines[0] and "u1 to u4" in done.lines[0], done
         left_nothing(before)
 
@@ -300,7 +300,7 @@ def test_spins_against_the_motion(pinnquad, logs):
     finds(pinnquad(f"import logs {mapped} --out dataset"), words)
     shutil.rmtree("dataset")
     for command in TRAIN, "identify --out vehicle.toml":
-        done = pinnquad.refused(f"{command} --log logs {mapped}", at="logs/first.csv", keyword="spin")
+        done = pinnquad.refused(f"{command} logs {mapped}", at="logs/first.csv", keyword="spin")
         assert all(word in done.lines[0] for word in words), done
         left_nothing(before)
 
@@ -310,7 +310,7 @@ def test_without_an_accelerometer(pinnquad, logs):
     logs(scaled(-1, "vd", "z"), minutes=2)
     replaced("log.toml", "log.toml", (r"\[specific_force\]\ncolumns.*\n", ""))
     finds(pinnquad(f"import logs {MAPPED} --out dataset"), ("first", "vdot_bz", "by its slope", "-4."))
-    pinnquad.refused(f"{TRAIN} --log logs {MAPPED}", at="logs/first.csv", keyword="is negated")
+    pinnquad.refused(f"{TRAIN} logs {MAPPED}", at="logs/first.csv", keyword="is negated")
     assert not Path("trained").exists()
 
 
@@ -324,7 +324,7 @@ def rounded(rows):
 
 @pytest.mark.parametrize("change", [lambda rows: rows, shifted, rounded, lambda rows: rows[150:750]],
                          ids=["again", "another clock", "rounded", "a part"])
-@pytest.mark.parametrize("command", ["import --out dataset", f"{TRAIN} --log", "identify --out vehicle.toml --log"])
+@pytest.mark.parametrize("command", ["import --out dataset", TRAIN, "identify --out vehicle.toml"])
 def test_a_log_twice(pinnquad, logs, flights, change, command):
     logs()
     written("logs/copy.csv", change(flights[1]["first"]))
@@ -353,7 +353,7 @@ def test_bad_input(pinnquad, logs, name):
     plant, keyword, code = BAD[name]
     logs(plant)
     before = listing(".")
-    pinnquad.refused(f"identify --out vehicle.toml {MAPPED} --log logs/second.csv", at="logs/second.csv",
+    pinnquad.refused(f"identify --out vehicle.toml {MAPPED} logs/second.csv", at="logs/second.csv",
                      keyword=keyword, code=code)
     left_nothing(before)
 

@@ -75,7 +75,7 @@ def test_window_and_battery(two_models, fly_cores, fly_export, pinnquad, dataset
     dataset("rows", flights)
     facts = json.loads(Path("rows/dataset.json").read_text())
     Path("rows/dataset.json").write_text(json.dumps({**facts, "sample_period_s": 0.02}))
-    two_models("ridge_causal", "--dataset rows --airframe paper_quadrotor", "f3", "f1")
+    two_models("ridge_causal", "rows --airframe paper_quadrotor", "f3", "f1")
     header = Path("one/model.hpp").read_text()
     assert "PartlyWindowed<pinnquad::WithColumns<" in header and "BatteryVoltage" in header
 
@@ -133,10 +133,10 @@ def test_real_logs(logs, two_models, fly_cores, fly_export, recorded):
             packed = recorded(f"sih/{name}.ulg.xz")
             with lzma.open(packed) as log, open(f"logs/{name}.ulg", "wb") as out:
                 shutil.copyfileobj(log, out)
-        source = "--log logs --mapping px4"
+        source = "logs --mapping px4"
     else:
         table = recorded("flight_logs/nanobench_subset_50hz.csv" if logs == "nanobench" else "flight_logs/arpl_crazyflie.csv")
-        source = f"--log {table} --mapping {logs}"
+        source = f"{table} --mapping {logs}"
     two_models("structured_causal", source, held_out, held_out)
     assert "PartlyWindowed<" in Path("one/model.hpp").read_text()
     for (_, phase), ticks in fly_cores().items():

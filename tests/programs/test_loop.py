@@ -21,13 +21,13 @@ def flown_by(pinnquad, words, code=0):
 def slow(made, flown):
     """A folder with s/: trained below the speed of the usual figure-eight, which is slowed down for it."""
     flight = flown("--seed 3 --samples 3000 --max-speed 3")
-    return made(f"train --flight {flight} --recipe small --seeds 1 --epochs 60 --allow-poor --out s") / "s"
+    return made(f"train {flight} --models small_physics_informed --seeds 1 --epochs 60 --allow-poor --out s") / "s"
 
 
 @pytest.fixture(scope="module")
 def near(made, flown):
     """A folder with n/: a model that is shown the altitude."""
-    return made(f"train --flight {flown('d2 --seed 3 --samples 3000')} --altitude yes --seeds 1 --epochs 5 "
+    return made(f"train {flown('d2 --seed 3 --samples 3000')} --altitude yes --seeds 1 --epochs 5 "
                 "--allow-poor --out n") / "n"
 
 
@@ -115,7 +115,7 @@ def test_refused(pinnquad, own_here, words, keyword):
 def test_a_window_that_looks_ahead(pinnquad, recorded, made):
     log = recorded("flight_logs/nanobench_subset_50hz.csv")
     nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
-    pinnquad(f"train --dataset {nano} --airframe crazyflie_2_1 --hold-out B9_trefoil_fast_rep1 --seeds 1 --out c "
+    pinnquad(f"train {nano} --airframe crazyflie_2_1 --hold-out B9_trefoil_fast_rep1 --seeds 1 --out c "
              "--models constant,ridge_centred --export ridge_centred --allow-poor")
     pinnquad.refused("loop c/model.hpp", at="c/model.block", keyword="ahead")
 

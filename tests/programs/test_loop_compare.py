@@ -14,7 +14,7 @@ ROW = {"controller", "condition", "trajectory", "gains", "seed", "rmse_cm", "wor
 
 
 def compared(study, *words, out="c", code=0):
-    study("loop --model", MODEL, "--out", out, *words, code=code)
+    study("loop", MODEL, "--out", out, *words, code=code)
     return json.loads((Path(out) / "loop.json").read_text())
 
 
@@ -60,7 +60,7 @@ def test_gains_are_searched_and_told(study):
 def test_goes_on_where_it_was_stopped(study):
     words = ("--controllers=adaptive,indi", "--conditions=calm,payload", "--gains=equal", "--seeds=2", "--duration=15")
     whole = compared(study, *words, out="whole")
-    process = study.start("loop --model", MODEL, "--out=stopped", *words, "--threads=1")
+    process = study.start("loop", MODEL, "--out=stopped", *words, "--threads=1")
     journal = Path("stopped/loop.journal")
     until(lambda: journal.exists() and journal.read_text().count("\n") > 3, process)
     process.send_signal(signal.SIGINT)
@@ -87,7 +87,7 @@ def test_a_residual_wrench_is_trained_and_flown(pinnquad, study):
     """From flight to block to loop: the full stack beside INDI, and beside itself without the network."""
     light = "--airframe=light_quadrotor"
     pinnquad("fly harder --interval=10 --samples=6000 --out=flight.csv", light)
-    study("wrench --flight=flight.csv --seeds=1 --epochs=40 --out=w", light)
+    study("wrench flight.csv --seeds=1 --epochs=40 --out=w", light)
     report = json.loads(Path("w/wrench.json").read_text())
     assert all(report["test_r_squared"][f"force_{axis}"] > 0.8 for axis in "xyz"), report
     assert "struct TrainedWrench" in Path("w/wrench.hpp").read_text()
@@ -102,13 +102,14 @@ def test_a_residual_wrench_is_trained_and_flown(pinnquad, study):
     assert wind["full"] < wind["wrench_indi"], "the wind is found"
     assert payload["l1"] < 3 * calm["l1"], "a payload is found"
     flown = ("--controllers=full", "--seeds=1", "--out=d")
-    study.refused("loop --model", MODEL, light, "--wrench", MODEL, *flown, at=MODEL.name)
-    study.refused("loop --model", MODEL, "--wrench=w/wrench.block", *flown, at="w/wrench.block")
+    study.refused("loop", MODEL, light, "--wrench", MODEL, *flown, at=MODEL.name)
+    study.refused("loop", MODEL, "--wrench=w/wrench.block", *flown, at="w/wrench.block")
     study.refused("loop w/wrench.block", at="w/wrench.block")
-    study.refused("loop --model", MODEL, *flown, keyword="--wrench")
+    study.refused("loop", MODEL, *flown, keyword="--wrench")
     pinnquad("fly harder --samples=3000 --out=slow.csv", light)
-    study.refused("wrench --flight=slow.csv --out=d", light, keyword="--interval")
-    study.refused("wrench --out=d", light, keyword="--flight")
+    study.refused("wrench slow.csv --out=d", light, keyword="--interval")
+    study.refused("wrench --out=d", light, keyword="FLIGHTS")
+    study.refused("wrench --flight=slow.csv --out=d", light, keyword="wrench ... FLIGHTS")
     assert not Path("d").exists()
 
 
@@ -121,11 +122,11 @@ def test_a_residual_wrench_is_trained_and_flown(pinnquad, study):
     (("--delay=-1", "--out=c"), "--delay"),
 ])
 def test_refused(study, words, keyword):
-    study.refused("loop --model", MODEL, *words, keyword=keyword)
+    study.refused("loop", MODEL, *words, keyword=keyword)
     assert not Path("c").exists()
 
 
 def test_a_folder_that_is_a_file(study):
     Path("c").write_text("mine")
-    study.refused("loop --model", MODEL, "--out=c", "--seeds=1", keyword="c")
+    study.refused("loop", MODEL, "--out=c", "--seeds=1", keyword="c")
     assert Path("c").read_text() == "mine"

@@ -49,7 +49,7 @@ def test_models_of_the_study(study):
 
 def test_lag(pinnquad):
     for value in LAGS:
-        for command in "import x.csv --mapping px4 --out o", "train --flight x.csv --out o":
+        for command in "import x.csv --mapping px4 --out o", "train x.csv --out o":
             pinnquad.refused(f"{command} --lag", value, keyword="--lag", timeout=20)
     assert not os.listdir()
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from conftest import SOURCE, Program, replaced, report_of
 
-TRAIN = "train --flight flight.csv --seeds 1 --epochs 2 --threads 1 --allow-poor"
+TRAIN = "train flight.csv --seeds 1 --epochs 2 --threads 1 --allow-poor"
 
 
 def test_own_airframe(pinnquad, compiler, flags):
@@ -29,9 +29,9 @@ def test_own_airframe(pinnquad, compiler, flags):
     assert "block: block_incompatible" in Program("./replay")("a/replay.txt b/model.block", code=1).out
 
     replaced("mine.toml", "broken.toml", ("^mass_kg = .*", "mass_kg = -1"))
-    pinnquad.refused("train --flight flight.csv --airframe broken.toml --out c", at="broken.toml:*:*",
+    pinnquad.refused("train flight.csv --airframe broken.toml --out c", at="broken.toml:*:*",
                      keyword="above 0")
-    pinnquad.refused("train --flight flight.csv --airframe none.toml --out c", at="none.toml", keyword="found none")
+    pinnquad.refused("train flight.csv --airframe none.toml --out c", at="none.toml", keyword="found none")
 
 
 ASYMMETRIC = """name = "asym"
@@ -71,7 +71,7 @@ def test_what_flies_worse_than_without_jerk_is_not_exported_without_a_word(pinnq
     """The one that errs least leaves the flight to its guard: the best that flies is exported, or header, report and
     terminal say DO NOT FLY."""
     pinnquad(f"fly d1 {asymmetric} --seed 11 --interval 20 --samples 9000 --out a.csv")
-    words = f"train --flight a.csv {asymmetric} --models physics,ridge,ridge_causal --seeds 1"
+    words = f"train a.csv {asymmetric} --models physics,ridge,ridge_causal --seeds 1"
     done = pinnquad(f"{words} --export causal --out best")
     report = report_of("best")
     assert report["models"]["ridge_causal"]["r2"]["mean"] > report["models"]["ridge"]["r2"]["mean"] > 0.9

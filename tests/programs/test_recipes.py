@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Recipes and losses by name: what is trained is what the report says, and what it was trained with is exported and
+"""Models by name: what is trained is what the report says, and what it was trained with is exported and
 judged."""
 import json
 import os
@@ -10,6 +10,7 @@ import pytest
 from conftest import SOURCE, Program, edited, report_of, same_bytes
 from exported import AXES
 
+PAPER = "--models formula,paper_vanilla,paper_physics_informed"
 TRAIN = "--seeds 1 --epochs 3 --threads 1 --allow-poor"
 
 
@@ -21,7 +22,7 @@ def flight(flown):
 @pytest.fixture(scope="module")
 def trained(made, flight):
     """trained(options): the folder that they write, once."""
-    return lambda words="", of=flight: made(f"train --flight {of} {TRAIN} --out . {words}")
+    return lambda words="", of=flight: made(f"train {of} {TRAIN} --out . {words}")
 
 
 def figures(folder, but=""):
@@ -31,25 +32,25 @@ def figures(folder, but=""):
 
 
 def test_defaults_and_order(trained):
-    default, structured = trained(), trained("--recipe structured")
-    paper = trained("--recipe paper --loss physics_informed --loss vanilla")
+    default, structured = trained(), trained("--models formula,paper_vanilla,paper_physics_informed,structured")
+    paper = trained(PAPER)
     assert figures(default) == figures(structured)
     same_bytes(default / "model.hpp", structured / "model.hpp")
     assert figures(default, but="structured") == figures(paper), "a structured model changes the networks beside it"
-    assert figures(paper) != figures(trained("--recipe best"))
-    same_bytes(trained("--recipe paper --loss vanilla,physics_informed") / "model.hpp", paper / "model.hpp")
-    one = trained("--loss vanilla")
+    assert figures(paper) != figures(trained(PAPER.replace("paper", "best")))
+    same_bytes(trained("--models paper_physics_informed,formula,paper_vanilla") / "model.hpp", paper / "model.hpp")
+    one = trained("--models formula,paper_vanilla,structured")
     same_bytes(one / "model.hpp", default / "model.hpp")
-    assert [row.split(",")[0] for row in figures(one)] == ["model", "linearized", "vanilla", "structured"]
+    assert [row.split(",")[0] for row in figures(one)] == ["model", "formula", "paper_vanilla", "structured"]
 
 
 def test_reports(pinnquad, trained, flight):
-    default, best = report_of(trained()), report_of(trained("--recipe best"))
-    paper = report_of(trained("--recipe paper --loss physics_informed --loss vanilla"))
-    folder = trained("--recipe small --loss pearson,constant_weight")
+    default, best = report_of(trained()), report_of(trained(PAPER.replace("paper", "best")))
+    paper = report_of(trained(PAPER))
+    folder = trained("--models formula,small_pearson,small_constant_weight")
     small = report_of(folder)
-    assert default["settings"]["recipe"] == "structured" == default["verdict"]["model"]
-    assert sorted(default["models"]) == ["linearized", "physics_informed", "structured", "vanilla"]
+    assert default["verdict"]["model"] == "structured"
+    assert sorted(default["models"]) == ["formula", "paper_physics_informed", "paper_vanilla", "structured"]
     # the default's signs are proven, whatever it was trained for
     certificate = default["certificate"]
     assert certificate["proven"] is True and paper["certificate"] is None
@@ -63,30 +64,31 @@ def test_reports(pinnquad, trained, flight):
     structured, warned = default["models"]["structured"], (trained() / "stderr.txt").read_text()
     motors = [motor["r2"]["mean"] for motor in structured["per_motor"].values()]
     assert abs(default["verdict"]["worst_motor_r2"] - min(motors)) <= 1e-9 < default["verdict"]["r2"] - min(motors)
-    for network in "vanilla", "physics_informed":  # a network that errs less is told, and no other
+    for network in "paper_vanilla", "paper_physics_informed":  # a network that errs less is told, and no other
         less = default["models"][network]["validation_mae"]["mean"] < structured["validation_mae"]["mean"]
         assert (f"--export {network} exports it" in warned) == less, network
 
-    assert [report["settings"]["recipe"] for report in (paper, best, small)] == ["paper", "best", "small"]
-    assert paper["settings"]["network"] == best["settings"]["network"] == "10 x 25 ReLU"
-    assert paper["settings"]["learning_rate"] == 1e-3 and paper["settings"]["learning_rate_schedule"] == "constant"
-    for settings in best["settings"], small["settings"]:
+    of_paper, of_best, of_small = (report["settings"]["networks"][name] for report, name in (
+        (paper, "paper"), (best, "best"), (small, "small")))
+    assert of_paper["network"] == of_best["network"] == "10 x 25 ReLU"
+    assert of_paper["learning_rate"] == 1e-3 and of_paper["learning_rate_schedule"] == "constant"
+    for settings in of_best, of_small:
         assert settings["learning_rate"] == 3e-3 and "cosine" in settings["learning_rate_schedule"], settings
         assert settings["weight_decay"] == {"vanilla": 1e-4, "physics_informed": 3e-4}, settings
-    assert small["settings"]["network"] == "2 x 32 ReLU"
-    assert sorted(small["models"]) == ["constant_weight", "linearized", "pearson"]
-    assert sorted(small["settings"]["losses"]) == ["constant_weight", "pearson"]
-    assert sorted(paper["models"]) == sorted(best["models"]) == ["linearized", "physics_informed", "vanilla"]
+    assert of_small["network"] == "2 x 32 ReLU"
+    assert sorted(small["models"]) == ["formula", "small_constant_weight", "small_pearson"]
+    assert sorted(of_small["losses"]) == ["small_constant_weight", "small_pearson"]
+    assert sorted(paper["models"]) == ["formula", "paper_physics_informed", "paper_vanilla"]
     # the loss named first in the list of losses is the one that is exported where physics_informed was not asked for
-    assert small["verdict"]["model"] == small["exported_model"] == "constant_weight"
+    assert small["verdict"]["model"] == small["exported_model"] == "small_constant_weight"
     assert "constant weight" in (folder / "model.hpp").read_text()
-    header, block = (pinnquad("evaluate", folder / name, "--flight", flight, "--rows", "test", "--json",
+    header, block = (pinnquad("evaluate", folder / name, flight, "--rows", "test", "--json",
                               code=(0, 1)).out
                      for name in ("model.hpp", "model.block"))
     judged, of_block = json.loads(header), json.loads(block)
     assert {**judged, "model": ""} == {**of_block, "model": ""}, "header and block are judged otherwise"
     assert "Dense<32>" in judged["answer"] and judged["answer"].count("Dense<") == 3
-    model = small["models"]["constant_weight"]
+    model = small["models"]["small_constant_weight"]
     assert abs(model["rmse"]["mean"] - judged["rmse"]) <= 1e-6
     for axis in AXES:
         assert abs(model["wrong_derivative_share"][axis]["mean"] - judged["wrong_derivative_share"][axis]) <= 1e-6, axis
@@ -100,7 +102,7 @@ def test_slopes_under_noise(pinnquad, flown):
     errors = {}
     for flight, by in (quiet, "least squares"), (noisy, "instruments"):
         folder = Path(by.split()[0])
-        said = pinnquad(f"train {words}", "--flight", flight, "--out", folder).out
+        said = pinnquad(f"train {words}", flight, "--out", folder).out
         report = report_of(folder)
         certificate = report["certificate"]
         assert certificate["proven"] is True and report["exported"] is True
@@ -119,7 +121,7 @@ def test_slopes_under_noise(pinnquad, flown):
         assert said.count("by instruments") == (3 if by == "instruments" else 0)
         assert f"<td>{by}</td>" in (folder / "report.html").read_text()
         assert any("instruments" in warning for warning in report["warnings"]) == (by == "instruments")
-        judged = json.loads(pinnquad("evaluate", folder / "model.block", "--flight", quiet, "--json").out)
+        judged = json.loads(pinnquad("evaluate", folder / "model.block", quiet, "--json").out)
         errors[by] = judged["rmse"]
     assert errors["instruments"] < 2 * errors["least squares"] < 0.02, "on a flight without noise"
 
@@ -136,7 +138,7 @@ def test_latency(pinnquad, flown):
     slow = "--airframe crazyflie_2_1"
     for flight, options, lag in ((late, "", -0.05), (late, "--lag 0", 0), ("ahead.csv", "", 0.05), (prompt, "", 0),
                                  (flown(f"--seed 3 --samples 5000 {slow}"), slow, 0)):
-        said = pinnquad(f"{words} {options} --out aligned", "--flight", flight).out
+        said = pinnquad(f"{words} {options} --out aligned", flight).out
         report = report_of("aligned")
         assert report["settings"]["lag_removed_s"] == pytest.approx(lag), (flight, options)
         assert ("--lag 0 leaves the commands" in said) == (lag != 0)
@@ -146,7 +148,7 @@ def test_latency(pinnquad, flown):
         error[str(flight), options] = report["models"]["structured"]["rmse"]["mean"]
     assert error[str(late), ""] < 0.5 * error[str(late), "--lag 0"]
     assert error[str(late), ""] < 1.8 * error[str(prompt), ""]
-    for options, keyword in ("--lag soon --flight ahead.csv", "--lag"), ("--lag 0 --dataset none", "a dataset"):
+    for options, keyword in (("--lag soon ahead.csv", "--lag"),):
         pinnquad.refused(f"{words} {options} --out aligned", keyword=keyword)
 
 
@@ -159,18 +161,18 @@ def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
             cells[17:21] = [0.2 + 0.6 * float(u) + 0.004 * (float(cells[16]) - 20) for u in cells[17:21]]
 
     edited(flight, "near.csv", near_ground)
-    said = pinnquad(f"train --flight near.csv {TRAIN} --out near --loss vanilla").out
+    said = pinnquad(f"train near.csv {TRAIN} --out near").out
     assert re.search(r"shown the altitude: .* with it [0-9.]*e-3, without [0-9.]*e-3$", said, re.M), said
     assert "pinnquad::InverseFeaturesWithAltitude;" in Path("near/model.hpp").read_text()
     for model in "model.hpp", "model.block":
         pinnquad(f"certify near/{model}")
-    judged = json.loads(pinnquad("evaluate near/model.hpp --flight near.csv --rows test --json").out)
+    judged = json.loads(pinnquad("evaluate near/model.hpp near.csv --rows test --json").out)
     assert Path("near/replay.txt").read_text().startswith("pinnquad-replay 1 500 25\n")
     compiler("-fsyntax-only -Wall -Wextra -Werror -I near -I", SOURCE / "tools",
              SOURCE / "tools/fly_export/fly_export.cpp")
-    pinnquad(f"train --flight near.csv {TRAIN} --out near_no --loss vanilla --altitude no")
+    pinnquad(f"train near.csv {TRAIN} --out near_no --models structured --altitude no")
     assert "pinnquad::InverseFeatures;" in Path("near_no/model.hpp").read_text()
-    far = trained("--loss vanilla --altitude yes --slopes pinned")
+    far = trained("--models structured --altitude yes --slopes pinned")
     assert "pinnquad::InverseFeaturesWithAltitude;" in (far / "model.hpp").read_text()
     assert "slope is not the airframe's" not in (far / "stderr.txt").read_text(), "pinned slopes are doubted"
 
@@ -180,7 +182,7 @@ def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
     assert choice["validation_mae"] < 0.8 * choice["validation_mae_without"]
     assert other["taken"] is False and other["validation_mae"] > 0.8 * other["validation_mae_without"] > 0
     assert near_no["altitude"]["taken"] is False and far_yes["altitude"]["taken"] is True
-    assert report_of(trained("--recipe best"))["altitude"] is None
+    assert report_of(trained(PAPER.replace("paper", "best")))["altitude"] is None
     error, error_no = (report["models"]["structured"]["mean_absolute_error"]["mean"] for report in (near, near_no))
     assert abs(error - judged["mean_absolute_error"]) < 1e-6 and error < 0.5 * error_no
     assert far_yes["settings"]["structured"]["slopes"] == "pinned"
@@ -191,23 +193,24 @@ def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
 def test_limits_of_trust(pinnquad, flight, flown, compiler, flags):
     """In a header beside the model, of 80 s of validation rows and more; nothing that stays."""
     assert re.search("^  no limits .* 80 s",
-                     pinnquad(f"train --flight {flight} {TRAIN} --out short --loss vanilla").out, re.M)
+                     pinnquad(f"train {flight} {TRAIN} --out short --models structured").out, re.M)
     long = flown("--seed 3 --samples 9000")
-    said = pinnquad(f"train --flight {long} {TRAIN} --out trusted --loss vanilla").out
+    said = pinnquad(f"train {long} {TRAIN} --out trusted --models structured").out
     assert "  trusted/trust.hpp: struct TrainedQuadModelTrust" in said
     compiler(*flags, "-O1", "-Wall", "-Wextra", "-Werror", "-I", "trusted", SOURCE / "tests/programs/trust/guarded.cpp",
              "-o", "guarded")
     Program("./guarded")("trusted/replay.txt")
-    pinnquad(f"train --flight {flight} {TRAIN} --out trusted --recipe paper")
+    pinnquad(f"train {flight} {TRAIN} --out trusted --models paper_physics_informed")
     assert not Path("trusted/trust.hpp").exists(), "limits of an earlier training stay beside another model"
 
 
-@pytest.mark.parametrize("words, keyword", [("--recipe worst", "'worst'"), ("--loss vanilla,mse", "'mse'"),
-                                            ("--recipe paper --slopes pinned", "--slopes")])
+@pytest.mark.parametrize("words, keyword", [("--models paper_mse", "nearest: paper_"), ("--recipe paper", "--models NAME"),
+                                            ("--models paper_vanilla --slopes pinned", "--slopes")])
 def test_refused(pinnquad, flight, commands, words, keyword):
     Path("out").mkdir()
-    line = pinnquad.refused(f"train --flight {flight} --out out --epochs 1 --seeds 1 {words}", keyword=keyword).lines[0]
+    line = pinnquad.refused(f"train {flight} --out out --epochs 1 --seeds 1 {words}", keyword=keyword).lines[0]
     assert not os.listdir("out")
     (text,) = [text for command, text in commands if command.words[-1] == "train"]
-    for name in line.split("known: ")[1].split(", ") if "known: " in line else ["altitude", "slopes", "pinned", "130"]:
+    nearest = line.split("nearest: ")[1].replace("_", ", ") if "nearest: " in line else "altitude, slopes, pinned, 130"
+    for name in nearest.split(", "):
         assert name in text, f"help does not name {name}"

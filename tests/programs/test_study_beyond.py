@@ -49,7 +49,7 @@ def test_whole(pinnquad, whole):
 
     # judged is what train exports: the same error on the same rows
     pinnquad("fly d1 --seed 101 --out d1.csv")
-    pinnquad("train --flight d1.csv --recipe structured --loss vanilla --epochs 3 --seeds 1 --out trained")
+    pinnquad("train d1.csv --models structured --epochs 3 --seeds 1 --out trained")
     (trained,) = [row for row in table("trained/results.csv") if (row["model"], row["seed"]) == ("structured", "1")]
     assert abs(float(trained["mae"]) - figure("structured", "d1", 1, "mean_absolute_error")) < 1e-9
 

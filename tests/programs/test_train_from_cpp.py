@@ -39,7 +39,7 @@ column = "pack"
 def test_train_from_cpp(pinnquad, program, flown):
     train, flight = program("train"), flown("--seed 3 --samples 9000")
     shutil.copy(flight, "flight.csv")
-    pinnquad("train --flight flight.csv --out a --name MyModel --loss vanilla --seeds 1 "
+    pinnquad("train flight.csv --out a --name MyModel --models structured --seeds 1 "
              "--epochs 20")
     said = train("b flight.csv").out
     for file in "model.hpp", "model.block", "trust.hpp":
@@ -87,13 +87,13 @@ def test_column_of_ones_own(pinnquad, program, flown, compiler):
     said = train("out dataset").out
     r2 = float(re.search(r"held out: R\^2 ([0-9.]+)", said).group(1))
     # the kinds of the program do not know it, and say so
-    done = pinnquad("train --dataset dataset --airframe paper_quadrotor --hold-out flight4 --models constant,structured "
+    done = pinnquad("train dataset --airframe paper_quadrotor --hold-out flight4 --models constant,structured "
                     "--seeds 1 --epochs 60 --out without")
     assert re.search("warning: pack_temperature: no kind of model takes this column", done.err), done
     assert r2 > report_of("without")["models"]["structured"]["r2"]["mean"] + 0.03, (said, done)
     # the block asks for it by name; what the example says of its model the program says too
     assert "pack_temperature" in pinnquad("block out/model.block").out
-    judged = json.loads(pinnquad("evaluate out/model.block --json --flight dataset/flight4.csv").out)
+    judged = json.loads(pinnquad("evaluate out/model.block --json dataset/flight4.csv").out)
     assert abs(judged["r2"] - r2) < 1e-3
     Path("fly.cpp").write_text("""
 #include "pack_temperature.hpp"

@@ -12,7 +12,7 @@ import pytest
 from conftest import column, edited, ended, listing, no_partial_files, replaced, report_of, until
 
 FLIGHTS = [f"flight{seed}" for seed in range(1, 8)]
-TRAIN = "train --dataset logs --airframe paper_quadrotor"
+TRAIN = "train logs --airframe paper_quadrotor"
 
 
 @pytest.fixture
@@ -30,21 +30,22 @@ HELD = "--hold-out flight3"
 
 
 @pytest.mark.parametrize("words, at, keyword", [
-    ("--dataset logs", "", "--hold-out"), ("--dataset logs --hold-out fligth3", "", "nearest: flight"),
-    (f"--dataset logs {HELD} --models rigde", "", "nearest: ridge"),
-    (f"--dataset logs {HELD} --export rigde", "", "nearest: ridge"), (f"--dataset no {HELD}", "no/dataset.json", ""),
-    ("--dataset logs --flight logs/flight1.csv", "", "--flight and --dataset"),
-    ("--dataset logs --hold-out flight1 --hold-out-each flight", "", "--hold-out-each"),
-    ("--hold-out flight1", "", "is required"), ("--dataset logs --hold-out flight1 --slopes pinned", "", "--recipe"),
-    ("--dataset logs --hold-out flight1 --recipe best --models ridge", "", "--models"),
-    ("--dataset logs --hold-out flight1 --recipe paper --export linearized", "", "nearest"), (f"--log logs {HELD}", "", "--mapping"),
-    ("--dataset logs --hold-out-each row", "", "hold-out-each"),
+    ("logs", "", "--hold-out"), ("logs --hold-out fligth3", "", "nearest: flight"),
+    (f"logs {HELD} --models rigde", "", "nearest: ridge"),
+    (f"logs {HELD} --export rigde", "", "nearest: ridge"), (f"no {HELD}", "no", ""),
+    ("logs logs/flight1.csv", "", "one dataset"), (f"logs {HELD} --lag 0", "", "a dataset"),
+    (f"logs {HELD} --mapping px4", "logs", "a dataset"), (f"--dataset logs {HELD}", "", "train ... DIR"),
+    ("logs --hold-out flight1 --hold-out-each flight", "", "--hold-out-each"),
+    ("--hold-out flight1", "", "expected FLIGHTS"), ("logs --hold-out flight1 --models ridge --slopes pinned", "", "--slopes"),
+    ("logs --hold-out flight1 --recipe best", "", "--models NAME"),
+    ("logs --hold-out flight1 --models formula,paper_vanilla --export formula", "", "nearest"),
+    ("logs --hold-out-each row", "", "hold-out-each"),
     # a lag or a clock that no header can state, a command that stands still: found before the folder and the training
-    (f"--dataset late {HELD}", "late/dataset.json", "-4 or more"), (f"--dataset slow {HELD}", "slow/flight2.csv:3:1",
+    (f"late {HELD}", "late/dataset.json", "-4 or more"), (f"slow {HELD}", "slow/flight2.csv:3:1",
                                                                  "milliseconds"),
-    (f"--dataset still {HELD}", "still/flight2.csv:2:19", "u2"),
+    (f"still {HELD}", "still/flight2.csv:2:19", "u2"),
     # the same flight under another name: it would train and judge
-    ("--dataset leak --hold-out copy", "", "held-out flight copy")])
+    ("leak --hold-out copy", "", "held-out flight copy")])
 def test_refused(pinnquad, dataset, write, logs, words, at, keyword):
     """In one line, before anything is written."""
     three = {name: f"logs/{name}.csv" for name in FLIGHTS[:3]}
@@ -154,21 +155,21 @@ def test_seed_after_a_rotation(pinnquad, write):
     error = {}
     for seed in 2, 3, 4:
         pinnquad(f"{words} --seed {seed} --seeds 1 --out alone")
-        judged = pinnquad(f"evaluate alone/model.hpp --json --flight logs/{validated}.csv", code=(0, 1)).out
+        judged = pinnquad(f"evaluate alone/model.hpp --json logs/{validated}.csv", code=(0, 1)).out
         error[seed] = json.loads(judged)["mean_absolute_error"]
     best = min(error, key=error.get)
     assert error[best] < 0.95 * error[2], "the first seed is as good: another says more"
     assert report_of("all")["exported_seed"] == best
 
 
-def test_recipe(pinnquad, logs):
-    """The structured model of a recipe on an imported dataset, its signs proven in the report too."""
-    said = pinnquad(f"{TRAIN} --hold-out flight2,flight3 --recipe structured --loss vanilla --seeds 1 --epochs 20 "
-                    "--out recipe").out
+def test_beside_a_network(pinnquad, logs):
+    """The structured model beside a network on an imported dataset, its signs proven in the report too."""
+    said = pinnquad(f"{TRAIN} --hold-out flight2,flight3 --models formula,paper_vanilla,structured --seeds 1 --epochs 20 "
+                    "--out beside").out
     assert "proven: each signed sum" in said
-    report = report_of("recipe")
+    report = report_of("beside")
     assert report["exported_model"] == "structured" and report["certificate"]["proven"] is True
-    known = [line for line in Path("recipe/model.hpp").read_text().split("#pragma once")[0].split("\n")
+    known = [line for line in Path("beside/model.hpp").read_text().split("#pragma once")[0].split("\n")
              if line.startswith("// Their 95 % intervals by the training rows: roll ")]
     lower, upper = report["certificate"]["known"]["roll"]["interval_95"]
     own = report["certificate"]["airframe_slope"]["roll"]
@@ -192,7 +193,7 @@ def test_interrupted(pinnquad, logs):
 def test_real_vehicle(pinnquad, recorded, made):
     log = recorded("flight_logs/nanobench_subset_50hz.csv")
     nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
-    said = pinnquad(f"train --dataset {nano} --airframe crazyflie_2_1 --hold-out-each trajectory --seeds 1 --out nano "
+    said = pinnquad(f"train {nano} --airframe crazyflie_2_1 --hold-out-each trajectory --seeds 1 --out nano "
                     "--models constant,ridge,ridge_centred").out
     assert "looking ahead: for planned trajectories only" in said, "no centred model was ranked apart"
     ridge = report_of("nano")["models"]["ridge"]
@@ -218,7 +219,7 @@ def test_vehicle_of_the_flights(pinnquad, dataset, flown):
     did not fly is contradicted, and stays."""
     dataset("logs", {f"flight{seed}": flown(f"d1 --airframe racer_5_inch --seed {seed} --samples 2000")
                      for seed in (1, 2, 3)})
-    words = "train --dataset logs --hold-out flight2 --seeds 1 --models constant"
+    words = "train logs --hold-out flight2 --seeds 1 --models constant"
     done = pinnquad(f"{words},structured --out own")
     report = report_of("own")
     assert report["vehicle"]["airframe"] == "identified" and report["vehicle"]["flights"] == ["flight1", "flight3"]
@@ -249,9 +250,9 @@ def test_what_identify_refuses_no_header_holds(pinnquad, dataset, flown, slowed)
     names = [f"slow{seed}" for seed in (1, 2, 3)]
     dataset("slow", {name: slowed(flown(f"d1 --airframe crazyflie_2_1 --max-speed 2 --interval 10 --seed {name[-1]} "
                                         "--samples 3000"), f"{name}.csv") for name in names})
-    refused = pinnquad.refused("identify --dataset slow --airframe crazyflie_2_1", keyword="rotor lag is 0.2", code=1)
+    refused = pinnquad.refused("identify slow --airframe crazyflie_2_1", keyword="rotor lag is 0.2", code=1)
     why = refused.lines[0].split("columns u1 to u4: ")[1].split(":")[0]
-    done = pinnquad("train --dataset slow --hold-out slow2 --models constant,ridge --seeds 1 --out own")
+    done = pinnquad("train slow --hold-out slow2 --models constant,ridge --seeds 1 --out own")
     vehicle = report_of("own")["vehicle"]
     assert vehicle["airframe"] == "assumed" and why.split(",")[1] in vehicle["not_identified_because"], vehicle
     assert {"roll effectiveness", "pitch effectiveness", "rotor lag"} <= set(vehicle["unknown"])
@@ -266,7 +267,7 @@ def test_vehicle_that_is_not_told(pinnquad, recorded, made):
     compared with it, nothing is flown."""
     log = recorded("flight_logs/nanobench_subset_50hz.csv")
     nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
-    done = pinnquad(f"train --dataset {nano} --hold-out-each trajectory --seeds 1 --models constant,ridge --out nano")
+    done = pinnquad(f"train {nano} --hold-out-each trajectory --seeds 1 --models constant,ridge --out nano")
     report = report_of("nano")
     assert report["vehicle"]["airframe"] == "assumed" and "w_x" in report["vehicle"]["not_identified_because"]
     assert "roll effectiveness" in report["vehicle"]["unknown"]
@@ -283,7 +284,7 @@ def test_vehicle_of_px4_simulation(pinnquad, recorded):
         with lzma.open(recorded(f"sih/{name}.ulg.xz")) as packed, open(f"{name}.ulg", "wb") as log:
             shutil.copyfileobj(packed, log)
     words = "train --mapping px4 --hold-out train_random --models constant,structured --seeds 1 --out sih"
-    done = pinnquad(words, "--log", "train_excite.ulg", "--log", "train_random.ulg")
+    done = pinnquad(words, "train_excite.ulg", "train_random.ulg")
     assert effects_of("sih/model.hpp") == pytest.approx([5, 40, 40, 3.3333], rel=0.03)
     assert report_of("sih")["vehicle"]["numbers"]["rotor_lag_s"]["value"] == pytest.approx(0.048, abs=0.002)
     assert report_of("sih")["closed_loop"]["model"]["status"] == "ok", done

@@ -38,7 +38,7 @@ def flight():
 @pytest.fixture(scope="session")
 def trained(flight):
     """The structured model alone, a first look."""
-    return pinnquad.train(flight, losses=[], seeds=1, epochs=2)
+    return pinnquad.train(flight, models=["structured"], seeds=1, epochs=2)
 
 
 @pytest.fixture(scope="session")

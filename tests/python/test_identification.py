@@ -21,7 +21,7 @@ def flown():
 
 def test_the_numbers_and_the_file_of_the_program(program, flown, tmp_path):
     flown.save(tmp_path / "flight.csv")
-    theirs = json.loads(program("identify", "--flight", tmp_path / "flight.csv", "--airframe", "px4_sih", "--json", "--out",
+    theirs = json.loads(program("identify", tmp_path / "flight.csv", "--airframe", "px4_sih", "--json", "--out",
                                 tmp_path / "theirs.toml", "--name", "mine"))
     ours = pinnquad.identify(Flight.read(tmp_path / "flight.csv"), "px4_sih", name="mine")
     assert ours.numbers == theirs["numbers"]
@@ -33,7 +33,7 @@ def test_the_numbers_and_the_file_of_the_program(program, flown, tmp_path):
 
 def test_the_numbers_of_the_program_with_a_mass_and_a_curve(program, flown, tmp_path):
     flown.save(tmp_path / "flight.csv")
-    theirs = json.loads(program("identify", "--flight", tmp_path / "flight.csv", "--mass", 2, "--arm", 0.3,
+    theirs = json.loads(program("identify", tmp_path / "flight.csv", "--mass", 2, "--arm", 0.3,
                                 "--thrust-curve", "fit", "--json"))
     ours = pinnquad.identify(Flight.read(tmp_path / "flight.csv"), mass_kg=2, arm_m=0.3, thrust_curve="fit")
     assert ours.numbers == theirs["numbers"] and "thrust_curve" in ours.numbers
@@ -53,8 +53,8 @@ def test_the_vehicle_is_found_and_flies(flown):
     airframe.check()
     airframe.mass_kg = 9
     assert found.airframe.mass_kg == 1  # each a new one
-    training = pinnquad.train(pinnquad.fly(airframe=found.airframe, rows=2400), found.airframe, losses=[], seeds=1,
-                              epochs=1)
+    training = pinnquad.train(pinnquad.fly(airframe=found.airframe, rows=2400), found.airframe, models=["structured"],
+                              seeds=1, epochs=1)
     assert training.r2 > 0.8 and training.model.airframe == found.airframe
 
 
@@ -123,7 +123,7 @@ def test_a_log_as_the_program_reads_it(program, tmp_path):
         pytest.skip(f"no {packed}")
     log = tmp_path / "train_excite.ulg"
     log.write_bytes(lzma.open(packed).read())
-    theirs = json.loads(program("identify", "--log", log, "--mapping", "px4", "--mass", 1.2, "--json"))
+    theirs = json.loads(program("identify", log, "--mapping", "px4", "--mass", 1.2, "--json"))
     rows = Dataset.read([log], mapping="px4", lag_s=0, keep_saturated=True)
     ours = pinnquad.identify(rows, mass_kg=1.2)
     assert (ours.numbers, ours.warnings) == (theirs["numbers"], theirs["warnings"])

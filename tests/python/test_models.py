@@ -112,7 +112,7 @@ def test_blocks_that_are_none(structured, tmp_path):
 def test_evaluate_says_what_the_program_says(program, structured, flight, tmp_path):
     flight.save(tmp_path / "flight.csv")
     for rows in ("all", "test"):
-        said = json.loads(program("evaluate", MODELS / "structured_quadrotor.block", "--flight",
+        said = json.loads(program("evaluate", MODELS / "structured_quadrotor.block",
                                   tmp_path / "flight.csv", "--rows", rows, "--json"))
         ours = pinnquad.evaluate(structured, flight, rows)
         for name in ("r2", "mean_absolute_error", "wrong_derivative_share", "rows", "rows_outside_envelope"):

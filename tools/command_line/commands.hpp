@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line/build_facts.hpp"
@@ -43,6 +44,12 @@ inline void complete(CLI::App& command, const std::string& version) {
   }
 }
 
+/// Options that there are no more, and what is written now.
+inline constexpr std::pair<const char*, const char*> gone_options[] = {
+    {"--flight", "FLIGHTS"},           {"--dataset", "DIR"},
+    {"--log", "LOGS --mapping NAME"},  {"--model", "MODEL"},
+    {"--recipe", "--models NAME,..."}, {"--loss", "--models NAME,..."}};
+
 /// Throws, one line, where a command is missing or words are left over. They are left with the program: what a command
 /// does not know is handed up. `elsewhere` ends the line about a command that there is not.
 inline void require_command(const CLI::App& program, const std::string& elsewhere) {
@@ -51,6 +58,16 @@ inline void require_command(const CLI::App& program, const std::string& elsewher
   const std::string known = listed(command.get_subcommands([](const CLI::App*) { return true; }),
                                    [](const CLI::App* part) { return part->get_name(); });
   if (known.empty()) {
+    const bool has_arguments =
+        !command.get_options([](const CLI::Option* option) { return option->get_positional(); }).empty();
+    const bool has_models = command.get_option_no_throw("--models") != nullptr;
+    for (const std::string& word : unknown) {
+      const std::string option = word.substr(0, word.find('='));
+      for (const auto& [gone, instead] : gone_options) {
+        if (option != gone || !(*instead == '-' ? has_models : has_arguments)) continue;
+        throw std::invalid_argument("no option " + option + "; write: " + command.get_name() + " ... " + instead);
+      }
+    }
     if (!unknown.empty()) throw CLI::ExtrasError(command.get_name(), unknown);
     return;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How --help looks: what CLI11 makes of a command, within the 80 columns of a terminal.
+// How --help looks: what CLI11 makes of a command, within 100 columns.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -53,9 +53,9 @@ class HelpFormatter : public CLI::Formatter {
     if (!option->get_option_text().empty()) return " " + option->get_option_text();
     std::string text;
     if (option->get_type_size() != 0) {
-      if (!option->get_type_name().empty()) text += " " + get_label(option->get_type_name());
+      if (!option->get_type_name().empty()) text += " " + in_words(option->get_type_name());
       if (!option->get_default_str().empty()) text += "=" + option->get_default_str();
-      if (option->get_expected_max() == CLI::detail::expected_max_vector_size) {
+      if (option->get_expected_max() == CLI::detail::expected_max_vector_size && option->get_delimiter() == '\0') {
         text += " ...";
       } else if (option->get_expected_min() > 1) {
         text += " x " + std::to_string(option->get_expected());
@@ -86,8 +86,18 @@ class HelpFormatter : public CLI::Formatter {
   }
 
  private:
-  static constexpr std::size_t width = 79, name_column = 28;
+  static constexpr std::size_t width = 99, name_column = 28;
 
+  /// "TEXT:{a,b}", CLI11's words for one of a few, as a|b.
+  static std::string in_words(std::string type) {
+    const std::size_t begin = type.find(":{");
+    if (begin == std::string::npos) return type;
+    const std::string name = type.substr(0, begin);
+    if (name != "TEXT") return name;
+    type = type.substr(begin + 2, type.size() - begin - 3);
+    std::replace(type.begin(), type.end(), ',', '|');
+    return type;
+  }
   static std::vector<const CLI::Option*> arguments(const CLI::App* app) {
     return app->get_options(
         [](const CLI::Option* option) { return option->get_positional() && !option->get_group().empty(); });
@@ -124,18 +134,15 @@ class HelpFormatter : public CLI::Formatter {
     return text;
   }
 
-  /// A name, and its description in a column of its own, below a name that is too long.
+  /// A name, and its description in a column of its own, whose first line begins behind a name that is too long.
   static std::string in_columns(const std::string& name, const std::string& description) {
     std::string text = "  " + name;
     const std::string indent(name_column, ' ');
-    if (!description.empty()) {
-      if (text.size() >= name_column) {
-        text += '\n' + indent;
-      } else {
-        text.resize(name_column, ' ');
-      }
-      for (const char c : wrapped(description, width - name_column)) text += c == '\n' ? c + indent : std::string(1, c);
-    }
+    if (description.empty()) return text + '\n';
+    text.resize(std::max(name_column, text.size() + 2), ' ');
+    const std::size_t taken = text.size() - name_column;
+    const std::string lines = wrapped(std::string(taken, '.') + description, width - name_column);
+    for (const char c : lines.substr(taken)) text += c == '\n' ? c + indent : std::string(1, c);
     return text + '\n';
   }
 };

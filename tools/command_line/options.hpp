@@ -90,6 +90,13 @@ inline CLI::Option* add_paths(CLI::App& app, const std::string& name, std::vecto
       ->type_name(kind);
 }
 
+/// FLIGHTS of a command, told apart by their content, and the mapping that logs need.
+inline void add_sources(CLI::App& app, std::vector<std::string>& flights, std::string& mapping,
+                        const std::string& name = "flights") {
+  add_paths(app, name, flights, "FLIGHTS", "recorded flights (CSV), a dataset of import, or logs");
+  app.add_option("--mapping", mapping, "what the columns of logs mean: see import")->type_name("NAME|FILE.toml");
+}
+
 /// Refuses an empty text wherever an option takes a value: it would be the root folder, every model, or nothing.
 inline void refuse_empty_values(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {

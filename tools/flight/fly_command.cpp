@@ -320,33 +320,30 @@ void add_options(CLI::App& app, FlyOptions& options) {
              "seed of pilot and recorder noise; the same seed gives the same flight")
       ->type_name("N");
   add_number(app, "--samples", options.samples, std::size_t{1}, std::size_t{10000000},
-             "rows to record (default: d1, harder 15000, d2 6000, d3 5000; with --sticks as long as these)");
+             "rows to record (default: that of the flight or of --sticks)");
   add_number(app, "--interval", options.interval_ms, 2.0, 1000.0,
              "ms from row to row, rounded to control ticks of 2 ms (default: 50)");
-  app.add_option("--airframe", options.airframe,
-                 "what flies: a file (examples/airframes), or one of: " + programs::airframe_names())
+  app.add_option("--airframe", options.airframe, "what flies: see airframe list")
       ->type_name("NAME|FILE.toml")
       ->capture_default_str();
   add_number(app, "--max-speed", options.max_speed_m_s, 0.5, 8.0, "fastest the pilot flies, m/s (default: 8, d2 4)");
   app.add_option("--ground-effect", options.ground_effect,
-                 "none, cheeseman-bennett or conyers (default: d2 conyers, cheeseman-bennett where it has no fit for "
-                 "the airframe; else none)")
+                 "none, cheeseman-bennett or conyers (default: the flight's own)")
       ->type_name("MODEL");
   add_number(app, "--gyro-noise", options.gyro_noise_rad_s, 0.0, 10.0, "of the recording, standard deviation, rad/s");
   add_number(app, "--latency", options.latency_ms, 0.0, 1000.0, "of the recorded commands, ms");
-  add_number(app, "--jitter", options.jitter_ms, 0.0, 1000.0, "up to this much more latency, uniform, row by row, ms");
+  add_number(app, "--jitter", options.jitter_ms, 0.0, 1000.0, "and up to this much more, row by row, ms");
   add_path(app, "--sticks", options.sticks, "FILE.csv",
            "fly this stick recording instead of the random pilot (docs/flights.md)");
   add_path(app, "--record-sticks", options.record_sticks, "FILE.csv", "write down what the pilot asks for");
   add_number(app, "--stick-interval", options.stick_interval_ms, 0.0, 1000.0,
-             "a row of it at most this often, ms; 0: every control tick, which flies the same flight again");
+             "ms between its rows at least; 0: each control tick, the same flight again");
   add_number(app, "--statistics", options.statistics, std::size_t{1}, std::size_t{100000},
              "fly this many seeds from --seed on, and print what they reach")
       ->default_str("");
   add_path(app, "--pictures", options.pictures, "DIR", "draw trajectory, correlation, ground effect and wind as SVG");
   add_path(app, "--watch", options.watch, "FILE.html", "page to watch the flight in 3D in a browser (docs/watch.md)");
-  app.add_flag("--list-airframes", options.list_airframes,
-               "print the airframes and where their values are from, and stop");
+  app.add_flag("--list-airframes", options.list_airframes, "print the airframes and where their values are from");
 }
 
 int run(const FlyOptions& options) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Finds the vehicle that flew flights or logs: thrust, turning, drag, lag, each with an interval; writes it as an
 // airframe file.
-//   pinnquad identify --log flight.ulg --mapping px4 --mass 1.2 --out vehicle.toml
+//   pinnquad identify flight.ulg --mapping px4 --mass 1.2 --out vehicle.toml
 #include "identify/identify_command.hpp"
 
 #include <cstdio>
@@ -26,8 +26,8 @@ namespace {
 namespace logs = pinnquad::logs;
 
 struct IdentifyOptions {
-  std::vector<std::string> flights, logs;
-  std::string dataset, mapping, airframe, out;
+  std::vector<std::string> flights;
+  std::string mapping, airframe, out;
   std::string name = "identified";
   std::optional<double> curve, mass_kg, arm_m, rate_hz;
   bool fit_curve = false;
@@ -37,22 +37,20 @@ struct IdentifyOptions {
 logs::ImportedDataset read(const IdentifyOptions& options) {
   programs::JobLine progress;
   logs::LogSettings settings;
+  settings.mapping = options.mapping;
+  settings.airframe = options.airframe;
+  settings.rate_hz = options.rate_hz;
+  settings.lag_s = 0;
+  settings.keep_saturated = true;
   settings.on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
-  if (!options.logs.empty()) {
-    settings.mapping = options.mapping;
-    settings.airframe = options.airframe;
-    settings.rate_hz = options.rate_hz;
-    settings.lag_s = 0;
-    settings.keep_saturated = true;
-    return logs::read_dataset(options.logs, settings);
-  }
-  if (!options.dataset.empty()) {
-    logs::ImportedDataset dataset = logs::read_dataset_folder(options.dataset, settings.on_progress);
+  logs::ImportedDataset dataset = logs::read_source(options.flights, settings);
+  if (options.mapping.empty() && logs::kind_of_source(options.flights.front()) == logs::SourceKind::dataset) {
     dataset.sources.clear();  // what is refused is a file of the folder
-    for (const std::string& file : logs::flight_files(dataset)) dataset.sources.push_back(options.dataset + "/" + file);
-    return dataset;
+    for (const std::string& file : logs::flight_files(dataset)) {
+      dataset.sources.push_back(options.flights.front() + "/" + file);
+    }
   }
-  return logs::read_source(options.flights, settings);
+  return dataset;
 }
 
 programs::SaidOfVehicle said_by(const IdentifyOptions& options) {
@@ -94,8 +92,7 @@ void print_table(const programs::ToldVehicle& vehicle, const logs::ImportedDatas
 
 int run(const IdentifyOptions& options) {
   programs::FileRoles roles;
-  for (const std::string& flight : options.flights) roles.reads("--flight", flight);
-  for (const std::string& log : options.logs) roles.reads("--log", log);
+  for (const std::string& flight : options.flights) roles.reads("FLIGHTS", flight);
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   if (programs::is_airframe_file(options.mapping)) roles.reads("--mapping", options.mapping);  // a .toml too
   roles.writes("--out", options.out);
@@ -103,7 +100,7 @@ int run(const IdentifyOptions& options) {
     throw std::invalid_argument("--out " + options.out + ": a name that ends in .toml was expected");
   }
   logs::ImportedDataset dataset = read(options);
-  const programs::ToldVehicle vehicle = programs::told_vehicle(dataset, said_by(options), !options.logs.empty());
+  const programs::ToldVehicle vehicle = programs::told_vehicle(dataset, said_by(options), !options.mapping.empty());
   if (!vehicle.airframe) {
     programs::complain("identify", vehicle.why_not);
     return programs::exit_failed;
@@ -122,31 +119,14 @@ int run(const IdentifyOptions& options) {
   return 0;
 }
 
-void require_one_source(const CLI::App& line) {
-  int count = 0;
-  for (const char* source : {"--flight", "--dataset", "--log"}) count += line.count(source) > 0 ? 1 : 0;
-  if (count == 0) throw std::invalid_argument("--flight, --dataset or --log is required");
-  if (count > 1) throw std::invalid_argument("expected one of --flight, --dataset and --log");
-  if ((line.count("--log") > 0) != (line.count("--mapping") > 0)) {
-    throw std::invalid_argument("--log and --mapping go together: what its columns mean");
-  }
-  if (line.count("--rate") > 0 && line.count("--log") == 0) {
-    throw std::invalid_argument("--rate goes with --log: other rows have their own");
-  }
-}
-
 }  // namespace
 
 programs::Command programs::identify_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "identify", "Finds the vehicle that flew: thrust, turning, drag, lag, with intervals, and an airframe file");
   const auto options = std::make_shared<IdentifyOptions>();
-  add_paths(*line, "--flight", options->flights, "FILE.csv", "recorded flights, CSV as `pinnquad fly` writes it");
-  add_path(*line, "--dataset", options->dataset, "DIR", "imported flights, a folder that `pinnquad import` wrote");
-  add_paths(*line, "--log", options->logs, "LOG", "flight logs: ULog, CSV, or folders of them");
-  line->add_option("--mapping", options->mapping, "what the columns of --log mean: see import")
-      ->type_name("NAME|FILE.toml");
-  add_number(*line, "--rate", options->rate_hz, 10.0, 2000.0, "rows per second of --log (default: see import)")
+  add_sources(*line, options->flights, options->mapping);
+  add_number(*line, "--rate", options->rate_hz, 10.0, 2000.0, "rows per second of logs (default: see import)")
       ->default_str("");
   line->add_option("--airframe", options->airframe,
                    "gives mass, arms, motor order and propeller; else 1 kg, 0.2 m, PX4's order: a file, or one of: " +
@@ -173,14 +153,16 @@ programs::Command programs::identify_command(CLI::App& program) {
   line->add_flag("--json", options->json, "the numbers as JSON, and nothing else, on stdout");
   line->footer(
       "Examples:\n"
-      "  pinnquad identify --log logs --mapping px4 --mass 1.2 --arm 0.18 --out vehicle.toml\n"
-      "  pinnquad identify --dataset my_logs --airframe mine.toml --json\n"
-      "  pinnquad identify --flight d1.csv\n"
+      "  pinnquad identify logs --mapping px4 --mass 1.2 --arm 0.18 --out vehicle.toml\n"
+      "  pinnquad identify my_logs --airframe mine.toml --json\n"
+      "  pinnquad identify d1.csv\n"
       "Exit codes: 0; 1 the flights do not tell thrust, roll or pitch, or the commands turn the vehicle the other "
       "way;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted. Then nothing was written.");
   return {line, [options, line] {
-            require_one_source(*line);
+            if (options->rate_hz && options->mapping.empty()) {
+              throw std::invalid_argument("--rate goes with logs and their --mapping: other rows have their own");
+            }
             return run(*options);
           }};
 }

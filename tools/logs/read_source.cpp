@@ -139,18 +139,27 @@ SourceKind kind_of_source(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::exists(std::filesystem::path(path) / dataset_file_name, ignored)) return SourceKind::dataset;
   if (kind_of_log(path) != LogKind::csv) return SourceKind::logs;
+  const std::vector<std::string> cells = detail::csv_header(path);
+  if (cells.empty()) return SourceKind::flights;  // empty, as its reader says
   std::size_t of_a_flight = 0;
-  for (const std::string& head : detail::csv_header(path)) {
-    if (std::find(sample_field_names.begin(), sample_field_names.end(), head) != sample_field_names.end())
-      ++of_a_flight;
+  for (const std::string& cell : cells) {
+    for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+      end = cell.find_first_of(";\t", begin);  // wrong in a flight, and its reader says so
+      const std::string head = cell.substr(begin, end == std::string::npos ? end : end - begin);
+      if (std::find(sample_field_names.begin(), sample_field_names.end(), head) != sample_field_names.end())
+        ++of_a_flight;
+    }
   }
   return 2 * of_a_flight > sample_field_names.size() ? SourceKind::flights : SourceKind::logs;
 }
 
-ImportedDataset read_source(const std::vector<std::string>& paths, const LogSettings& settings) {
-  if (paths.empty()) throw std::invalid_argument("expected a source: flights, a dataset, or logs with a mapping");
-  if (!settings.mapping.empty()) return read_dataset(paths, settings);
+SourceKind kind_of_sources(const std::vector<std::string>& paths, const std::string& mapping) {
+  if (paths.empty()) throw std::invalid_argument("expected FLIGHTS: flights, a dataset, or logs with a --mapping");
   const SourceKind kind = kind_of_source(paths.front());
+  if (!mapping.empty()) {
+    if (kind != SourceKind::dataset) return SourceKind::logs;
+    throw InputError(paths.front(), 0, 0, "logs, whose columns --mapping names", "a dataset, which needs none");
+  }
   for (const std::string& path : paths) {
     if (kind_of_source(path) == kind && (kind != SourceKind::dataset || paths.size() == 1)) continue;
     throw std::invalid_argument("expected flights, one dataset, or logs, found " + printable(paths.front()) + " and " +
@@ -161,6 +170,12 @@ ImportedDataset read_source(const std::vector<std::string>& paths, const LogSett
                      "a flight, a dataset, or a mapping of its columns (" + mapping_names() + ", or a .toml file)",
                      "a log without a mapping");
   }
+  return kind;
+}
+
+ImportedDataset read_source(const std::vector<std::string>& paths, const LogSettings& settings) {
+  const SourceKind kind = kind_of_sources(paths, settings.mapping);
+  if (kind == SourceKind::logs) return read_dataset(paths, settings);
   if (kind == SourceKind::dataset) return read_dataset_folder(paths.front(), settings.on_progress);
   ImportedDataset dataset;
   dataset.flights = read_flights(paths, minimum_flight_rows, shared_columns(paths), settings.on_progress);

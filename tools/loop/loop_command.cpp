@@ -193,25 +193,23 @@ programs::Command programs::loop_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "loop", "Flies a model in a closed loop in the simulator, from its block, without compiling");
   const auto options = std::make_shared<LoopOptions>();
+  const auto name_of = [](const LoopCondition& condition) { return condition.name; };
   add_loop_model(*line, *options);
   line->add_option("--trajectory", options->trajectory,
-                   "eight: a figure-eight that the airframe can fly and the model's envelope holds; yaw_eight: a "
-                   "quicker one whose nose swings; circle: a level one")
+                   "a figure-eight that airframe and envelope hold, a quicker one whose nose swings, a level circle")
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>(loop_trajectories.begin(), loop_trajectories.end())));
   CLI::Option* guard =
-      line->add_option("--guard", options->guard,
-                       "envelope: outside of its training envelope the analytic inverse flies in place of the model; "
-                       "none: the model flies there too")
+      line->add_option(
+              "--guard", options->guard,
+              "what flies outside of the model's training envelope: the analytic inverse, or the model too (none)")
           ->capture_default_str()
           ->check(CLI::IsMember({"envelope", "none"}));
   add_names(*line, "--controllers", options->controllers, loop_controllers,
             "fly these, of those below (default: pid,formula,indi,structured,adaptive)")
       ->excludes(guard);
   add_names(*line, "--conditions", options->conditions, loop_conditions,
-            "fly controllers under these (default: calm): calm; wind_4, wind_8, wind_12: m/s; gusts; payload: 20 % "
-            "heavier; weak_rotor, battery: one makes 85 %, all 88 % of their thrust; parameters: wrong by 10 %; "
-            "payload_half, weak_rotor_half, battery_half: from half time on")
+            "fly controllers under these (docs/loop.md; default: calm): " + listed(loop_conditions, name_of))
       ->excludes(guard);
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(

@@ -29,12 +29,11 @@ struct LoopModel {
 inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
   add_model(line, options.model);
   line.add_option("--column", options.columns,
-                  "the value at which a column that the model asks for is held, in place of the middle of its "
-                  "training envelope: --column battery_voltage=15.2")
+                  "a column that the model asks for is held at this, not at the middle of its training envelope")
       ->type_name("NAME=VALUE");
-  line.add_option(
-      "--airframe", options.airframe,
-      "what flies in place of the model's own airframe, its motors as there: a file, or one of: " + airframe_names());
+  line.add_option("--airframe", options.airframe,
+                  "what flies in place of the model's own airframe, its motors as there: see airframe list")
+      ->type_name("NAME|FILE.toml");
 }
 
 /// Throws InputError and std::invalid_argument, one line, for what can't fly.

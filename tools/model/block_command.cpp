@@ -136,7 +136,7 @@ programs::Command programs::block_command(CLI::App& program) {
   line->add_flag("--json", options->json, "all of it as JSON");
   line->footer(
       "Examples:\n"
-      "  pinnquad train --flight d1.csv --out my_model\n"
+      "  pinnquad train d1.csv --out my_model\n"
       "  pinnquad block my_model/model.block\n"
       "Exit codes: 0; 2 bad input or a file that can't be read; 130 interrupted.");
   return {line, [options] { return describe(*options); }};

@@ -205,7 +205,7 @@ programs::Command programs::certify_command(CLI::App& program) {
   line->add_flag("--json", options->json, "what was found as JSON");
   line->footer(
       "Examples:\n"
-      "  pinnquad train --flight d1.csv --out my_model\n"
+      "  pinnquad train d1.csv --out my_model\n"
       "  pinnquad certify my_model/model.hpp\n"
       "Exit codes: 0 proven; 1 refuted by a counterexample; 2 bad input or a file that can't be read; 3 neither; 130\n"
       "interrupted.");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Judges a model on recorded flights, by its block, which describes itself: no compiler is asked.
-//   pinnquad evaluate my_model/model.hpp --flight flight.csv --json
+//   pinnquad evaluate my_model/model.hpp flight.csv --json
 #include "model/evaluate_command.hpp"
 
 #include <array>
@@ -26,7 +26,7 @@ namespace {
 using namespace pinnquad;
 
 struct EvaluateOptions {
-  std::string model;
+  std::string model, mapping;
   std::vector<std::string> flights;
   std::string rows = "all";
   bool json = false;
@@ -45,8 +45,13 @@ void print_table(const BlockModel& model, const Dataset& dataset, const programs
 }
 
 int evaluate(const EvaluateOptions& options) {
+  const bool of_flights = logs::kind_of_sources(options.flights, options.mapping) == logs::SourceKind::flights;
+  if (options.rows == "test" && !of_flights) {
+    throw std::invalid_argument("--rows test is of recorded flights: of a dataset or logs train tests on --hold-out");
+  }
   const BlockModel model = programs::read_model(options.model);
-  const Dataset dataset = programs::read_flights(options.flights, minimum_flight_rows, model.columns());
+  const Dataset dataset =
+      programs::read_flights(options.flights, options.mapping, minimum_flight_rows, model.columns());
   const RowSet rows = programs::rows_to_judge(dataset, options.rows);
   programs::ProgressLine progress("judging " + std::to_string(rows.size()) + " rows");
   const programs::EvaluatedModel evaluation =
@@ -71,7 +76,7 @@ programs::Command programs::evaluate_command(CLI::App& program) {
       program.add_subcommand("evaluate", "Judges an exported model on recorded flights, without compiling");
   const auto options = std::make_shared<EvaluateOptions>();
   add_model(*line, options->model);
-  add_paths(*line, "--flight", options->flights, "FILE.csv", "recorded flights to judge it on")->required();
+  add_sources(*line, options->flights, options->mapping);
   line->add_option("--rows", options->rows,
                    "all: every row; test: those that pinnquad train tests on when it is given these flights")
       ->capture_default_str()
@@ -79,9 +84,9 @@ programs::Command programs::evaluate_command(CLI::App& program) {
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(
       "Examples:\n"
-      "  pinnquad train --flight d1.csv --out my_model\n"
-      "  pinnquad evaluate my_model/model.hpp --flight d1.csv --rows test\n"
-      "  pinnquad evaluate my_model/model.block --flight d2.csv --json\n"
+      "  pinnquad train d1.csv --out my_model\n"
+      "  pinnquad evaluate my_model/model.hpp d1.csv --rows test\n"
+      "  pinnquad evaluate my_model/model.block d2.csv --json\n"
       "Exit codes: 0; 1 it is worse than the mean of the commands; 2 bad input or a file that can't be read; 130\n"
       "interrupted.");
   return {line, [options] { return evaluate(*options); }};

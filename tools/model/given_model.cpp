@@ -11,7 +11,7 @@
 namespace programs {
 
 void add_model(CLI::App& line, std::string& model) {
-  add_path(line, "model,--model", model, "MODEL",
+  add_path(line, "model", model, "MODEL",
            "a model block, as pinnquad train writes it (model.block), or the header beside it (model.hpp)")
       ->required();
 }

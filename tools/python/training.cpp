@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The recipes of `pinnquad train` on flights in memory: fitted, judged, and exported where Python asks for it. The same
+// The models of `pinnquad train` on flights in memory: fitted, judged, and exported where Python asks for it. The same
 // flights, seeds and epochs give the bytes that the command writes.
 #include <algorithm>
 #include <cmath>
@@ -17,6 +17,7 @@
 #include "training/export_choice.hpp"
 #include "training/held_out_dynamics.hpp"
 #include "training/kind_figures.hpp"
+#include "training/log_kinds.hpp"
 #include "training/train_input.hpp"
 
 namespace python {
@@ -27,8 +28,7 @@ using pinnquad::logs::ImportedDataset;
 using programs::JudgedKind;
 
 struct TrainChoices {
-  std::string recipe;
-  std::vector<std::string> losses, hold_out;
+  std::vector<std::string> models, hold_out;
   int seeds = 5, epochs = 0;
   std::uint64_t seed = 1;
   std::optional<bool> altitude;
@@ -43,16 +43,16 @@ class Training {
   Training(ImportedDataset dataset, NamedAirframe airframe, const TrainChoices& choices)
       : dataset_(std::move(dataset)),
         airframe_(std::move(airframe)),
-        recipe_(programs::chosen_recipe(choices.recipe)),
+        selection_(programs::selection_of({programs::log_structured()}, choices.models, true, choices.epochs)),
         plan_(plan_of(choices)) {
     fits_ = programs::fit_all(plan_);
     programs::stop_if_interrupted();
     judged_ = programs::judge_fits(plan_, fits_);
-    const std::string key = programs::Recipe::exported_of(plan_.kinds);
+    const std::string key = selection_.exported();
     while (chosen_ < plan_.kinds.size() && key != plan_.kinds[chosen_].key) ++chosen_;
     if (chosen_ == plan_.kinds.size() || !judged().applicable()) {
       throw std::invalid_argument("no model to export: " + (chosen_ == plan_.kinds.size()
-                                                                ? std::string("the recipe trains none")
+                                                                ? std::string("none of `models` may be exported")
                                                                 : judged().not_applicable));
     }
     fit_ = programs::best_fit(fits_.finished, chosen_, kind().takes_validation(plan_.settings));
@@ -132,16 +132,6 @@ class Training {
       dataset_.sample_period_s = pinnquad::sample_period_s(all);
       programs::remove_latency(dataset_, airframe_.value, choices.lag_s);
     }
-    std::vector<programs::ModelKind> kinds = {programs::linearized_kind()};
-    const auto is_loss = [](const std::string& key, const auto& names) {
-      return std::find(names.begin(), names.end(), key) != names.end();
-    };
-    for (const std::string& loss : choices.losses) {
-      if (!is_loss(loss, programs::loss_names)) refuse_name("loss", loss, programs::loss_names);
-    }
-    for (const programs::ModelKind& of : recipe_.kinds) {
-      if (is_loss(of.key, choices.losses) || !is_loss(of.key, programs::loss_names)) kinds.push_back(of);
-    }
     std::vector<programs::Fold> folds;
     if (choices.hold_out.empty()) {
       folds.push_back(programs::fold_in_order(dataset_.flights));
@@ -155,14 +145,13 @@ class Training {
       known_by_name = pinnquad::logs::same_numbers(pinnquad::airframe_value<Vehicle, double>(), airframe_.value);
     });
     return {airframe_,
-            choices.recipe,
-            std::move(kinds),
+            selection_.kinds,
             std::move(folds),
             dataset_.absent,
             dataset_.sample_period_s,
             choices.seed,
             choices.seeds,
-            choices.epochs > 0 || is_imported() ? choices.epochs : programs::recipe_epochs,
+            is_imported() ? choices.epochs : selection_.epochs,
             choices.threads > 0 ? choices.threads : std::max(1u, std::thread::hardware_concurrency()),
             {known_by_name, choices.altitude, choices.pinned_slopes, is_imported()},
             programs::past_rows_of(dataset_, airframe_.value, is_imported()),
@@ -171,7 +160,7 @@ class Training {
 
   ImportedDataset dataset_;  ///< its rows are what plan and fits look at: a Training never moves
   NamedAirframe airframe_;
-  programs::Recipe recipe_;
+  programs::Selection selection_;
   programs::FitPlan plan_;
   programs::Fits fits_;
   programs::JudgedKinds judged_;
@@ -232,10 +221,9 @@ void bind_training(py::module_& module) {
   refuse_new(training);
   module.def(
       "train",
-      [](const py::object& flights, const py::object& airframe, const std::string& recipe,
-         const std::vector<std::string>& losses, int seeds, int epochs, std::uint64_t seed,
-         const std::vector<std::string>& hold_out, const std::optional<bool>& altitude, const std::string& slopes,
-         const std::optional<double>& lag_s, unsigned threads) {
+      [](const py::object& flights, const py::object& airframe, const std::vector<std::string>& models, int seeds,
+         int epochs, std::uint64_t seed, const std::vector<std::string>& hold_out, const std::optional<bool>& altitude,
+         const std::string& slopes, const std::optional<double>& lag_s, unsigned threads) {
         if (slopes != "learned" && slopes != "pinned") {
           refuse_name("slopes", slopes, std::array<const char*, 2>{"learned", "pinned"});
         }
@@ -246,19 +234,19 @@ void bind_training(py::module_& module) {
         if (threads > 1024) throw py::value_error("threads must be 0 (all cores) to 1024");
         if (lag_s) checked("lag_s", std::abs(*lag_s), 0);
         return train(flights, airframe,
-                     {recipe, losses, hold_out, seeds, epochs, seed, altitude, slopes == "pinned", lag_s, threads});
+                     {models, hold_out, seeds, epochs, seed, altitude, slopes == "pinned", lag_s, threads});
       },
       py::arg("flights"), py::arg("airframe") = pinnquad::PaperQuadrotor::name, py::kw_only(),
-      py::arg("recipe") = "structured",
-      py::arg("losses") = std::vector<std::string>{programs::loss_names[0], programs::loss_names[1]},
-      py::arg("seeds") = 5, py::arg("epochs") = 0, py::arg("seed") = 1,
+      py::arg("models") = programs::flight_models, py::arg("seeds") = 5, py::arg("epochs") = 0, py::arg("seed") = 1,
       py::arg("hold_out") = std::vector<std::string>{}, py::arg("altitude") = py::none(), py::arg("slopes") = "learned",
       py::arg("lag_s") = py::none(), py::arg("threads") = 0,
-      "As `pinnquad train --flight`, on flights in memory, and with its bytes.\n\n"
+      "As `pinnquad train FLIGHTS`, on flights in memory, and with its bytes.\n\n"
       "flights    a Dataset, a Flight or a list of them; one: its last fifth is held out, of three or more the last\n"
       "airframe   what flew: an Airframe, a name, or a TOML file\n"
-      "recipe     'structured' (its model is proven), 'paper', 'best', 'small'\n"
-      "losses     of the recipe's networks; [] with 'structured' trains its model alone\n"
+      "models     what is compared: 'structured' (proven, and exported where it is named), 'formula', and the "
+      "networks\n"
+      "           'paper_vanilla' ...: paper, best or small before vanilla, physics_informed, constant_weight or "
+      "pearson\n"
       "seeds, epochs, seed, threads   fits per kind; 0 epochs: what suits; the first seed; 0: all cores\n"
       "hold_out   names of flights or trajectories that judge, in place of the last\n"
       "altitude   is the structured model shown it? None: where the validation rows gain by it\n"

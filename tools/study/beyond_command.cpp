@@ -22,7 +22,7 @@
 namespace {
 
 struct BeyondOptions {
-  std::string out, airframe = study::Airframe::name;
+  std::string out, mapping, airframe = study::Airframe::name;
   std::vector<std::string> conditions, models, flights;
   int seeds = 10, epochs = study::paper_epochs, flight_count = 3;
   std::uint64_t flight_seed = study::first_flight_seed;
@@ -82,8 +82,8 @@ bool takes_part(const study::BeyondModel& model, const study::Condition& conditi
   return condition.told == study::Told::the_truth || model.asks_airframe || model.name == study::yardstick;
 }
 
-std::string name_of_file(const std::string& path, const std::set<std::string>& taken) {
-  std::string name = pinnquad::printable(std::filesystem::path(path).stem().string());
+std::string condition_name(const std::string& flight, const std::set<std::string>& taken) {
+  std::string name = pinnquad::printable(std::filesystem::path(flight).stem().string());
   for (char& c : name) {
     if (c == ',' || c == '"') c = '_';
   }
@@ -104,10 +104,13 @@ int run(const BeyondOptions& options) {
     for (const study::Condition& condition : study::flown_conditions()) taken.insert(condition.name);
     constexpr std::size_t least_rows = 100;
     for (const std::string& path : options.flights) {
-      const std::string name = name_of_file(path, taken);
-      taken.insert(name);
-      (*given)[name] = programs::read_flights({path}, least_rows)[0];
-      conditions.push_back(study::given_condition(name, {airframe.name, airframe.value}));
+      const pinnquad::Dataset recorded = programs::read_flights({path}, options.mapping, least_rows);
+      for (const pinnquad::Flight& flight : recorded.flights()) {
+        const std::string name = condition_name(flight.name, taken);
+        taken.insert(name);
+        (*given)[name] = flight;
+        conditions.push_back(study::given_condition(name, {airframe.name, airframe.value}));
+      }
     }
   }
   study::Plan plan;
@@ -146,11 +149,11 @@ programs::Command programs::beyond_command(CLI::App& program) {
                              "condition, as rows of DIR/rows.csv");
   const auto options = std::make_shared<BeyondOptions>();
   add_path(*line, "--out", options->out, "DIR", "folder of rows.csv and study.json");
-  line->add_option("--conditions", options->conditions, "some of the conditions (default: all; with --flight none)")
+  line->add_option("--conditions", options->conditions, "some of the conditions (default: all; with FLIGHTS none)")
       ->delimiter(',');
   line->add_option("--models", options->models, "some of the models beside the paper's network (default: all)")
       ->delimiter(',');
-  add_paths(*line, "--flight", options->flights, "FILE", "recorded flights, each a condition of its own");
+  add_sources(*line, options->flights, options->mapping, "recorded");
   line->add_option("--airframe", options->airframe, "what flew the recorded flights: a name or a TOML file")
       ->capture_default_str();
   add_number(*line, "--seeds", options->seeds, 1, 100, "trainings of each model, from seeds 1, 2, ...");

@@ -12,6 +12,7 @@
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "study/mirrored_rows.hpp"
+#include "training/log_kinds.hpp"
 #include "training/model_predictions.hpp"
 #include "training/recipe.hpp"
 
@@ -71,14 +72,14 @@ bool has_residual(const std::optional<pinnquad::Certificate>& certificate) {
 
 using Train = std::function<BeyondTraining(const BeyondTask&)>;
 
-Train by_recipe(programs::Recipe (*recipe)(), const char* kind, const programs::FitSettings& settings = {}) {
-  return [recipe, kind, settings](const BeyondTask& task) {
+Train of_kind(const programs::ModelKind& kind, const programs::FitSettings& settings = {}) {
+  return [kind, settings](const BeyondTask& task) {
     const programs::NamedAirframe airframe{task.airframe.airframe_name(), task.airframe.airframe<double>()};
     const std::vector<std::string> absent;
     programs::FitTask fit{airframe, task.split.train, task.split.validation, absent,
                           0,        task.seed,        task.epochs,           settings};
     BeyondTraining result;
-    result.model = recipe().kind(kind).fit(fit);
+    result.model = kind.fit(fit);
     result.best_weights = result.residual_kept = has_residual(result.model->certificate());
     return result;
   };
@@ -102,10 +103,11 @@ Train on_rigid_body(Slopes slopes) {
 }  // namespace
 
 std::vector<BeyondModel> beyond_models() {
-  using programs::best_recipe, programs::structured_recipe;
-  const Train vanilla = by_recipe(best_recipe, "vanilla");
+  // vanilla and physics-informed are the first two kinds of a recipe
+  const std::vector<programs::ModelKind> best = programs::best_recipe().kinds;
+  const Train vanilla = of_kind(best[0]);
   const auto structured = [](std::optional<bool> altitude, bool pinned_slopes = false) {
-    return by_recipe(structured_recipe, "structured", {false, altitude, pinned_slopes});
+    return of_kind(programs::log_structured(), {false, altitude, pinned_slopes});
   };
   const Train shipped = structured({});
   constexpr Symmetries mirrored{true, false}, turned{true, true};
@@ -115,10 +117,9 @@ std::vector<BeyondModel> beyond_models() {
       {"inverse", "the vehicle's equations inverted, drag too, no wind, no ground effect", true, false,
        evaluate_inverse},
       {"vanilla", "10 x 25 ReLU on the paper's features, MSE", false, true, vanilla},
-      {yardstick, "the same, physics-informed: the paper's network", false, true,
-       by_recipe(best_recipe, "physics_informed")},
+      {yardstick, "the same, physics-informed: the paper's network", false, true, of_kind(best[1])},
       {"paper_own_optimiser", "the same, trained as the paper trains: Adam at a constant rate", false, true,
-       by_recipe(programs::paper_recipe, "physics_informed")},
+       of_kind(programs::paper_recipe().kinds[1])},
       {"paper_altitude", "the paper's network, shown the altitude", false, true, train_paper_with_altitude},
       {"match", "the paper's network with the loss that asks for equal steps", false, true, train_match},
       {"vanilla_mirrored", "vanilla on rows and their mirror images", false, true, on_images(vanilla, mirrored)},

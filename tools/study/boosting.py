@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Gradient boosting, and ridge regression on the same features, on the rows that `pinnquad train` parted.
 
-    pinnquad train --flight d1.csv --out my_model
+    pinnquad train d1.csv --out my_model
     tools/study/boosting.py my_model d1.csv [--features inverse] [--altitude]
-    pinnquad train --dataset my_logs --hold-out-each trajectory --out my_model
+    pinnquad train my_logs --hold-out-each trajectory --out my_model
     tools/study/boosting.py my_model my_logs [--window]
 
 Offline baselines. Flights that train, validate and judge are those of my_model/report.json. Features: PhysicsFeatures

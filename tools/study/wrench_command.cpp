@@ -49,8 +49,10 @@ int train_wrench(const TrainOptions& options) {
   pinnquad::require_identifier("--name", options.model_name);
   const NamedAirframe airframe = chosen_airframe(options.airframe.empty() ? PaperQuadrotor::name : options.airframe);
   FileRoles roles;
-  for (const std::string& path : options.flights) roles.reads("--flight", path);
-  if (!options.dataset.empty()) roles.reads("--dataset", options.dataset);
+  for (const auto* paths : {&options.flights, &options.logs}) {
+    for (const std::string& path : *paths) roles.reads("FLIGHTS", path);
+  }
+  if (!options.dataset.empty()) roles.reads("FLIGHTS", options.dataset);
   if (is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   for (const char* name : wrench_files) roles.writes("--out", options.out + "/" + name);
   pinnquad::logs::ImportedDataset dataset = dataset_of(options, airframe.value);
@@ -134,7 +136,9 @@ int train_wrench(const TrainOptions& options) {
 
 programs::Command wrench_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
-      "wrench", "Trains the residual wrench of a vehicle: what its motion has beyond rotors and gravity");
+      "wrench",
+      "Trains the residual wrench of a vehicle, what its motion has beyond rotors and gravity, on rows no further "
+      "apart than the rotors lag");
   struct Asked {
     TrainOptions options;
     std::string lag = "auto";
@@ -143,9 +147,7 @@ programs::Command wrench_command(CLI::App& program) {
   TrainOptions& options = asked->options;
   options.airframe = PaperQuadrotor::name;
   options.model_name = "TrainedWrench";
-  add_paths(*line, "--flight", options.flights, "FILE.csv",
-            "recorded flights, CSV as `pinnquad fly` writes them, rows no further apart than the rotors lag");
-  add_path(*line, "--dataset", options.dataset, "DIR", "or the folder that `pinnquad import` wrote");
+  add_sources(*line, options.flights, options.mapping);
   line->add_option("--hold-out", options.hold_out, "flights or trajectories that judge, held out together")
       ->delimiter(',')
       ->type_name("NAME,...");
@@ -162,16 +164,11 @@ programs::Command wrench_command(CLI::App& program) {
   line->add_flag("--allow-poor", options.allow_poor, "export it even if it is worse than the mean of the wrench");
   line->footer(
       "Examples:\n"
-      "  pinnquad-study wrench --flight hard10.csv --airframe light_quadrotor --out w\n"
+      "  pinnquad-study wrench hard10.csv --airframe light_quadrotor --out w\n"
       "Exit codes: 0; 1 nothing exported: it is worse than the mean; 2 bad input; 130 interrupted.");
-  return {line, [asked, line] {
-            if (line->count("--flight") > 0 && line->count("--dataset") > 0) {
-              throw std::invalid_argument("--flight and --dataset can't be given together: expected one of them");
-            }
-            if (line->count("--flight") + line->count("--dataset") == 0) {
-              throw std::invalid_argument("--flight or --dataset is required");
-            }
+  return {line, [asked] {
             asked->options.lag_s = lag_of(asked->lag);
+            take_source(asked->options);
             return train_wrench(asked->options);
           }};
 }

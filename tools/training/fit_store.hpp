@@ -166,10 +166,9 @@ class FitStore : public KnownFits {
     absorb(fnv, plan.past.delay_s);
     absorb(fnv, plan.past.least_time_constant_s);
     fnv.absorb_word(static_cast<std::uint64_t>(plan.epochs));
-    fnv.absorb_text(plan.selection);
     const FitSettings& asked = plan.settings;
-    for (const int word :
-         {int{asked.library_airframe}, asked.altitude ? 1 + int{*asked.altitude} : 0, int{asked.pinned_slopes}}) {
+    for (const int word : {int{asked.library_airframe}, asked.altitude ? 1 + int{*asked.altitude} : 0,
+                           int{asked.pinned_slopes}, int{asked.fit_validation}}) {
       fnv.absorb_word(static_cast<std::uint64_t>(word));
     }
     return fnv.hash;

@@ -30,7 +30,6 @@ namespace programs {
 
 struct FitPlan {
   const NamedAirframe& airframe;
-  std::string selection;  ///< of the kinds: a recipe's name, or "logs"
   std::vector<ModelKind> kinds;
   std::vector<Fold> folds;
   std::vector<std::string> absent;

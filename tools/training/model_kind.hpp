@@ -20,7 +20,7 @@ namespace programs {
 /// trajectories only.
 enum class TimeReach { present, causal, centred };
 
-/// Options of `train` for the recipe structured, and for what it exports.
+/// Options of `train` for the structured kinds, and for what it exports.
 struct FitSettings {
   bool library_airframe = false;  ///< the program knows it by name: of_library_airframe()
   std::optional<bool> altitude;   ///< is the model shown it? none: where the validation rows gain much
@@ -28,7 +28,7 @@ struct FitSettings {
   bool fit_validation = false;    ///< of the structured model: no rows are left to find limits of trust by
 };
 
-/// Epochs of a recipe where --epochs does not say another number.
+/// Epochs of flights' networks where --epochs does not say another number.
 inline constexpr int recipe_epochs = 300;
 
 /// The target of a fit.

@@ -73,35 +73,27 @@ std::shared_ptr<const TrainedNetwork> fit_by_parts(const FitTask& task, const Ma
 
 }  // namespace detail
 
-/// The network of a recipe under each loss; `loss_names` has their keys.
+/// The network of a recipe under each loss; `keys` are its kinds'.
 template <class Parts>
-std::vector<ModelKind> network_kinds() {
+std::vector<ModelKind> network_kinds(const std::array<const char*, 4>& keys) {
   using Task = FitTask;
   constexpr auto present = TimeReach::present;
   return {
-      {"vanilla", "vanilla", present, true, needs_velocity,
+      {keys[0], keys[0], present, true, needs_velocity,
        [](const Task& task) {
          return detail::fit_by_parts<Parts>(
              task, [] { return pinnquad::Mse{}; }, Parts::vanilla_optimizer);
        },
        never_takes_validation, "MSE"},
-      {"physics_informed", "physics-informed", present, true, needs_velocity,
+      {keys[1], keys[1], present, true, needs_velocity,
        [](const Task& task) { return detail::fit_by_parts<Parts>(task, Parts::annealed, Parts::informed_optimizer); },
        never_takes_validation, "MSE + local monotonicity (roll, pitch, yaw), cyclical annealing"},
-      {"constant_weight", "constant weight", present, true, needs_velocity,
+      {keys[2], keys[2], present, true, needs_velocity,
        [](const Task& task) { return detail::fit_by_parts<Parts>(task, Parts::constant, Parts::informed_optimizer); },
        never_takes_validation, "MSE + local monotonicity (roll, pitch, yaw), constant weight"},
-      {"pearson", "pearson", present, true, needs_velocity,
+      {keys[3], keys[3], present, true, needs_velocity,
        [](const Task& task) { return detail::fit_by_parts<Parts>(task, Parts::pearson, Parts::informed_optimizer); },
        never_takes_validation, "MSE + Pearson's correlation (roll, pitch, yaw), cyclical annealing"}};
-}
-
-/// The losses that `--loss` takes: the keys of network_kinds(), in its order.
-inline constexpr std::array<const char*, 4> loss_names = {"vanilla", "physics_informed", "constant_weight", "pearson"};
-
-/// Recipe::still_features of the paper's features.
-inline std::vector<std::string> still_paper_features(const FitTask& task) {
-  return pinnquad::still_features<pinnquad::PaperFeatures>(task.training);
 }
 
 /// "16 -> 10 x 25 ReLU -> 4, 6379 parameters": the words are the middle.

@@ -9,14 +9,9 @@ namespace programs {
 Recipe best_recipe() {
   using Network = PaperNetwork<pinnquad::PaperFeatures>;
   constexpr const char* hidden = "10 x 25 ReLU";
-  return {"best",
-          "10 x 25 ReLU, as the study trains: Adam with cosine decay, each loss with the weight decay that suits it",
-          network_in_words<Network>(hidden),
-          best::optimizer_name,
-          best::settings(hidden),
-          network_kinds<best::Parts<Network>>(),
-          {},
-          still_paper_features};
+  return {"best", network_in_words<Network>(hidden), best::settings(hidden),
+          network_kinds<best::Parts<Network>>(
+              {"best_vanilla", "best_physics_informed", "best_constant_weight", "best_pearson"})};
 }
 
 }  // namespace programs

@@ -28,9 +28,7 @@ Recipe paper_recipe() {
   const pinnquad::Adam adam;
   const pinnquad::CyclicalAnnealing annealing;
   return {"paper",
-          "10 x 25 ReLU, Adam at a constant rate: the paper's",
           network_in_words<Paper::Network>("10 x 25 ReLU"),
-          "Adam",
           {{"network", "10 x 25 ReLU"},
            {"batch", batch_size},
            {"optimizer", "Adam, coupled weight decay"},
@@ -41,14 +39,12 @@ Recipe paper_recipe() {
            {"cycles", annealing.cycles},
            {"hold", annealing.hold},
            {"step_gain", pinnquad::TanhStep{}.gain}},
-          network_kinds<Paper>(),
-          {},
-          still_paper_features};
+          network_kinds<Paper>({"paper_vanilla", "paper_physics_informed", "paper_constant_weight", "paper_pearson"})};
 }
 
-ModelKind linearized_kind() {
-  return {"linearized",
-          "linearized",
+ModelKind formula_kind() {
+  return {"formula",
+          "formula of the airframe",
           TimeReach::present,
           false,
           always_applicable,

@@ -8,14 +8,9 @@ Recipe small_recipe() {
   using Network = pinnquad::Mlp<float, pinnquad::InputSize<pinnquad::PaperFeatures::size>, pinnquad::Hidden<2, 32>,
                                 pinnquad::OutputSize<pinnquad::rotor_count>, pinnquad::Relu>;
   constexpr const char* hidden = "2 x 32 ReLU";
-  return {"small",
-          "2 x 32 ReLU, the same training, for a microcontroller",
-          network_in_words<Network>(hidden),
-          best::optimizer_name,
-          best::settings(hidden),
-          network_kinds<best::Parts<Network>>(),
-          {},
-          still_paper_features};
+  return {"small", network_in_words<Network>(hidden), best::settings(hidden),
+          network_kinds<best::Parts<Network>>(
+              {"small_vanilla", "small_physics_informed", "small_constant_weight", "small_pearson"})};
 }
 
 }  // namespace programs

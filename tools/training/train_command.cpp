@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The options of `train`, and which of them do not go together.
-//   pinnquad train --flight flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
-//   pinnquad train --dataset DIR --hold-out-each trajectory --seeds 5 --out OUT
-//   pinnquad train --log DIR --mapping px4 --hold-out flight7 --out OUT
+//   pinnquad train flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
+//   pinnquad train DIR --hold-out-each trajectory --seeds 5 --out OUT
+//   pinnquad train DIR --mapping px4 --hold-out flight7 --out OUT
 #include "training/train_command.hpp"
 
 #include <cstdint>
@@ -15,8 +15,7 @@
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
-#include "training/network_kinds.hpp"
-#include "training/recipe.hpp"
+#include "training/train_input.hpp"
 #include "training/train_run.hpp"
 
 namespace {
@@ -26,73 +25,37 @@ using programs::TrainOptions;
 /// As they stand in the command line.
 struct GivenWords {
   std::string airframe = pinnquad::PaperQuadrotor::name;
-  std::string recipe = programs::recipes.front()().name;
-  std::vector<std::string> losses = {programs::loss_names[0], programs::loss_names[1]};
   std::string altitude = "auto", slopes = "learned", lag = "auto";
-  int epochs = programs::recipe_epochs;
 };
 
-void add_sources(CLI::App& app, TrainOptions& options) {
-  using programs::add_path, programs::add_paths;
-  add_paths(
-      app, "--flight", options.flights, "FILE.csv",
-      "recorded flight, CSV as `pinnquad fly` writes it: its first part trains, its last is held out. Of three or "
-      "more, whole flights, in this order: the first train, the last is held out");
-  add_path(app, "--dataset", options.dataset, "DIR",
-           "imported flights of a real vehicle, a folder that `pinnquad import` wrote");
-  add_paths(app, "--log", options.logs, "LOG", "flight logs, imported first: ULog, CSV, or folders of them");
-  app.add_option("--mapping", options.mapping, "what the columns of --log mean: see import")
-      ->type_name("NAME|FILE.toml");
+void add_flights(CLI::App& app, TrainOptions& options) {
+  programs::add_sources(app, options.flights, options.mapping);
   app.add_option("--hold-out", options.hold_out, "flights or trajectories that judge, held out together")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAME,...");
-  app.add_option("--hold-out-each", options.hold_out_each,
-                 "hold out each flight or each trajectory in turn; the export is fitted to all")
+  app.add_option("--hold-out-each", options.hold_out_each, "each in turn; the export is fitted to all")
       ->check(CLI::IsMember({"flight", "trajectory"}))
       ->type_name("flight|trajectory");
 }
 
 void add_kinds(CLI::App& app, TrainOptions& options, GivenWords& words) {
-  std::string recipes;
-  for (const auto& make : programs::recipes) {
-    const programs::Recipe recipe = make();
-    recipes += std::string(recipes.empty() ? "" : "; ") + recipe.name + ": " + recipe.summary;
-  }
-  app.add_option(
-         "--recipe", words.recipe,
-         "kinds of models to compare, by a name, and the one to export; of flights, where --models names none. " +
-             recipes)
-      ->capture_default_str();
-  app.add_option("--loss", words.losses,
-                 "what the networks of a recipe are trained under, any of: " + programs::listed(programs::loss_names) +
-                     ". The recipe structured trains its model too, whatever is asked for, and exports it; the others "
-                     "export physics_informed or, where it is not asked for, the first of this list")
-      ->delimiter(',')
-      ->type_name("NAME,...")
-      ->default_str("vanilla,physics_informed");
   app.add_option("--models", options.models,
-                 "compare these of the kinds for logs, by their names in report.json: closed forms, windows, networks "
-                 "stopped by validation; of logs all, where no recipe is asked for")
+                 "compare these: paper_, best_ or small_ before vanilla, physics_informed, constant_weight or pearson "
+                 "are networks; formula; " +
+                     programs::listed(programs::log_model_kinds(), [](const auto& kind) { return kind.key; }) +
+                     " (flights: " + programs::listed(programs::flight_models) + "; logs: the last " +
+                     std::to_string(programs::log_model_kinds().size()) + ")")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAME,...");
-  app.add_option(
-         "--export", options.export_choice,
-         "which model becomes the header: the best that flies on measured motion (causal: the default of logs), "
-         "the best that looks ahead (centred: planned trajectories only), or one by its name")
+  app.add_option("--export", options.export_choice, "the best on measured motion, on planned motion, or one by name")
       ->type_name("causal|centred|NAME");
-  app.add_option(
-         "--altitude", words.altitude,
-         "is the model of the recipe structured shown the altitude above ground? auto: if that lowers its error on "
-         "the validation rows by a fifth, as it does near the ground. A model that is shown it must be given it in "
-         "flight")
+  app.add_option("--altitude", words.altitude, "is the structured model shown it?")
       ->check(CLI::IsMember({"auto", "yes", "no"}))
       ->type_name("auto|yes|no")
       ->capture_default_str();
-  app.add_option(
-         "--slopes", words.slopes,
-         "how much the command sums of the recipe structured's model rise with the angular acceleration: learned "
-         "of the flights, or pinned to the airframe's in hover, where quiet flights, rotor lag or latency hide them; "
-         "the noise of an angular acceleration then goes into the commands")
+  app.add_option("--slopes", words.slopes, "of the structured model by angular acceleration")
       ->check(CLI::IsMember({"learned", "pinned"}))
       ->type_name("learned|pinned")
       ->capture_default_str();
@@ -102,21 +65,18 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   using programs::add_number, programs::add_path;
   app.footer(
       "Examples:\n"
-      "  pinnquad train --flight d1.csv --out my_model\n"
-      "  pinnquad train --flight a.csv --flight b.csv --flight c.csv --airframe mine.toml --recipe best\n"
-      "  pinnquad train --flight d1.csv --recipe small --out small\n"
-      "  pinnquad train --log logs --mapping px4 --hold-out flight7 --out my_model\n"
-      "  pinnquad train --dataset my_logs --hold-out-each trajectory --out my_model\n"
+      "  pinnquad train d1.csv --out my_model\n"
+      "  pinnquad train a.csv b.csv c.csv --airframe mine.toml --models best_pearson\n"
+      "  pinnquad train logs --mapping px4 --hold-out flight7 --out my_model\n"
+      "  pinnquad train my_logs --hold-out-each trajectory --out my_model\n"
+      "More of each option: docs/train.md, docs/log_training.md.\n"
       "Exit codes: 0; 1 nothing exported: no model was finished, or the best is worse than the mean of the commands;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted: the same command goes on from there.");
-  add_sources(app, options);
-  app.add_option("--airframe", words.airframe,
-                 "what flew: a file FILE.toml (examples/airframes), or one of: " + programs::airframe_names())
+  add_flights(app, options);
+  app.add_option("--airframe", words.airframe, "what flew: see airframe list")
+      ->type_name("NAME|FILE.toml")
       ->capture_default_str();
-  app.add_option(
-         "--lag", words.lag,
-         "from command to motion, removed from the commands of logs and flights: estimated, of flights as whole "
-         "rows that are not the rotors', or as given")
+  app.add_option("--lag", words.lag, "from command to motion, to remove from the commands")
       ->type_name("auto|SECONDS")
       ->capture_default_str();
   add_path(app, "--out", options.out, "DIR", "folder for results, report and the exported header")
@@ -124,43 +84,28 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   add_kinds(app, options, words);
   app.add_option("--name", options.model_name, "name of the exported struct")->capture_default_str();
   add_number(app, "--seeds", options.seeds, 1, static_cast<int>(pinnquad::most_pairs), "models per kind");
-  add_number(app, "--epochs", words.epochs, 1, 100000, "training epochs (of the kinds for logs: what suits each)");
+  add_number(app, "--epochs", options.epochs, 1, 100000, "training epochs (flights: 300; logs: what suits)")
+      ->default_str("");
   add_number(app, "--seed", options.seed, std::uint64_t{0}, programs::most_seed,
              "first seed (initialisation and batch order)")
       ->type_name("N");
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
-  app.add_flag("--allow-poor", options.allow_poor,
-               "export the best model even if it is worse than the mean of the commands; its header says so");
+  app.add_flag("--allow-poor", options.allow_poor, "export what is worse than the mean of the commands too, marked");
 }
 
 /// Throws std::invalid_argument, one line, for options that do not go together.
-void require_one_way(const CLI::App& line) {
+void require_one_way(const CLI::App& line, const TrainOptions& options) {
   const auto given = [&line](const char* name) { return line.count(name) > 0; };
   const auto refuse = [](const std::string& what) { throw std::invalid_argument(what); };
-  std::string sources;
-  int count = 0;
-  for (const char* source : {"--flight", "--dataset", "--log"}) {
-    if (!given(source)) continue;
-    sources += (count++ > 0 ? " and " : "") + std::string(source);
-  }
-  if (count == 0) refuse("--flight, --dataset or --log is required");
-  if (count > 1) refuse(sources + " can't be given together: expected one of them");
-  if (given("--log") != given("--mapping")) refuse("--log and --mapping go together: what its columns mean");
-  if (given("--lag") && given("--dataset"))
-    refuse("--lag goes with --flight or --log: a dataset was imported with one");
+  if (given("--lag") && !options.dataset.empty()) refuse("--lag: a dataset was imported with one");
   if (given("--hold-out") && given("--hold-out-each")) refuse("--hold-out and --hold-out-each can't be given together");
-  for (const char* of_recipes : {"--recipe", "--loss", "--altitude", "--slopes"}) {
-    if (!given(of_recipes)) continue;
-    if (given("--models")) refuse(std::string(of_recipes) + " and --models can't be given together");
-    if (!given("--flight") && !given("--recipe")) refuse(std::string(of_recipes) + " goes with --recipe");
-  }
 }
 
 }  // namespace
 
 programs::Command programs::train_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
-      "train", "Trains models on flights, judges them on rows that none was trained on, exports the best as a header");
+      "train", "Trains models on flights, judges them on rows held out, exports the best as a header");
   struct Asked {
     TrainOptions options;
     GivenWords words;
@@ -168,17 +113,15 @@ programs::Command programs::train_command(CLI::App& program) {
   const auto asked = std::make_shared<Asked>();
   add_options(*line, asked->options, asked->words);
   return {line, [asked, line] {
-            require_one_way(*line);
             TrainOptions& options = asked->options;
             const GivenWords& words = asked->words;
-            const auto given = [line](const char* name) { return line->count(name) > 0; };
-            if (given("--recipe") || (given("--flight") && !given("--models"))) options.recipe = words.recipe;
-            options.losses = words.losses;
-            if (words.altitude != "auto") options.altitude = words.altitude == "yes";
             options.lag_s = programs::lag_of(words.lag);
+            programs::take_source(options);
+            require_one_way(*line, options);
+            const auto given = [line](const char* name) { return line->count(name) > 0; };
+            if (words.altitude != "auto") options.altitude = words.altitude == "yes";
             options.pinned_slopes = words.slopes == "pinned";
             if (given("--airframe")) options.airframe = words.airframe;
-            if (given("--epochs")) options.epochs = words.epochs;
             return train(options);
           }};
 }

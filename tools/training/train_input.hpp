@@ -20,7 +20,6 @@
 #include "training/flight_lag.hpp"
 #include "training/hold_out.hpp"
 #include "training/model_kind.hpp"
-#include "training/network_kinds.hpp"
 #include "training/recipe.hpp"
 #include "training/train_run.hpp"
 
@@ -29,11 +28,31 @@ namespace programs {
 /// Fewer rows than this fill no batches worth the name.
 inline constexpr std::size_t fewest_training_rows = 256, fewest_judging_rows = 64;
 
-/// Kinds to compare, by the name of their selection, and the facts of it.
+/// Kinds to compare.
 struct Selection {
-  std::string name;  ///< a recipe's, or "logs"
   std::vector<ModelKind> kinds;
-  std::optional<Recipe> recipe;
+  std::vector<Recipe> recipes;  ///< of the networks among them
+  int epochs = 0;               ///< 0: what suits each kind
+
+  bool has(const std::string& key) const {
+    return std::any_of(kinds.begin(), kinds.end(), [&key](const ModelKind& kind) { return key == kind.key; });
+  }
+  /// The choice of an export where nobody says another: the best proven one; beside networks the kind structured. Of
+  /// networks alone the first physics-informed one or, where there is none, the first.
+  std::string exported() const {
+    if (recipes.empty()) return export_causal;
+    if (has("structured")) return "structured";
+    std::string first, informed;
+    for (const ModelKind& kind : kinds) {
+      if (!kind.exportable) continue;
+      const std::string key = kind.key;
+      const auto begins = [&key](const Recipe& recipe) { return key.rfind(recipe.name + std::string("_"), 0) == 0; };
+      if (std::none_of(recipes.begin(), recipes.end(), begins)) return export_causal;
+      if (first.empty()) first = key;
+      if (informed.empty() && key.find("_physics_informed") != std::string::npos) informed = key;
+    }
+    return informed.empty() ? first : informed;
+  }
 };
 
 /// Of `all` those with these keys, in their order; all for no keys. Throws std::invalid_argument, one line.
@@ -52,25 +71,44 @@ inline std::vector<ModelKind> kinds_of(const std::vector<ModelKind>& all, const 
   return kinds;
 }
 
-/// The recipe's kinds for the losses asked for, and what it fits besides; or those that logs are compared by.
-inline Selection selection_of(const TrainOptions& options) {
-  if (options.recipe.empty()) return {"logs", kinds_of(log_model_kinds(), options.models), {}};
-  Selection chosen{options.recipe, {linearized_kind()}, chosen_recipe(options.recipe)};
-  const Recipe& recipe = *chosen.recipe;
-  if (recipe.besides_in_words.empty() && (options.altitude || options.pinned_slopes)) {
-    throw std::invalid_argument("--altitude and --slopes go with --recipe structured, not with " + options.recipe);
+/// Kinds that flights are compared by where no names are given.
+inline const std::vector<std::string> flight_models = {"formula", "paper_vanilla", "paper_physics_informed",
+                                                       "structured"};
+
+/// Of `own` kinds, networks of every recipe and the formula those with these names, networks before the first
+/// structured one; no names: flight_models, or of logs their own. Throws std::invalid_argument, one line.
+inline Selection selection_of(std::vector<ModelKind> own, std::vector<std::string> names, bool of_flights, int epochs) {
+  Selection chosen;
+  chosen.epochs = epochs;
+  if (names.empty() && !of_flights) {
+    chosen.kinds = std::move(own);
+    return chosen;
   }
-  const auto is_in = [](const auto& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  for (const std::string& name : options.losses) {
-    if (is_in(loss_names, name)) continue;
-    throw std::invalid_argument("--loss: no loss named '" + name + "'; known: " + listed(loss_names));
+  if (names.empty()) names = flight_models;
+  std::vector<ModelKind> others = {formula_kind()};
+  for (const auto& make : recipes) {
+    Recipe recipe = make();
+    others.insert(others.end(), recipe.kinds.begin(), recipe.kinds.end());
+    const auto is_named = [&names](const ModelKind& kind) {
+      return std::find(names.begin(), names.end(), kind.key) != names.end();
+    };
+    if (std::any_of(recipe.kinds.begin(), recipe.kinds.end(), is_named)) chosen.recipes.push_back(std::move(recipe));
   }
-  for (const ModelKind& kind : recipe.kinds) {
-    if (is_in(options.losses, kind.key) || !is_in(loss_names, kind.key)) chosen.kinds.push_back(kind);
-  }
+  const auto structured = std::find_if(
+      own.begin(), own.end(), [](const ModelKind& kind) { return std::string(kind.key).rfind("structured", 0) == 0; });
+  own.insert(structured, others.begin(), others.end());
+  chosen.kinds = kinds_of(own, names);
+  if (epochs == 0 && of_flights && !chosen.recipes.empty()) chosen.epochs = recipe_epochs;
   return chosen;
+}
+
+/// Throws std::invalid_argument for options of the structured kinds where none is chosen.
+inline void require_structured(const TrainOptions& options, const Selection& selection) {
+  if (!options.altitude && !options.pinned_slopes) return;
+  for (const char* key : {"structured", "structured_causal", "structured_centred"}) {
+    if (selection.has(key)) return;
+  }
+  throw std::invalid_argument("--altitude and --slopes are of structured models: --models names none");
 }
 
 /// Throws std::invalid_argument for what --export can't mean.
@@ -86,6 +124,16 @@ inline void require_known_export(const std::string& choice, const std::vector<Mo
 
 /// Fewer rows than this can't train 6,379 weights to anything worth flying: 20 batches of 64 in the 60 % that train.
 inline constexpr std::size_t fewest_flight_rows = 2200;
+
+/// Puts what was given as flights where its content belongs.
+inline void take_source(TrainOptions& options) {
+  using pinnquad::logs::SourceKind;
+  const SourceKind kind = pinnquad::logs::kind_of_sources(options.flights, options.mapping);
+  if (kind == SourceKind::flights) return;
+  if (kind == SourceKind::dataset) options.dataset = options.flights.front();
+  if (kind == SourceKind::logs) options.logs = options.flights;
+  options.flights.clear();
+}
 
 /// The dataset of the options, read or imported. `airframe`: of the flights.
 inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options,

@@ -51,9 +51,9 @@ void each_output(const TrainOptions& options, const Use& use) {
 /// No output takes the place of an input or of another output.
 void require_separate_files(const TrainOptions& options) {
   programs::FileRoles roles;
-  for (const std::string& path : options.flights) roles.reads("--flight", path);
-  for (const std::string& path : options.logs) roles.reads("--log", path);
-  if (!options.dataset.empty()) roles.reads("--dataset", options.dataset);
+  for (const std::string& path : options.flights) roles.reads("FLIGHTS", path);
+  for (const std::string& path : options.logs) roles.reads("FLIGHTS", path);
+  if (!options.dataset.empty()) roles.reads("FLIGHTS", options.dataset);
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   roles.writes("--out", options.out);
   each_output(options, [&roles](const std::string& path) { roles.writes("--out", path); });
@@ -85,24 +85,22 @@ class Training {
            const pinnquad::logs::ImportedDataset& dataset, const programs::FlownVehicle& vehicle,
            std::vector<programs::Fold> folds)
       : options_(options),
-        recipe_(selection.recipe),
+        selection_(selection),
         dataset_(dataset),
         vehicle_(vehicle),
         plan_{vehicle.airframe,
-              selection.name,
               selection.kinds,
               std::move(folds),
               dataset.absent,
               dataset.sample_period_s,
               options.seed,
               options.seeds,
-              options.epochs > 0 || options.recipe.empty() || options.flights.empty() ? options.epochs
-                                                                                      : programs::recipe_epochs,
+              selection.epochs,
               options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency()),
               {vehicle.given && !programs::is_airframe_file(options.airframe), options.altitude, options.pinned_slopes,
                options.flights.empty()},
               programs::past_rows_of(dataset, vehicle.airframe.value, options.flights.empty())},
-        report_(options.out + "/report.json", plan_, dataset, facts_of_recipe()) {
+        report_(options.out + "/report.json", plan_, dataset, facts_of_trainings()) {
     report_.vehicle(programs::vehicle_json(vehicle));
   }
 
@@ -110,7 +108,7 @@ class Training {
     warn_of_the_setting();
     announce("[2/5] fit " + std::to_string(plan_.kinds.size()) + " kinds of models, " + std::to_string(plan_.seeds) +
              " seeds");
-    tell_recipe();
+    tell_networks();
     const programs::FitStore store(options_.out + "/fits", plan_);
     int code = 0;
     try {
@@ -130,24 +128,31 @@ class Training {
   }
 
  private:
-  nlohmann::json facts_of_recipe() const {
-    if (!recipe_) return nlohmann::json::object();
-    nlohmann::json facts = recipe_->settings;
-    facts["recipe"] = recipe_->name;
-    for (const programs::ModelKind& kind : plan_.kinds) {
-      if (kind.exportable) facts["losses"][kind.key] = kind.words;
+  nlohmann::json facts_of_trainings() const {
+    nlohmann::json facts = {{"networks", nlohmann::json::object()}};
+    for (const programs::Recipe& recipe : selection_.recipes) {
+      nlohmann::json& network = facts["networks"][recipe.name] = recipe.settings;
+      for (const programs::ModelKind& kind : recipe.kinds) {
+        if (selection_.has(kind.key)) network["losses"][kind.key] = kind.words;
+      }
     }
-    if (facts.contains("structured")) facts["structured"]["slopes"] = options_.pinned_slopes ? "pinned" : "learned";
+    if (selection_.has("structured")) facts["structured"] = programs::structured_settings(options_.pinned_slopes);
     return facts;
   }
 
-  void tell_recipe() const {
-    if (!recipe_) return;
+  bool tells_structured() const {
+    return selection_.has("structured") && (!options_.flights.empty() || !selection_.recipes.empty());
+  }
+
+  void tell_networks() const {
     const std::string epochs = plan_.epochs > 0 ? std::to_string(plan_.epochs) + " epochs" : "epochs as suit each kind";
-    std::printf("      network %s; %s, batch %d, %s\n", recipe_->network.c_str(), recipe_->optimizer.c_str(),
-                recipe_->settings.at("batch").get<int>(), epochs.c_str());
-    if (!recipe_->besides_in_words.empty()) std::printf("      %s\n", recipe_->besides_in_words.c_str());
-    std::fflush(stdout);
+    for (const programs::Recipe& recipe : selection_.recipes) {
+      announce("      network " + recipe.network + "; " + recipe.settings.at("optimizer").get<std::string>() +
+               ", batch " + std::to_string(recipe.settings.at("batch").get<int>()) + ", " + epochs);
+    }
+    if (!tells_structured()) return;
+    announce("      structured: " +
+             programs::structured_settings(options_.pinned_slopes).at("words").get<std::string>());
   }
 
   void fit(const programs::FitStore& store) {
@@ -216,8 +221,8 @@ class Training {
       report_.warn("paired tests over " + std::to_string(judges()) + " held-out flights can't decide: fewer than " +
                    std::to_string(programs::fewest_pairs) + "; --hold-out-each judges by more");
     }
-    if (!recipe_) return;
-    const std::string still = programs::listed(recipe_->still_features(plan_.task(plan_.folds.front(), 1)));
+    const std::string still = programs::listed(
+        programs::still_features(plan_.task(plan_.folds.front(), 1), !selection_.recipes.empty(), tells_structured()));
     if (!still.empty()) {
       report_.warn(still +
                    ": nothing changes in the training rows; the model will not know what it does, and answers only "
@@ -252,10 +257,10 @@ class Training {
 
   /// Advice where a kind is worse than the mean.
   std::string advice(const programs::ModelKind& kind) const {
-    if (!recipe_) return "; --allow-poor exports it, marked";
+    if (selection_.recipes.empty()) return "; --allow-poor exports it, marked";
     if (kind.key != std::string("structured")) return "; more epochs or a better flight, or --allow-poor";
     return std::string("; ") + (options_.pinned_slopes ? "--slopes learned, " : "") +
-           "a better flight, --allow-poor, or --recipe paper, of whose networks nothing is proven";
+           "a better flight, --allow-poor, or --models paper_physics_informed, of which nothing is proven";
   }
 
   struct Exported {
@@ -267,7 +272,7 @@ class Training {
 
   std::string export_choice() const {
     if (!options_.export_choice.empty()) return options_.export_choice;
-    return recipe_ ? programs::Recipe::exported_of(plan_.kinds) : programs::export_causal;
+    return selection_.exported();
   }
 
   /// Of proven models the best.
@@ -611,7 +616,7 @@ class Training {
   }
 
   const TrainOptions& options_;
-  std::optional<programs::Recipe> recipe_;
+  const programs::Selection& selection_;
   const pinnquad::logs::ImportedDataset& dataset_;
   const programs::FlownVehicle& vehicle_;
   programs::FitPlan plan_;
@@ -629,7 +634,8 @@ class Training {
 
 int programs::train(const TrainOptions& options) {
   require_identifier("--name", options.model_name);
-  const Selection selection = selection_of(options);
+  const Selection selection = selection_of(log_model_kinds(), options.models, !options.flights.empty(), options.epochs);
+  require_structured(options, selection);
   if (!options.export_choice.empty()) require_known_export(options.export_choice, selection.kinds);
   std::optional<NamedAirframe> given;
   if (!options.airframe.empty()) given = chosen_airframe(options.airframe);

@@ -16,11 +16,9 @@ struct TrainOptions {
   std::string mapping;
   std::vector<std::string> hold_out;  ///< flights or trajectories
   std::string hold_out_each;          ///< "flight", "trajectory"; empty: those of hold_out
-  std::string recipe;                 ///< empty: the kinds that logs are compared by
-  std::vector<std::string> losses;    ///< of the recipe's networks
-  std::vector<std::string> models;    ///< keys of kinds; empty: all
-  std::string export_choice;          ///< empty: what the recipe exports, or "causal"
-  std::optional<bool> altitude;       ///< of the recipe structured, as what follows; none: validation says
+  std::vector<std::string> models;    ///< keys of kinds; empty: what flights, or logs, are compared by
+  std::string export_choice;          ///< empty: Selection::exported()
+  std::optional<bool> altitude;       ///< of the structured kinds, as what follows; none: validation says
   bool pinned_slopes = false;
   std::string airframe;         ///< empty: none was given
   std::optional<double> lag_s;  ///< of flights and logs, from command to motion; none: estimated

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Flights as CSV files, read with a progress line.
+// Flights of any source, read with a progress line.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,19 @@
 
 namespace programs {
 
-/// pinnquad::logs::read_flights with a progress line.
-inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_rows,
-                                      const std::vector<pinnquad::ColumnName>& extra = {}) {
+/// Flights of any source, of CSV files with the extra columns asked for, `minimum_rows` or more. Throws as
+/// pinnquad::logs::read_source.
+inline pinnquad::Dataset read_flights(const std::vector<std::string>& paths, const std::string& mapping,
+                                      std::size_t minimum_rows, const std::vector<pinnquad::ColumnName>& extra = {}) {
+  namespace logs = pinnquad::logs;
   JobLine progress;
-  return pinnquad::logs::read_flights(
-      paths, minimum_rows, extra, [&progress](const std::string& job, double share) { progress.update(job, share); });
+  logs::LogSettings settings;
+  settings.mapping = mapping;
+  settings.on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
+  if (logs::kind_of_sources(paths, mapping) != logs::SourceKind::flights) {
+    return logs::read_source(paths, settings).flights;
+  }
+  return logs::read_flights(paths, minimum_rows, extra, settings.on_progress);
 }
 
 }  // namespace programs

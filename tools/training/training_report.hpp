@@ -155,9 +155,9 @@ inline constexpr int report_format = 2;
 /// Builds report.json; a training that fails later leaves what was written last.
 class TrainingReport {
  public:
-  /// `selection`: facts of the recipe that was asked for, or none.
+  /// `trainings`: facts of what is trained, beside the other settings.
   TrainingReport(std::string path, const FitPlan& plan, const pinnquad::logs::ImportedDataset& dataset,
-                 const nlohmann::json& selection = nlohmann::json::object())
+                 const nlohmann::json& trainings = nlohmann::json::object())
       : path_(std::move(path)) {
     nlohmann::json flights = nlohmann::json::array(), folds = nlohmann::json::array(), kinds = nlohmann::json::array();
     for (const pinnquad::Flight& flight : dataset.flights.flights()) {
@@ -184,7 +184,6 @@ class TrainingReport {
              {"settings",
               {{"version", PINNQUAD_VERSION},
                {"instruction_set", instruction_set()},
-               {"selection", plan.selection},
                {"models", std::move(kinds)},
                {"airframe", plan.airframe.name},
                {"first_seed", plan.first_seed},
@@ -221,7 +220,7 @@ class TrainingReport {
              {"response", nullptr},
              {"noise_ceiling", nullptr},
              {"warnings", nlohmann::json::array()}};
-    json_["settings"].update(selection);
+    json_["settings"].update(trainings);
     for (const std::string& warning : dataset.warnings) warn("import: " + warning);
   }
 

@@ -28,7 +28,7 @@ struct Judged {
   Judged(pinnquad::Dataset flights, std::vector<programs::ModelKind> kinds, const programs::HoldOutChoice& choice,
          int seeds = 5)
       : dataset(std::move(flights)),
-        plan{airframe, "stand-ins", std::move(kinds), programs::folds_of(dataset, choice), {}, 0.05, 1, seeds, 0, 1} {
+        plan{airframe, std::move(kinds), programs::folds_of(dataset, choice), {}, 0.05, 1, seeds, 0, 1} {
     fits = programs::fit_all(plan);
     judged = programs::judge_fits(plan, fits);
     verdicts = programs::verdicts_on(judged);

@@ -16,7 +16,7 @@
 #include "training/export_choice.hpp"
 #include "training/fit_store.hpp"
 #include "training/log_kinds.hpp"
-#include "training/recipe.hpp"
+#include "training/train_input.hpp"
 #include "training/training_report.hpp"
 
 namespace {
@@ -263,8 +263,8 @@ TEST_CASE("slopes: those of the truth are right, those of a mirrored model wrong
   CHECK(slopes.least[0] == doctest::Approx(-4e-3));
 }
 
-TEST_CASE("what is exported: by validation, none that diverged, of a recipe what is proven") {
-  using programs::FinishedFit, programs::Recipe;
+TEST_CASE("what is exported: by validation, none that diverged, of networks what is proven beside them") {
+  using programs::FinishedFit;
   std::vector<FinishedFit> fits(5);
   const double errors[] = {std::nan(""), 0.3, 0.2, HUGE_VAL, 0.1};
   for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -278,18 +278,22 @@ TEST_CASE("what is exported: by validation, none that diverged, of a recipe what
   CHECK(programs::best_fit({fits[0], fits[3]}, 0, false) == nullptr);
   CHECK(programs::best_fit(fits, 2, false) == nullptr);
 
-  const auto kinds = [](std::initializer_list<const char*> keys) {
-    std::vector<programs::ModelKind> made;
+  const auto exported_of = [](std::initializer_list<const char*> keys, std::vector<programs::Recipe> recipes) {
+    programs::Selection selection{{}, std::move(recipes), 0};
     for (const char* key : keys) {
-      made.push_back(pinnquad_test::constant_kind());
-      made.back().key = key;
-      made.back().exportable = key != std::string("linearized");
+      selection.kinds.push_back(pinnquad_test::constant_kind());
+      selection.kinds.back().key = key;
+      selection.kinds.back().exportable = key != std::string("formula");
     }
-    return made;
+    return selection.exported();
   };
-  CHECK(Recipe::exported_of(kinds({"linearized", "vanilla", "physics_informed", "structured"})) == "structured");
-  CHECK(Recipe::exported_of(kinds({"linearized", "vanilla", "physics_informed"})) == "physics_informed");
-  CHECK(Recipe::exported_of(kinds({"linearized", "constant_weight", "pearson"})) == "constant_weight");
+  const programs::Recipe paper{"paper", {}, {}, {}}, best{"best", {}, {}, {}};
+  CHECK(exported_of({"formula", "paper_vanilla", "paper_physics_informed", "structured"}, {paper}) == "structured");
+  CHECK(exported_of({"formula", "paper_vanilla", "paper_physics_informed"}, {paper}) == "paper_physics_informed");
+  CHECK(exported_of({"paper_vanilla", "best_physics_informed"}, {paper, best}) == "best_physics_informed");
+  CHECK(exported_of({"formula", "best_constant_weight", "best_pearson"}, {best}) == "best_constant_weight");
+  CHECK(exported_of({"ridge", "paper_vanilla"}, {paper}) == "causal");
+  CHECK(exported_of({"constant", "vanilla", "structured"}, {}) == "causal");
 
   Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::linear_kind()}, {{"flight2"}, {}}, 1);
   prove(run.judged);
@@ -508,10 +512,10 @@ TEST_CASE(
   CHECK_FALSE(programs::FitStore(folder.path("fits"), other_rows).load(loaded));
   programs::FitPlan longer = run.plan;
   longer.epochs = 10;
-  programs::FitPlan pinned = run.plan, other_recipe = run.plan;
+  programs::FitPlan pinned = run.plan, validated = run.plan;
   pinned.settings.pinned_slopes = true;
-  other_recipe.selection = "best";
-  for (const programs::FitPlan* other : {&longer, &pinned, &other_recipe}) {
+  validated.settings.fit_validation = !run.plan.settings.fit_validation;
+  for (const programs::FitPlan* other : {&longer, &pinned, &validated}) {
     loaded = asked;
     CHECK_FALSE(programs::FitStore(folder.path("fits"), *other).load(loaded));
   }

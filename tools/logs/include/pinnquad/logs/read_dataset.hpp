@@ -84,6 +84,10 @@ Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_
 enum class SourceKind { flights, dataset, logs };
 SourceKind kind_of_source(const std::string& path);
 
+/// The kind that all of them have: logs, where there is a mapping. Throws InputError and std::invalid_argument, one
+/// line: none, several kinds, two datasets, logs without a mapping.
+SourceKind kind_of_sources(const std::vector<std::string>& paths, const std::string& mapping);
+
 /// Flights of any source: paths of one kind, or one dataset, with the extra columns that all have. Where `settings`
 /// have a mapping the paths are logs; without one only `on_progress` counts. Throws InputError and
 /// std::invalid_argument, one line.
