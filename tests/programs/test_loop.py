@@ -122,7 +122,7 @@ def test_a_window_that_looks_ahead(pinnquad, recorded, made):
 
 
 def test_loses_another_vehicle(pinnquad):
-    """A network of which nothing is proven, on another vehicle. A proven model on a racer is 1.1 m off and keeps it: it answers the feedback with slopes of the right sign."""
+    """A network of which nothing is proven. A proven model keeps even a racer, 1.1 m off: its slopes have the right sign."""
     words = f"loop {MODELS}/demo_quadrotor.block --airframe reference_1.5kg --trajectory yaw_eight"
     done = pinnquad(words, code=1)
     assert "loses the vehicle" in done.lines[-1] and "outside_envelope" in done.out
