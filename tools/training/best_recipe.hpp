@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How the study trains all models of Table 2, and `train --recipe best` and `small`: the numbers are said here and
-// nowhere else.
+// How the study trains all models of Table 2, and `train --models best_vanilla`, `small_vanilla`: the numbers are said
+// here and nowhere else.
 //
 // They were chosen by the mean absolute error on the validation rows of flights d1 of the seeds 1000 and 1001, five
 // trainings of 300 epochs each, network without batch norm; 20 configurations for vanilla, 20 for physics-informed. The
