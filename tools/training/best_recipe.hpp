@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the study trains all models of Table 2, and `train --recipe best` and `small`: the numbers are said here and
+// How the study trains all models of Table 2, and `train` the networks best_ and small_: the numbers are said here and
 // nowhere else.
 //
 // They were chosen by the mean absolute error on the validation rows of flights d1 of the seeds 1000 and 1001, five
