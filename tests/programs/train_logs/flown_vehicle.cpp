@@ -216,8 +216,9 @@ TEST_CASE(
   const auto swapped = compared({1, 0, 3, 2}, 1);
   CHECK(swapped["thrust"]["slope"].get<double>() == doctest::Approx(1));
   CHECK(programs::turned_round(swapped).find("against the formula's") != std::string::npos);
-  CHECK(programs::unfit_to_fly({{"model", {{"answered_share", 1}, {"status", "ok"}, {"largest_error_m", 0.1}}},
-                                {"without_jerk", {{"largest_error_m", 0.1}}},
-                                {"half_length_m", 1},
-                                {"against_formula", swapped}}) == programs::turned_round(swapped));
+  CHECK(programs::unfit_to_fly(
+            {{"model", {{"answered_share", 1}, {"status", "ok"}, {"largest_error_m", 0.1}, {"rmse_m", 0.1}}},
+             {"without_jerk", {{"largest_error_m", 0.1}, {"rmse_m", 0.2}}},
+             {"half_length_m", 1},
+             {"against_formula", swapped}}) == programs::turned_round(swapped));
 }
