@@ -104,7 +104,7 @@ TEST_CASE("flights and a folder of them are read without a mapping") {
         a + " and " + a + " hold the same flight: it would be judged on rows that it was trained on");
   CHECK(refusal({a, dataset}).find("expected flights, one dataset, or logs, found " + a) == 0);
   CHECK(refusal({dataset, dataset}).find("expected flights, one dataset, or logs") == 0);
-  CHECK(refusal({}).find("expected a source") == 0);
+  CHECK(refusal({}).find("expected FLIGHTS") == 0);
   CHECK(refusal({folder.path("absent")}).find("expected a readable file") != std::string::npos);
   CHECK(refusal({folder.write("other.csv", "x,y\n1,2\n")}).find("other.csv: expected a flight") != std::string::npos);
   std::string text;
