@@ -58,19 +58,19 @@ build_program() {
   cmake --build build/demo -j "$(parallel_jobs)" --target pinnquad_program
 }
 
-# parallel_jobs: how many compilers at a time. PINNQUAD_JOBS overrides; a heavy translation unit takes about a
-# gigabyte, so memory is a limit too.
+# parallel_jobs: how many compilers at a time. PINNQUAD_JOBS overrides; a heavy translation unit takes up to two gigabytes,
+# most take less than one: a gigabyte and a half for each.
 parallel_jobs() {
   if [ -n "${PINNQUAD_JOBS:-}" ]; then
     echo "$PINNQUAD_JOBS"
     return
   fi
-  local cores memory_gib
+  local cores in_memory
   cores=$(nproc 2>/dev/null || echo 2)
-  memory_gib=$(awk '/^MemAvailable:/ { print int($2 / 1048576) }' /proc/meminfo 2>/dev/null || true)
-  [ -n "$memory_gib" ] || memory_gib=$cores
-  if [ "$memory_gib" -lt 1 ]; then memory_gib=1; fi
-  if [ "$memory_gib" -lt "$cores" ]; then echo "$memory_gib"; else echo "$cores"; fi
+  in_memory=$(awk '/^MemAvailable:/ { print int($2 / 1572864) }' /proc/meminfo 2>/dev/null || true)
+  [ -n "$in_memory" ] || in_memory=$cores
+  if [ "$in_memory" -lt 1 ]; then in_memory=1; fi
+  if [ "$in_memory" -lt "$cores" ]; then echo "$in_memory"; else echo "$cores"; fi
 }
 
 # cpu_seconds: what this script and all that it has waited for have computed so far, user and system; 0 where the
