@@ -48,7 +48,7 @@ class Training {
     fits_ = programs::fit_all(plan_);
     programs::stop_if_interrupted();
     judged_ = programs::judge_fits(plan_, fits_);
-    const std::string key = selection_.exported();
+    const std::string key = selection_.has("structured") ? "structured" : selection_.exported();
     while (chosen_ < plan_.kinds.size() && key != plan_.kinds[chosen_].key) ++chosen_;
     if (chosen_ == plan_.kinds.size() || !judged().applicable()) {
       throw std::invalid_argument("no model to export: " + (chosen_ == plan_.kinds.size()
