@@ -159,7 +159,7 @@ programs::Command programs::identify_command(CLI::App& program) {
       "Exit codes: 0; 1 the flights do not tell thrust, roll or pitch, or the commands turn the vehicle the other "
       "way;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted. Then nothing was written.");
-  return {line, [options, line] {
+  return {line, [options] {
             if (options->rate_hz && options->mapping.empty()) {
               throw std::invalid_argument("--rate goes with logs and their --mapping: other rows have their own");
             }
