@@ -21,8 +21,8 @@ inline nlohmann::json loop_figures(const pinnquad::TrackingResult<double>& flown
           {"status", pinnquad::to_string(flown.status != ok ? flown.status : flown.declined)}};
 }
 
-/// Of a figure with its `half_length_m`, flown by `who` and by the analytic inverse `without_jerk`, as loop_figures()
-/// says them: true where the flight of `who` ended, or went further off than the figure is long and that one is off.
+/// True where the flight of `who` ended, or went further off than the figure is long and the analytic inverse
+/// `without_jerk` is off. `flown`: the figure's `half_length_m`, and loop_figures() of both.
 inline bool lost_vehicle(const nlohmann::json& flown, const char* who = "model") {
   if (!flown.contains(who)) return false;
   const nlohmann::json& figures = flown[who];

@@ -45,8 +45,7 @@ void print_table(const BlockModel& model, const Dataset& dataset, const programs
 }
 
 int evaluate(const EvaluateOptions& options) {
-  const bool of_flights = logs::kind_of_sources(options.flights, options.mapping) == logs::SourceKind::flights;
-  if (options.rows == "test" && !of_flights) {
+  if (options.rows == "test" && logs::kind_of_sources(options.flights, options.mapping) != logs::SourceKind::flights) {
     throw std::invalid_argument("--rows test is of recorded flights: of a dataset or logs train tests on --hold-out");
   }
   const BlockModel model = programs::read_model(options.model);

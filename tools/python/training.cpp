@@ -48,6 +48,7 @@ class Training {
     fits_ = programs::fit_all(plan_);
     programs::stop_if_interrupted();
     judged_ = programs::judge_fits(plan_, fits_);
+    // exported() may ask for the best proven kind (causal): of those that Python trains, the structured one
     const std::string key = selection_.has("structured") ? "structured" : selection_.exported();
     while (chosen_ < plan_.kinds.size() && key != plan_.kinds[chosen_].key) ++chosen_;
     if (chosen_ == plan_.kinds.size() || !judged().applicable()) {

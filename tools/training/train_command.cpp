@@ -40,12 +40,13 @@ void add_flights(CLI::App& app, TrainOptions& options) {
 }
 
 void add_kinds(CLI::App& app, TrainOptions& options, GivenWords& words) {
+  const std::vector<programs::ModelKind> for_logs = programs::log_model_kinds();
   app.add_option("--models", options.models,
                  "compare these: paper_, best_ or small_ before vanilla, physics_informed, constant_weight or pearson "
                  "are networks; formula; " +
-                     programs::listed(programs::log_model_kinds(), [](const auto& kind) { return kind.key; }) +
+                     programs::listed(for_logs, [](const auto& kind) { return kind.key; }) +
                      " (flights: " + programs::listed(programs::flight_models) + "; logs: the last " +
-                     std::to_string(programs::log_model_kinds().size()) + ")")
+                     std::to_string(for_logs.size()) + ")")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");

@@ -75,8 +75,11 @@ inline std::vector<ModelKind> kinds_of(const std::vector<ModelKind>& all, const 
 inline const std::vector<std::string> flight_models = {"formula", "paper_vanilla", "paper_physics_informed",
                                                        "structured"};
 
-/// Of `own` kinds, networks of every recipe and the formula those with these names, networks before the first
-/// structured one; no names: flight_models, or of logs their own. Throws std::invalid_argument, one line.
+/// Whether it is a structured kind, whatever its reach in time.
+inline bool is_structured(const ModelKind& kind) { return std::string(kind.key).rfind("structured", 0) == 0; }
+
+/// The kinds with these names, among `own`, the networks of every recipe and the formula; networks come before the
+/// first structured one. No names: flight_models, or of logs their own. Throws std::invalid_argument, one line.
 inline Selection selection_of(std::vector<ModelKind> own, std::vector<std::string> names, bool of_flights, int epochs) {
   Selection chosen;
   chosen.epochs = epochs;
@@ -94,9 +97,7 @@ inline Selection selection_of(std::vector<ModelKind> own, std::vector<std::strin
     };
     if (std::any_of(recipe.kinds.begin(), recipe.kinds.end(), is_named)) chosen.recipes.push_back(std::move(recipe));
   }
-  const auto structured = std::find_if(
-      own.begin(), own.end(), [](const ModelKind& kind) { return std::string(kind.key).rfind("structured", 0) == 0; });
-  own.insert(structured, others.begin(), others.end());
+  own.insert(std::find_if(own.begin(), own.end(), is_structured), others.begin(), others.end());
   chosen.kinds = kinds_of(own, names);
   if (epochs == 0 && of_flights && !chosen.recipes.empty()) chosen.epochs = recipe_epochs;
   return chosen;
@@ -105,9 +106,7 @@ inline Selection selection_of(std::vector<ModelKind> own, std::vector<std::strin
 /// Throws std::invalid_argument for options of the structured kinds where none is chosen.
 inline void require_structured(const TrainOptions& options, const Selection& selection) {
   if (!options.altitude && !options.pinned_slopes) return;
-  for (const char* key : {"structured", "structured_causal", "structured_centred"}) {
-    if (selection.has(key)) return;
-  }
+  if (std::any_of(selection.kinds.begin(), selection.kinds.end(), is_structured)) return;
   throw std::invalid_argument("--altitude and --slopes are of structured models: --models names none");
 }
 
