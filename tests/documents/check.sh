@@ -67,6 +67,11 @@ check_simple_command() {
   while [[ ${words[0]:-} =~ ^[A-Za-z_]+=.*$ || ${words[0]:-} =~ ^(sudo|srun|nice|time)$ ]]; do words=("${words[@]:1}"); done
   [ ${#words[@]} -gt 0 ] || return 0
   program=${words[0]}
+  # scripts/test without --all does not build it
+  if [ "${program##*/}" = pinnquad-study ] && [ ! -x "$build/bin/pinnquad-study" ]; then
+    echo "$line: not checked: pinnquad-study is not built here"
+    return 0
+  fi
   case $program in
     ./scripts/* | scripts/* | bench/* | tests/*)
       compgen -G "$root/${program#./}" >/dev/null || fault "$line" "no such file: $program"
