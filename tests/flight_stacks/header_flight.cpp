@@ -14,6 +14,8 @@
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
+#include "pinnquad/features/extra_columns.hpp"
+#include "pinnquad/features/input_history.hpp"
 #include "record_csv.hpp"
 #include "stacks.hpp"
 
@@ -57,6 +59,28 @@ double trained_voltage() {
   return 0;
 }
 
+/// The motions that an exported model answers.
+template <class Model>
+programs::ModelRange range_of_header() {
+  using Features = typename Model::Features;
+  programs::ModelRange range;
+  for (std::size_t i = 0; i < std::size_t(Features::size); ++i) {
+    range.features.push_back({Features::names[i], Features::units[i], static_cast<double>(Model::envelope_lower[i]),
+                              static_cast<double>(Model::envelope_upper[i]),
+                              pinnquad::detail::is_column<Features>(static_cast<int>(i))});
+  }
+  range.of = [](const programs::ModelRange::Motion& motion) {
+    typename pinnquad::InputHistory<Features, double>::Present present{};
+    static_cast<pinnquad::MotionInputs<double>&>(present) = motion;
+    if constexpr (std::is_base_of_v<programs::ModelRange::Motion, decltype(present)>)
+      present.altitude_m = motion.altitude_m;
+    std::vector<double> x(static_cast<std::size_t>(Features::size));
+    Features::extract(pinnquad::InputHistory<Features, double>{}.lasting(present), x.data());
+    return x;
+  };
+  return range;
+}
+
 template <class Stack>
 bool fly(const std::vector<char>& block, const std::vector<char>& other, const std::string& folder) {
   Stack stack;
@@ -65,7 +89,7 @@ bool fly(const std::vector<char>& block, const std::vector<char>& other, const s
   const auto airframe = pinnquad::airframe_value<typename Stack::Model::Vehicle, double>();
   const Vehicle vehicle(airframe);
   const double volts = trained_voltage();
-  const auto range = programs::range_of_header<typename Stack::Model>();
+  const auto range = range_of_header<typename Stack::Model>();
   const auto held = programs::eight_for(airframe, 0, range);
   if (!held) return std::printf("%s: the envelope holds no figure-eight\n", Stack::name), false;
   const pinnquad::FigureEight<double>& eight = *held;

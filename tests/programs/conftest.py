@@ -265,22 +265,6 @@ def compiler(request):
 
 
 @pytest.fixture(scope="session")
-def fly_export(compiler, flags):
-    """fly_export(header, folder): the program that flies this export, compiled in that folder."""
-
-    def build(header, folder="fly_export"):
-        Program("cmake")("-G Ninja -DCMAKE_BUILD_TYPE=Release -S", SOURCE / "tools/fly_export", "-B", folder,
-                         f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_CXX_FLAGS={' '.join(flags)}",
-                         f"-DPINNQUAD_WARNINGS_AS_ERRORS={'ON' if compiler.werror else 'OFF'}",
-                         "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG",
-                         f"-DPINNQUAD_MODEL_HEADER={Path(header).resolve()}")
-        Program("cmake")("--build", folder)
-        return Program(Path(folder, "fly_export").resolve())
-
-    return build
-
-
-@pytest.fixture(scope="session")
 def recorded(request):
     """recorded(path): a log of the reference folder."""
 

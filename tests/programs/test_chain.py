@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""fly -> train -> judge -> export -> fly the export, small; and the same seed gives the same bits."""
+"""fly -> train -> judge -> export, small; and the same seed gives the same bits. own_airframe compiles an export."""
 import re
-import shutil
 from pathlib import Path
 
 import pytest
 from conftest import report_of, same_bytes
-from hostile import Case, left_alone, refused, try_all
-from test_hostile import UNREADABLE
 
 PARTS = "part_1.csv part_2.csv part_3.csv"
 
@@ -28,24 +25,6 @@ def trained(pinnquad, flight, tmp_path_factory):
     folder = tmp_path_factory.mktemp("trained")
     return folder, pinnquad(f"train {flight} --seeds 2 --epochs 8 --threads 2 --out .",
                             cwd=folder).out
-
-
-@pytest.fixture(scope="module")
-def exported(trained, fly_export, tmp_path_factory):
-    """The program that flies the export: a project of its own, from a folder of any name."""
-    folder = tmp_path_factory.mktemp("exported")
-    odd = folder / 'a @place@ "of"; its own'
-    odd.mkdir()
-    shutil.copy(trained[0] / "model.hpp", odd)
-    program = fly_export(odd / "model.hpp", folder / "fly_export")
-    same_bytes(trained[0] / "model.hpp", folder / "fly_export/include/model.hpp")
-    return program
-
-
-@pytest.fixture(scope="module")
-def later(made, other):
-    """Weights of a later training, of another flight."""
-    return made(f"train {other} --out . --seeds 1 --epochs 6")
 
 
 def test_trained(pinnquad, trained):
@@ -102,58 +81,3 @@ def test_several_flights(pinnquad, flight, other):
     pinnquad.refused(f"train --out e part_1.csv {other}", keyword="3 flights")
     pinnquad.refused("train --out e part_1.csv part_1.csv part_2.csv", keyword="same flight")
     pinnquad.refused("train --out e part_1.csv part_2.csv", keyword="2200 rows")
-
-
-def test_flown(exported, trained):
-    """8 epochs need not fly well."""
-    said = exported("--replay", trained[0] / "replay.txt", code=(0, 1)).out
-    assert re.search("self test .*: ok", said) and ": agrees" in said and "weights zeroed" in said, said
-
-
-def test_replay_files(exported, trained, flight):
-    exported.refused("--replay", flight, at="flight.csv:1", keyword="pinnquad-replay")
-    Path("truncated.txt").write_bytes((trained[0] / "replay.txt").read_bytes()[:5000])
-    exported.refused("--replay truncated.txt", at="truncated.txt:*:*", keyword="number")
-    # of motions that the model answers none of, nothing agrees
-    head, *rows = (trained[0] / "replay.txt").read_text().splitlines()
-    beyond = [" ".join([*row.split()[:3], "1e6", *row.split()[4:]]) for row in rows]  # rad/s^2, about x
-    Path("beyond.txt").write_text("\n".join([head, *beyond, ""]))
-    said = exported("--replay beyond.txt", code=1).out
-    assert f"{len(rows)} outside" in said and ": DISAGREES" in said and ": agrees" not in said, said
-
-
-def test_later_weights(exported, trained, later, flight):
-    """As a block, flown by the program that was built for the first."""
-    assert (trained[0] / "model.block").read_bytes() != (later / "model.block").read_bytes()
-    said = exported("--replay", later / "replay.txt", "--block", later / "model.block", code=(0, 1)).out
-    assert re.search("block .*model.block, .* bytes", said), said
-    assert re.search("self test .*: ok", said) and ": agrees" in said, said
-    assert ": DISAGREES" in exported("--replay", later / "replay.txt", code=(0, 1)).out
-    Path("cut.block").write_bytes((later / "model.block").read_bytes()[:1000])
-    for block, why in ("cut.block", "block_truncated"), (flight, "block_incompatible"), ("none.block",
-                                                                                         "no such readable file"):
-        exported.refused("--replay", later / "replay.txt", "--block", block, at=Path(block).name, keyword=why)
-
-
-def export_cases():
-    for path in [*UNREADABLE, "in/sticks.csv", "in/model.block"]:
-        yield left_alone("fly_export --replay", path)
-        if path != "in/model.block":
-            yield left_alone("fly_export --replay in/replay.txt --block", path)
-    for words in "", "--block in/model.block", "--replay in/replay.txt x", "--replay", "--no-such-option":
-        yield refused(f"fly_export {words}")
-    yield Case("fly_export --help", around="closed_stdout")
-    yield Case("fly_export --version", around="full_stdout")
-
-
-def test_hostile(exported, later, flight, pinnquad, work):
-    given = work / "given"
-    given.mkdir()
-    pinnquad("fly --samples 40 --record-sticks sticks.csv --out short.csv", cwd=given)
-    (given / "empty.csv").touch()
-    (given / "nul.csv").write_bytes(b"time_s\0,v_north_m_s\n")
-    (given / "binary.csv").write_bytes(Path(pinnquad).read_bytes()[:3000])
-    (given / "one_line.csv").write_text((given / "sticks.csv").read_text().replace("\n", " "))
-    for file in later / "replay.txt", later / "model.block", flight:
-        shutil.copy(file, given)
-    assert try_all(export_cases(), {"fly_export": exported}, given, work) >= 50

@@ -8,13 +8,10 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/features/features.hpp"
-#include "pinnquad/features/input_history.hpp"
 
 namespace programs {
 
@@ -80,26 +77,5 @@ struct ModelRange {
     return nullptr;
   }
 };
-
-/// The motions that an exported model answers.
-template <class Model>
-ModelRange range_of_header() {
-  using Features = typename Model::Features;
-  ModelRange range;
-  for (std::size_t i = 0; i < std::size_t(Features::size); ++i) {
-    range.features.push_back({Features::names[i], Features::units[i], static_cast<double>(Model::envelope_lower[i]),
-                              static_cast<double>(Model::envelope_upper[i]),
-                              pinnquad::detail::is_column<Features>(static_cast<int>(i))});
-  }
-  range.of = [](const ModelRange::Motion& motion) {
-    typename pinnquad::InputHistory<Features, double>::Present present{};
-    static_cast<pinnquad::MotionInputs<double>&>(present) = motion;
-    if constexpr (std::is_base_of_v<ModelRange::Motion, decltype(present)>) present.altitude_m = motion.altitude_m;
-    std::vector<double> x(static_cast<std::size_t>(Features::size));
-    Features::extract(pinnquad::InputHistory<Features, double>{}.lasting(present), x.data());
-    return x;
-  };
-  return range;
-}
 
 }  // namespace programs
