@@ -4,20 +4,25 @@
 #include <string>
 #include <vector>
 
-#include "airframe/airframe_command.hpp"
 #include "command_line/best_build.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/interrupt.hpp"
-#include "convert/convert_command.hpp"
-#include "flight/fly_command.hpp"
-#include "identify/identify_command.hpp"
-#include "import/import_command.hpp"
-#include "loop/loop_command.hpp"
-#include "model/block_command.hpp"
-#include "model/certify_command.hpp"
-#include "model/evaluate_command.hpp"
-#include "model/replay_command.hpp"
-#include "training/train_command.hpp"
+
+namespace programs {  // <name>_command.cpp in the rooms
+
+Command fly_command(CLI::App& program);
+Command import_command(CLI::App& program);
+Command identify_command(CLI::App& program);
+Command train_command(CLI::App& program);
+Command evaluate_command(CLI::App& program);
+Command certify_command(CLI::App& program);
+Command replay_command(CLI::App& program);
+Command loop_command(CLI::App& program);
+Command block_command(CLI::App& program);
+Command convert_command(CLI::App& program);
+Command airframe_command(CLI::App& program);
+
+}  // namespace programs
 
 namespace {
 

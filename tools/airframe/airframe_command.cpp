@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Lists the airframes that the program knows, checks one from a file, writes one as a file or as a C++ struct.
 //   pinnquad airframe list | check FILE.toml | convert NAME|FILE.toml --out FILE.toml|FILE.hpp
-#include "airframe/airframe_command.hpp"
-
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -98,7 +96,9 @@ int convert(const AirframeOptions& options) {
 
 }  // namespace
 
-programs::Command programs::airframe_command(CLI::App& program) {
+namespace programs {
+
+Command airframe_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("airframe", "Lists, checks and converts airframes");
   line->footer(
       footer("  pinnquad airframe list\n"
@@ -142,3 +142,5 @@ programs::Command programs::airframe_command(CLI::App& program) {
                                          {other, [options] { return convert(*options); }}};
   return {line, [commands] { return run_chosen(commands); }};
 }
+
+}  // namespace programs

@@ -119,20 +119,4 @@ inline void read_before_required([[maybe_unused]] CLI::App& app) {
 #endif
 }
 
-/// Adds --version and parses. Empty to go on; else the exit code: --help and --version have been printed, or one line
-/// says what is wrong.
-inline std::optional<int> parse_command_line(CLI::App& app, int argument_count, char** arguments) {
-  refuse_empty_values(app);
-  app.set_version_flag("--version", app.get_name() + " (pinnquad) " + PINNQUAD_VERSION);
-  read_before_required(app);
-  try {
-    app.parse(argument_count, arguments);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    complain(app.get_name().c_str(), error.what());
-    return exit_bad_input;
-  }
-  return {};
-}
-
 }  // namespace programs

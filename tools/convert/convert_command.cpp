@@ -4,8 +4,6 @@
 //   pinnquad convert net.onnx --features features.toml --out my_model
 //   pinnquad convert my_model/model.block --out net.onnx
 //   pinnquad convert flight.csv --out features.toml
-#include "convert/convert_command.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -19,6 +17,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"
@@ -209,7 +208,9 @@ int convert(const ConvertOptions& options) {
 
 }  // namespace
 
-programs::Command programs::convert_command(CLI::App& program) {
+namespace programs {
+
+Command convert_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "convert", "Makes a model of a network that was trained elsewhere, or a network for elsewhere of a model");
   const auto options = std::make_shared<ConvertOptions>();
@@ -236,3 +237,5 @@ programs::Command programs::convert_command(CLI::App& program) {
       "Exit codes: 0; 2 bad input or a file that can't be read or written; 130 interrupted.");
   return {line, [options] { return convert(*options); }};
 }
+
+}  // namespace programs

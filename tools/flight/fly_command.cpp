@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Flies a simulated quadrotor on one of the paper's flights and writes the recorded flight as CSV.
 //   pinnquad fly d1 --out flight.csv --seed 1
-#include "flight/fly_command.hpp"
-
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "airframe/choice.hpp"
+#include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/interrupt.hpp"
@@ -356,10 +355,14 @@ int run(const FlyOptions& options) {
 
 }  // namespace
 
-programs::Command programs::fly_command(CLI::App& program) {
+namespace programs {
+
+Command fly_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "fly", "Flies a simulated quadrotor on one of the paper's three flights and records it as CSV");
   const auto options = std::make_shared<FlyOptions>();
   add_options(*line, *options);
   return {line, [options] { return run(*options); }};
 }
+
+}  // namespace programs

@@ -2,8 +2,6 @@
 // Finds the vehicle that flew flights or logs: thrust, turning, drag, lag, each with an interval; writes it as an
 // airframe file.
 //   pinnquad identify flight.ulg --mapping px4 --mass 1.2 --out vehicle.toml
-#include "identify/identify_command.hpp"
-
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -121,7 +119,9 @@ int run(const IdentifyOptions& options) {
 
 }  // namespace
 
-programs::Command programs::identify_command(CLI::App& program) {
+namespace programs {
+
+Command identify_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "identify", "Finds the vehicle that flew: thrust, turning, drag, lag, with intervals, and an airframe file");
   const auto options = std::make_shared<IdentifyOptions>();
@@ -166,3 +166,5 @@ programs::Command programs::identify_command(CLI::App& program) {
             return run(*options);
           }};
 }
+
+}  // namespace programs

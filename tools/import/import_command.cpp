@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Makes one dataset of flight logs, and says what each step cost.
 //   pinnquad import flight.ulg --mapping px4 --airframe mine.toml --out dataset
-#include "import/import_command.hpp"
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
@@ -107,7 +105,9 @@ int run(const ImportOptions& options) {
 
 }  // namespace
 
-programs::Command programs::import_command(CLI::App& program) {
+namespace programs {
+
+Command import_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("import", "Makes a dataset of flight logs: ULog, ulog2csv, CSV");
   const auto options = std::make_shared<ImportOptions>();
   add_paths(*line, "logs", options->logs, "LOG", "ULog files, CSV tables, folders of ulog2csv or of ULog files");
@@ -136,3 +136,5 @@ programs::Command programs::import_command(CLI::App& program) {
       "Exit codes: 0; 2 bad input or a file that can't be read or written; 130 interrupted, nothing written.");
   return {line, [options] { return run(*options); }};
 }
+
+}  // namespace programs

@@ -3,8 +3,6 @@
 // ships, under conditions that they do not know of.
 //   pinnquad loop my_model/model.block --trajectory circle --column battery_voltage=15.2
 //   pinnquad loop my_model/model.block --controllers adaptive,indi --conditions calm,payload
-#include "loop/loop_command.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -17,6 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/listed.hpp"
@@ -189,7 +188,9 @@ int loop(const LoopOptions& options) {
 
 }  // namespace
 
-programs::Command programs::loop_command(CLI::App& program) {
+namespace programs {
+
+Command loop_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "loop", "Flies a model in a closed loop in the simulator, from its block, without compiling");
   const auto options = std::make_shared<LoopOptions>();
@@ -223,3 +224,5 @@ programs::Command programs::loop_command(CLI::App& program) {
       "interrupted.");
   return {line, [options] { return loop(*options); }};
 }
+
+}  // namespace programs

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Says what a model block holds: it describes itself (docs/blocks.md).
 //   pinnquad block my_model/model.block
-#include "model/block_command.hpp"
-
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -11,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "command_line/command.hpp"
 #include "model/given_model.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "training/certificate_words.hpp"
@@ -129,7 +128,9 @@ int describe(const BlockOptions& options) {
 
 }  // namespace
 
-programs::Command programs::block_command(CLI::App& program) {
+namespace programs {
+
+Command block_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("block", "Says what a model block holds: it describes itself");
   const auto options = std::make_shared<BlockOptions>();
   add_model(*line, options->model);
@@ -141,3 +142,5 @@ programs::Command programs::block_command(CLI::App& program) {
       "Exit codes: 0; 2 bad input or a file that can't be read; 130 interrupted.");
   return {line, [options] { return describe(*options); }};
 }
+
+}  // namespace programs

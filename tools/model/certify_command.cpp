@@ -3,8 +3,6 @@
 // acceleration about its axis: proven by its structure (docs/certificate.md), or refuted by two motions inside its
 // envelope.
 //   pinnquad certify my_model/model.hpp
-#include "model/certify_command.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +15,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "model/findings.hpp"
 #include "model/given_model.hpp"
@@ -194,7 +193,9 @@ int certify(const CertifyOptions& options) {
 
 }  // namespace
 
-programs::Command programs::certify_command(CLI::App& program) {
+namespace programs {
+
+Command certify_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "certify", "Proves that a model's commands follow the angular acceleration that is asked, or refutes it");
   const auto options = std::make_shared<CertifyOptions>();
@@ -211,3 +212,5 @@ programs::Command programs::certify_command(CLI::App& program) {
       "interrupted.");
   return {line, [options] { return certify(*options); }};
 }
+
+}  // namespace programs

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Judges a model on recorded flights, by its block, which describes itself: no compiler is asked.
 //   pinnquad evaluate my_model/model.hpp flight.csv --json
-#include "model/evaluate_command.hpp"
-
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
@@ -70,7 +69,9 @@ int evaluate(const EvaluateOptions& options) {
 
 }  // namespace
 
-programs::Command programs::evaluate_command(CLI::App& program) {
+namespace programs {
+
+Command evaluate_command(CLI::App& program) {
   CLI::App* line =
       program.add_subcommand("evaluate", "Judges an exported model on recorded flights, without compiling");
   const auto options = std::make_shared<EvaluateOptions>();
@@ -90,3 +91,5 @@ programs::Command programs::evaluate_command(CLI::App& program) {
       "interrupted.");
   return {line, [options] { return evaluate(*options); }};
 }
+
+}  // namespace programs

@@ -2,8 +2,6 @@
 // Runs a model over a log, row by row, with the checks and guards that fly; or, where the log has what a flight stack's
 // core received, the core itself, and compares what it answers with what was logged.
 //   pinnquad replay flight.csv --model my_model/model.hpp
-#include "model/replay_command.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +15,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/listed.hpp"
@@ -238,7 +237,9 @@ int replay(const ReplayOptions& options) {
 
 }  // namespace
 
-programs::Command programs::replay_command(CLI::App& program) {
+namespace programs {
+
+Command replay_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "replay",
       "Runs a model, or a flight stack's core, over a log: who answered, what, and why not (a flight as a page in "
@@ -276,3 +277,5 @@ programs::Command programs::replay_command(CLI::App& program) {
       "docs/replay_log.md says what a core logs. A flight as a page in 3D: pinnquad fly --watch.");
   return {line, [options] { return replay(*options); }};
 }
+
+}  // namespace programs

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Ideas beyond the paper, each beside the paper's network on the same rows.
 //   pinnquad-study beyond --seeds 10 --out DIR
-#include "study/beyond_command.hpp"
-#include "training/training_flights.hpp"
-
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -18,6 +15,7 @@
 #include "study/beyond_models.hpp"
 #include "study/beyond_rows.hpp"
 #include "study/campaign.hpp"
+#include "training/training_flights.hpp"
 
 namespace {
 
@@ -142,7 +140,9 @@ int run(const BeyondOptions& options) {
 
 }  // namespace
 
-programs::Command programs::beyond_command(CLI::App& program) {
+namespace programs {
+
+Command beyond_command(CLI::App& program) {
   CLI::App* line =
       program.add_subcommand("beyond",
                              "What goes beyond the paper: structured models beside its network, condition by "
@@ -166,3 +166,5 @@ programs::Command programs::beyond_command(CLI::App& program) {
   line->footer(study::exit_codes);
   return {line, [options] { return run(*options); }};
 }
+
+}  // namespace programs

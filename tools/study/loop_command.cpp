@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Controllers compared in the loop, with equal gains and with those that a search finds.
 //   pinnquad-study loop my_model/model.block --controllers adaptive,indi --conditions calm,payload --out compared
-#include "study/loop_command.hpp"
-
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -12,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "command_line/command.hpp"
 #include "command_line/options.hpp"
 #include "loop/loop_model.hpp"
 #include "study/loop_campaign.hpp"

@@ -18,13 +18,18 @@
 #include "command_line/options.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "study/ablation.hpp"
-#include "study/beyond_command.hpp"
 #include "study/campaign.hpp"
 #include "study/flights.hpp"
-#include "study/loop_command.hpp"
 #include "study/summary.hpp"
 #include "study/table.hpp"
-#include "study/wrench_command.hpp"
+
+namespace programs {  // <name>_command.cpp
+Command beyond_command(CLI::App& program);
+}
+namespace study {
+programs::Command loop_command(CLI::App& program);
+programs::Command wrench_command(CLI::App& program);
+}  // namespace study
 
 namespace {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "study/wrench_command.hpp"
-
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -11,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "airframe/choice.hpp"
+#include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/folder_lock.hpp"

@@ -3,8 +3,6 @@
 //   pinnquad train flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
 //   pinnquad train DIR --hold-out-each trajectory --seeds 5 --out OUT
 //   pinnquad train DIR --mapping px4 --hold-out flight7 --out OUT
-#include "training/train_command.hpp"
-
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "airframe/choice.hpp"
+#include "command_line/command.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
@@ -104,7 +103,9 @@ void require_one_way(const CLI::App& line, const TrainOptions& options) {
 
 }  // namespace
 
-programs::Command programs::train_command(CLI::App& program) {
+namespace programs {
+
+Command train_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
       "train", "Trains models on flights, judges them on rows held out, exports the best as a header");
   struct Asked {
@@ -126,3 +127,5 @@ programs::Command programs::train_command(CLI::App& program) {
             return train(options);
           }};
 }
+
+}  // namespace programs

@@ -128,12 +128,6 @@ constexpr bool in_range(double value) noexcept {
   constexpr StatedRange range = stated_ranges[std::size_t(number)];
   return (range.or_zero && value >= 0 && value <= 0) || (value >= range.least && value <= range.most);
 }
-template <StatedNumber number, class Numbers>
-constexpr bool all_in_range(const Numbers& numbers, std::size_t count) noexcept {
-  bool sound = true;
-  for (std::size_t i = 0; i < count; ++i) sound = sound && in_range<number>(static_cast<double>(numbers[i]));
-  return sound;
-}
 
 /// In order, and in range. False for NaN.
 constexpr bool is_command_range(double lower, double upper) noexcept {
