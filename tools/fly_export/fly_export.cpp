@@ -185,7 +185,7 @@ double nanoseconds_per_prediction(const Inverse& inverse, const std::vector<Repl
 }
 
 using Distant = Quadrotor<double, StandardAtmosphere, QuadraticDrag>;
-using NearGround = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
+using NearGround = Quadrotor<double, StandardAtmosphere, QuadraticDrag, GroundEffect<Conyers>>;
 using Vehicle = std::conditional_t<knows_altitude, NearGround, Distant>;
 
 constexpr auto column_names = extra_column_names<Model::Features>;
