@@ -14,10 +14,10 @@
 #include "pinnquad/aero/inflow.hpp"
 #include "pinnquad/aero/wake.hpp"
 #include "pinnquad/aero/wind.hpp"
-#include "pinnquad/control/mppi.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/harder_quadrotor.hpp"
 #include "pinnquad/vehicle/lanes_of_vehicles.hpp"
+#include "study/mppi.hpp"
 #include "support/naive_eigen_network.hpp"
 #include "support/program.hpp"
 
@@ -113,8 +113,8 @@ void harder_step(benchmark::State& state) {
 
 /// Improvements of the plan on the way along the figure-eight: 512 flights of 40 steps each.
 void mppi(benchmark::State& state) {
-  Mppi<Quadrotor<float, StandardAtmosphere, QuadraticDrag>> controller(airframe_value<PaperQuadrotor, float>(),
-                                                                       paper_site<float>());
+  study::Mppi<Quadrotor<float, StandardAtmosphere, QuadraticDrag>> controller(airframe_value<PaperQuadrotor, float>(),
+                                                                              paper_site<float>());
   const FigureEight<float> eight;
   const auto sample = [&eight](double time_s) { return eight.sample(static_cast<float>(time_s)); };
   VehicleState<float> vehicle;
@@ -140,10 +140,10 @@ int main(int argc, char** argv) {
   register_naive_eigen(healthy_network());
   benchmark::RegisterBenchmark(
       "SimulationStep/full",
-      simulation_step<double, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
+      simulation_step<double, StandardAtmosphere, PeriodicWind, QuadraticDrag, GroundEffect<Conyers>>);
   benchmark::RegisterBenchmark(
       "SimulationStep/full_float",
-      simulation_step<float, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
+      simulation_step<float, StandardAtmosphere, PeriodicWind, QuadraticDrag, GroundEffect<Conyers>>);
   benchmark::RegisterBenchmark("SimulationStep/bare", simulation_step<double>);
   benchmark::RegisterBenchmark("SimulationStep/drag", simulation_step<double, StandardAtmosphere, QuadraticDrag>);
   benchmark::RegisterBenchmark(
@@ -154,9 +154,10 @@ int main(int argc, char** argv) {
   benchmark::RegisterBenchmark("SimulationStep/lanes_bare_float", lanes_step<float>);
   benchmark::RegisterBenchmark(
       "SimulationStep/lanes_full",
-      lanes_step<double, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
-  benchmark::RegisterBenchmark("SimulationStep/lanes_full_float",
-                               lanes_step<float, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>);
+      lanes_step<double, StandardAtmosphere, PeriodicWind, QuadraticDrag, GroundEffect<Conyers>>);
+  benchmark::RegisterBenchmark(
+      "SimulationStep/lanes_full_float",
+      lanes_step<float, StandardAtmosphere, PeriodicWind, QuadraticDrag, GroundEffect<Conyers>>);
   benchmark::RegisterBenchmark("Mppi/512x40", mppi);
   return run_benchmarks(argc, argv);
 }

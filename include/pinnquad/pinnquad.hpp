@@ -5,7 +5,6 @@
 #include "pinnquad/flight.hpp"  // first: it says which C++ is needed
 
 #include "pinnquad/control/autopilot/recorded_controller.hpp"
-#include "pinnquad/control/mppi.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/dataset.hpp"

@@ -41,7 +41,7 @@ static_assert(pinnquad::is_effect<pinnquad::QuadraticDrag>);
 static_assert(pinnquad::is_effect<pinnquad::ConstantWind>);
 static_assert(pinnquad::is_effect<pinnquad::PeriodicWind>);
 static_assert(pinnquad::is_effect<pinnquad::StandardAtmosphere>);
-static_assert(pinnquad::is_effect<pinnquad::ConyersGroundEffect>);
+static_assert(pinnquad::is_effect<pinnquad::GroundEffect<pinnquad::Conyers>>);
 static_assert(pinnquad::is_effect<Both>);
 static_assert(!pinnquad::is_effect<Nothing>);
 static_assert(!pinnquad::is_effect<WrongReturnType>);

@@ -190,10 +190,12 @@ TEST_CASE_TEMPLATE("Conyers: ordinary frames, taken and refused", Scalar, float,
   CHECK(status(450.0, 127.0) == pinnquad::Status::out_of_range);
   CHECK(status(450.0, 114.3) == pinnquad::Status::out_of_range);
   CHECK(status(std::numeric_limits<double>::quiet_NaN(), 114.3) == pinnquad::Status::out_of_range);
-  static_assert(pinnquad::ConyersGroundEffect{}.status(pinnquad::PaperQuadrotor::value<Scalar>()) ==
+  static_assert(pinnquad::GroundEffect<pinnquad::Conyers>{}.status(pinnquad::PaperQuadrotor::value<Scalar>()) ==
                 pinnquad::Status::ok);
-  static_assert(pinnquad::ConyersGroundEffect{}.status(pinnquad::Racer5Inch::value<Scalar>()) == pinnquad::Status::ok);
-  static_assert(pinnquad::ConyersGroundEffect{}.status(pinnquad::Crazyflie::value<Scalar>()) == pinnquad::Status::ok);
+  static_assert(pinnquad::GroundEffect<pinnquad::Conyers>{}.status(pinnquad::Racer5Inch::value<Scalar>()) ==
+                pinnquad::Status::ok);
+  static_assert(pinnquad::GroundEffect<pinnquad::Conyers>{}.status(pinnquad::Crazyflie::value<Scalar>()) ==
+                pinnquad::Status::ok);
 }
 
 TEST_CASE_TEMPLATE("a height that is NaN is not turned into a ratio", Scalar, float, double) {
@@ -215,7 +217,7 @@ TEST_CASE_TEMPLATE("the force: (r - 1) of the vertical part of rotors and drag, 
     const Vector3<Scalar> before = condition.rotors.force_N + condition.aerodynamic.force_N;
     const double vertical = static_cast<double>(pinnquad::body_to_world(condition.attitude, before)[2]);
     const double x = static_cast<double>(condition.height_above_ground_m) / 0.1143;
-    const Wrench<Scalar> wrench = pinnquad::CheesemanBennettGroundEffect{}.wrench(condition, airframe);
+    const Wrench<Scalar> wrench = pinnquad::GroundEffect<pinnquad::CheesemanBennett>{}.wrench(condition, airframe);
     const double expected = -(plain::cheeseman_bennett(std::max(x, 0.5)) - 1.0) * std::fabs(vertical);
     CHECK(wrench.force_N[0] == Scalar(0));
     CHECK(wrench.force_N[1] == Scalar(0));
@@ -231,13 +233,14 @@ TEST_CASE_TEMPLATE("upside down the force still acts along body -z: the absolute
   condition.attitude = {Scalar(0), Scalar(1), Scalar(0), Scalar(0)};
   condition.height_above_ground_m = Scalar(0.5 * 0.1143);
   condition.rotors.force_N = {Scalar(0), Scalar(0), Scalar(-15)};
-  const Wrench<Scalar> wrench = pinnquad::CheesemanBennettGroundEffect{}.wrench(condition, airframe_690<Scalar>());
+  const Wrench<Scalar> wrench =
+      pinnquad::GroundEffect<pinnquad::CheesemanBennett>{}.wrench(condition, airframe_690<Scalar>());
   CHECK(static_cast<double>(wrench.force_N[2]) == doctest::Approx(-5.0).epsilon(1e-5));
 }
 
 TEST_CASE_TEMPLATE("bound to an airframe the effect gives the same force, bit by bit", Scalar, float, double) {
   const pinnquad::Airframe<Scalar> airframe = airframe_690<Scalar>();
-  const auto bound = pinnquad::detail::bound_effect(pinnquad::ConyersGroundEffect{}, airframe);
+  const auto bound = pinnquad::detail::bound_effect(pinnquad::GroundEffect<pinnquad::Conyers>{}, airframe);
   pinnquad::test::RandomStates random(81);
   for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
     RotorCondition<Scalar> condition;
@@ -245,13 +248,13 @@ TEST_CASE_TEMPLATE("bound to an airframe the effect gives the same force, bit by
     condition.height_above_ground_m = random.scalar<Scalar>(-0.1, 1.3);
     condition.rotors.force_N = random.vector<Scalar>(20.0);
     CHECK(bound.wrench(condition, airframe).force_N ==
-          pinnquad::ConyersGroundEffect{}.wrench(condition, airframe).force_N);
+          pinnquad::GroundEffect<pinnquad::Conyers>{}.wrench(condition, airframe).force_N);
   }
   static_assert(pinnquad::uses_rotor_wrench<std::decay_t<decltype(bound)>>);
 }
 
 // ground effect tells the inverse that it uses the rotors
-static_assert(pinnquad::uses_rotor_wrench<pinnquad::CheesemanBennettGroundEffect>);
-static_assert(pinnquad::uses_rotor_wrench<pinnquad::ConyersGroundEffect>);
-static_assert(pinnquad::makes_wrench<pinnquad::ConyersGroundEffect>);
-static_assert(!pinnquad::changes_surroundings<pinnquad::ConyersGroundEffect>);
+static_assert(pinnquad::uses_rotor_wrench<pinnquad::GroundEffect<pinnquad::CheesemanBennett>>);
+static_assert(pinnquad::uses_rotor_wrench<pinnquad::GroundEffect<pinnquad::Conyers>>);
+static_assert(pinnquad::makes_wrench<pinnquad::GroundEffect<pinnquad::Conyers>>);
+static_assert(!pinnquad::changes_surroundings<pinnquad::GroundEffect<pinnquad::Conyers>>);

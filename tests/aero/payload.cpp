@@ -49,9 +49,9 @@ TEST_CASE("hover with a payload: its share more of command, also in ground effec
   heavy.mass_kg *= 1.2;
   pinnquad::State<double> low;
   low.position_m[2] = 0.877 - 0.3;
-  const Quadrotor<double, pinnquad::ConyersGroundEffect, Payload> loaded(airframe, pinnquad::paper_site<double>(), {},
-                                                                         {0.2 * airframe.mass_kg, 0});
-  const Quadrotor<double, pinnquad::ConyersGroundEffect> heavier(heavy, pinnquad::paper_site<double>(), {});
+  const Quadrotor<double, pinnquad::GroundEffect<pinnquad::Conyers>, Payload> loaded(
+      airframe, pinnquad::paper_site<double>(), {}, {0.2 * airframe.mass_kg, 0});
+  const Quadrotor<double, pinnquad::GroundEffect<pinnquad::Conyers>> heavier(heavy, pinnquad::paper_site<double>(), {});
   Commands<double> with{}, expected{};
   REQUIRE(inverse_commands(loaded, low, {}, 0.0, with) == Status::ok);
   REQUIRE(inverse_commands(heavier, low, {}, 0.0, expected) == Status::ok);

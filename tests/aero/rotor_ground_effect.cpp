@@ -35,7 +35,7 @@ TEST_CASE_TEMPLATE("level and still: the force of the one-ratio model, no torque
   for (int i = 1; i < 40; ++i) {
     const auto c = hovering<Scalar>(Scalar(0.05 * i), Scalar(3.7));
     const auto per_rotor = RotorGroundEffect<Conyers>{}.wrench(c, airframe);
-    const auto whole = pinnquad::ConyersGroundEffect{}.wrench(c, airframe);
+    const auto whole = pinnquad::GroundEffect<pinnquad::Conyers>{}.wrench(c, airframe);
     CHECK(std::fabs(static_cast<double>(per_rotor.force_N[2] - whole.force_N[2])) <= rounding<Scalar>(50));
     CHECK(pinnquad::test::norm(per_rotor.torque_N_m) <= rounding<Scalar>(50));
   }
@@ -122,7 +122,7 @@ TEST_CASE("bound to an airframe it gives the same wrench, bit by bit, and tells 
   CHECK(bound.wrench(c, airframe).force_N == RotorGroundEffect<Conyers>{}.wrench(c, airframe).force_N);
   static_assert(pinnquad::uses_rotor_wrench<std::decay_t<decltype(bound)>>);
   static_assert(!pinnquad::has_thrust_branches<RotorGroundEffect<Conyers>>);
-  static_assert(pinnquad::has_thrust_branches<pinnquad::ConyersGroundEffect>);
+  static_assert(pinnquad::has_thrust_branches<pinnquad::GroundEffect<pinnquad::Conyers>>);
 }
 
 TEST_CASE_TEMPLATE("tilted on the ground: hubs at, next to and under it make at most a third more lift", Scalar, float,

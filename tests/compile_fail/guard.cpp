@@ -76,8 +76,8 @@ struct NeedsTime {
   }
 };
 
-using NearGround = Quadrotor<float, ConyersGroundEffect>;
-using InGusts = Quadrotor<float, ConyersGroundEffect, PeriodicWind>;
+using NearGround = Quadrotor<float, GroundEffect<Conyers>>;
+using InGusts = Quadrotor<float, GroundEffect<Conyers>, PeriodicWind>;
 
 #if defined(NO_OUTPUT_CHECK)
 using Policies = Guard<FiniteInputs, TrainingEnvelope, ClipCommands<>>;

@@ -2,7 +2,7 @@
 // CASE CHECK_RETURNS_A_BOOL: pinnquad: a policy's check.. must be
 // CASE CHECK_TAKES_A_VALUE: pinnquad: a policy's check.. must be
 // CASE CHECK_IS_NOT_CONST: pinnquad: a policy's check.. must be
-#include "pinnquad/data/settings.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace {
 

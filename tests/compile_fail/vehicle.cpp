@@ -179,7 +179,7 @@ int main() {
   pinnquad::VehicleState<double> state;
   pinnquad::Status status = pinnquad::Quadrotor<double, Whole>(quadrotor.airframe()).step(state, {}, 0.001);
 #if !defined(NOT_AN_AIRFRAME)
-  using NearGround = pinnquad::Quadrotor<double, pinnquad::ConyersGroundEffect>;
+  using NearGround = pinnquad::Quadrotor<double, pinnquad::GroundEffect<pinnquad::Conyers>>;
   if (status == pinnquad::Status::ok) status = NearGround::of<Vehicle>().step(state, {}, 0.001);
 #endif
   return static_cast<int>(quadrotor.status()) + static_cast<int>(status) +

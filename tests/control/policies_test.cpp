@@ -43,7 +43,7 @@ void hover(Policy& policy, double command, double duration_s, std::uint64_t& now
   }
 }
 
-double answer_of(HandsOver<double, Learning, Learning>& both, std::uint64_t now_us, Status& status) {
+double answer_of(InverseWithReserve<double, Learning, Learning>& both, std::uint64_t now_us, Status& status) {
   Commands<double> commands{};
   status = both(State<double>{}, Accelerations<double>{}, now_us, commands);
   return commands[0];
@@ -109,7 +109,7 @@ TEST_CASE("a bias beyond its bound hands over to the second with its own, and co
   BiasSettings<double> narrow;
   narrow.most = {0.1, 0.1, 0.1, 0.1};
   const Learning first(Scripted{0.5}, airframe(), narrow), second(Scripted{0.6}, airframe());
-  HandsOver<double, Learning, Learning> both(first, second);
+  InverseWithReserve<double, Learning, Learning> both(first, second);
   std::uint64_t now_us = 1'000'000;
   Status status = Status::ok;
   hover(both, 0.51, 3, now_us);  // 0.04 of the sum: within its bound
@@ -132,7 +132,7 @@ TEST_CASE("a bias that is beyond its bound now and then hands over too") {
   narrow.most = {0.1, 0.1, 0.1, 0.1};
   narrow.time_constants_s = {0, 0, 0, 0};
   const Learning first(Scripted{0.5}, airframe(), narrow), second(Scripted{0.6}, airframe());
-  HandsOver<double, Learning, Learning> both(first, second);
+  InverseWithReserve<double, Learning, Learning> both(first, second);
   std::uint64_t now_us = 1'000'000;
   const auto swing = [&](double within_s) {
     for (int i = 0; i < 40; ++i) {
@@ -152,8 +152,8 @@ TEST_CASE("a bias that is beyond its bound now and then hands over too") {
 TEST_CASE("where both stand at their bounds, as with a payload that none carries, the first stays") {
   BiasSettings<double> narrow;
   narrow.most = {0.1, 0.1, 0.1, 0.1};
-  HandsOver<double, Learning, Learning> both(Learning(Scripted{0.5}, airframe(), narrow),
-                                             Learning(Scripted{0.5}, airframe(), narrow));
+  InverseWithReserve<double, Learning, Learning> both(Learning(Scripted{0.5}, airframe(), narrow),
+                                                      Learning(Scripted{0.5}, airframe(), narrow));
   std::uint64_t now_us = 1'000'000;
   hover(both, 0.65, 5, now_us);
   CHECK(both.second().bias().status() == Status::limited);
@@ -161,13 +161,13 @@ TEST_CASE("where both stand at their bounds, as with a payload that none carries
 }
 
 TEST_CASE("where the first declines the second answers; where both do, its Status and nothing") {
-  HandsOver<double, Learning, Learning> one(Learning(Scripted{0.5, Status::outside_envelope}, airframe()),
-                                            Learning(Scripted{0.6}, airframe()));
+  InverseWithReserve<double, Learning, Learning> one(Learning(Scripted{0.5, Status::outside_envelope}, airframe()),
+                                                     Learning(Scripted{0.6}, airframe()));
   Status status = Status::ok;
   CHECK(answer_of(one, 0, status) == 0.6);
   CHECK(status == Status::fell_back);
-  HandsOver<double, Learning, Learning> none(Learning(Scripted{0.5, Status::outside_envelope}, airframe()),
-                                             Learning(Scripted{0.6, Status::no_solution}, airframe()));
+  InverseWithReserve<double, Learning, Learning> none(Learning(Scripted{0.5, Status::outside_envelope}, airframe()),
+                                                      Learning(Scripted{0.6, Status::no_solution}, airframe()));
   CHECK(answer_of(none, 0, status) == 0.0);
   CHECK(status == Status::outside_envelope);
 }

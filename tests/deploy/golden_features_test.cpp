@@ -29,7 +29,9 @@ using ModelOf = TrainedModel<Network<float, InputSize<Features::size>, Dense<4>>
 using Shown = Network<float, InputSize<residual_inputs<PhysicsFeatures>>, Dense<8>, Tanh, Dense<4>>;
 using Structured = TrainedModel<MonotonePredictor<PhysicsFeatures, Shown>,
                                 Context<PhysicsFeatures, PaperQuadrotor, AxisCommandOutputs>>;
-using Bound = MonotoneResidual<PhysicsFeatures, Shown>;
+template <class Base, class Residual>
+Residual residual_of(const Sum<Base, Residual>&);
+using Bound = decltype(residual_of(MonotonePredictor<PhysicsFeatures, Shown>{}));
 constexpr auto first_bound = static_cast<std::size_t>(MonotoneBase<PhysicsFeatures>::parameter_count);
 
 /// Random weights; the bounds of its residual are its least and largest on the rows, as a training sets them.

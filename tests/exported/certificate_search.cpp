@@ -380,8 +380,8 @@ struct Refuted {
 };
 
 template <class Scalar>
-Refuted search_of(const RunTimeModel<Scalar>& model, const ProvenSigns& proof,
-                  const std::optional<Certificate>& certificate, int pairs, std::mt19937_64& engine) {
+Refuted search_of(const RunTimeModel<Scalar>& model, const ProvenSigns& proof, int pairs, std::mt19937_64& engine) {
+  const std::optional<Certificate>& certificate = proof.structure;
   SumsInDouble<Scalar> sums_of(model);
   RandomStates random(engine());
   const auto taps = std::size_t(model.features().window().taps);
@@ -431,9 +431,9 @@ Refuted search_of(const RunTimeModel<Scalar>& model, const ProvenSigns& proof,
   return found;
 }
 
-std::string kind_of(const BlockModel& model, SignProof by) {
-  if (by == SignProof::affinity) return "affine";
-  const char* added = by == SignProof::path_bound ? "path-bounded" : "residual";
+std::string kind_of(const BlockModel& model, const ProvenSigns& proof) {
+  if (!proof.structure) return "affine";
+  const char* added = proof.path_bounded ? "path-bounded" : "residual";
   return (model.network().part_count() == 1 ? "base alone" : added) +
          std::string(model.with([](const auto& own) { return own.records().base.count != 0; }) ? " on a base" : "") +
          (model.features().window().taps > 1 ? ", window" : "") + (model.columns().empty() ? "" : ", column");
@@ -458,10 +458,8 @@ TEST_CASE("a search over random feature sets, structures and weights refutes no 
     const std::optional<ProvenSigns> proof = model.proven_signs();
     if (!proof) continue;
     ++proven;
-    ++kinds[kind_of(model, proof->by)];
-    const auto certificate = proof->by == SignProof::affinity ? std::nullopt : model.certificate();
-    const Refuted found =
-        model.with([&](const auto& own) { return search_of(own, *proof, certificate, pairs, engine); });
+    ++kinds[kind_of(model, *proof)];
+    const Refuted found = model.with([&](const auto& own) { return search_of(own, *proof, pairs, engine); });
     all.pairs += found.pairs;
     all.fell += found.fell;
     all.below_proven += found.below_proven;

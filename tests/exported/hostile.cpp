@@ -258,7 +258,7 @@ auto attack(const char* name, const InverseDynamics<Model, Guard>& inverse, std:
 template <class Scalar>
 using Calm = Quadrotor<Scalar, QuadraticDrag>;
 template <class Scalar>
-using Gusty = Quadrotor<Scalar, StandardAtmosphere, PeriodicWind, QuadraticDrag, ConyersGroundEffect>;
+using Gusty = Quadrotor<Scalar, StandardAtmosphere, PeriodicWind, QuadraticDrag, GroundEffect<Conyers>>;
 
 template <class Vehicle, class Scalar>
 AnalyticInverse<Vehicle> by_formula() {

@@ -22,11 +22,13 @@ using pinnquad::Vector3;
 using pinnquad::test::SmallModel;
 
 template <class Scalar>
-using Everything = pinnquad::Quadrotor<
-    Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind, pinnquad::BatterySag,
-    pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::Inflow, pinnquad::BladeFlapping, pinnquad::Wake,
-    pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>, pinnquad::ConyersGroundEffect,
-    pinnquad::CheesemanBennettGroundEffect, pinnquad::RotorFault, pinnquad::GroundContact, pinnquad::Payload>;
+using Everything =
+    pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind,
+                        pinnquad::BatterySag, pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::Inflow,
+                        pinnquad::BladeFlapping, pinnquad::Wake,
+                        pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>,
+                        pinnquad::GroundEffect<pinnquad::Conyers>, pinnquad::GroundEffect<pinnquad::CheesemanBennett>,
+                        pinnquad::RotorFault, pinnquad::GroundContact, pinnquad::Payload>;
 
 /// Commands that no rotor can do, but a network may ask for.
 struct WideCommands {

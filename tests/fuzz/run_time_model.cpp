@@ -101,11 +101,6 @@ std::vector<std::string_view> texts_of(const Bytes& bytes) {
   while (RunTimeFeatures::take_text(rest, text)) texts.push_back(text);
   return texts;
 }
-std::vector<std::string_view> every_second(const std::vector<std::string_view>& texts, std::size_t first) {
-  std::vector<std::string_view> result;
-  for (std::size_t i = first; i < texts.size(); i += 2) result.push_back(texts[i]);
-  return result;
-}
 
 /// The records, where the bytes hold some and scalars behind them; empty else.
 std::vector<test::Record> records_in(const Bytes& block) {
@@ -149,11 +144,14 @@ std::uint64_t hash_of(std::vector<test::Record> records) {
   const std::size_t flown = airframe_number_count * (is_double ? 16u : 12u);
   detail::Fnv1a fnv;
   fnv.absorb_text(text_of(bytes(BlockRecord::answer)));
-  const auto output_units = every_second(outputs, 2);
-  if (output_units.empty()) return 0;
-  detail::absorb_shape(fnv, every_second(features, 0), every_second(features, 1), every_second(outputs, 1),
-                       output_units, text_of(vehicle).substr(std::min(flown, vehicle.size())),
-                       motor_torque_signs(airframe));
+  const auto pairs = [](const auto& texts, std::size_t first) {
+    return [&texts, first](std::size_t i) {
+      return detail::NameAndUnit{texts[first + 2 * i], texts[first + 2 * i + 1]};
+    };
+  };
+  if (outputs.size() < 3) return 0;
+  detail::absorb_shape(fnv, features.size() / 2, pairs(features, 0), (outputs.size() - 1) / 2, pairs(outputs, 1),
+                       text_of(vehicle).substr(std::min(flown, vehicle.size())), motor_torque_signs(airframe));
   return fnv.hash;
 }
 

@@ -51,7 +51,7 @@ TEST_CASE("what the answer varies with is the most that an effect does") {
   CHECK(AnalyticInverse<Quadrotor<float>>::varies_with == VariesWith::motion);
   CHECK(AnalyticInverse<Quadrotor<float, QuadraticDrag, RotorDrag, ConstantWind>>::varies_with == VariesWith::motion);
   CHECK(AnalyticInverse<Quadrotor<float, QuadraticDrag, StandardAtmosphere>>::varies_with == VariesWith::height);
-  CHECK(AnalyticInverse<Quadrotor<float, ConyersGroundEffect>>::varies_with == VariesWith::height);
+  CHECK(AnalyticInverse<Quadrotor<float, GroundEffect<Conyers>>>::varies_with == VariesWith::height);
   CHECK(AnalyticInverse<Quadrotor<float, StandardAtmosphere, PeriodicWind>>::varies_with == VariesWith::place_and_time);
   CHECK(AnalyticInverse<Quadrotor<float, DrydenTurbulence<>>>::varies_with == VariesWith::place_and_time);
 }
@@ -59,7 +59,7 @@ TEST_CASE("what the answer varies with is the most that an effect does") {
 TEST_CASE("effects that say they don't vary with place and time don't") {
   RandomStates random(201);
   const auto anywhere = vehicle(ConstantWind{{3.0, -2.0, 0.5}}, QuadraticDrag{}, RotorDrag{});
-  const auto by_height = vehicle(StandardAtmosphere{}, QuadraticDrag{}, ConyersGroundEffect{});
+  const auto by_height = vehicle(StandardAtmosphere{}, QuadraticDrag{}, GroundEffect<Conyers>{});
   for (int i = 0; i < test::draws; ++i) {
     auto state = random.state<double>();
     const auto commands = random.commands<double>();
@@ -77,8 +77,8 @@ TEST_CASE("effects that say they don't vary with place and time don't") {
 TEST_CASE("from the network's inputs: the same commands as from the whole state") {
   RandomStates random(202);
   const auto anywhere = vehicle(ConstantWind{{3.0, -2.0, 0.5}}, QuadraticDrag{}, RotorDrag{});
-  const auto by_height = vehicle(StandardAtmosphere{}, QuadraticDrag{}, ConyersGroundEffect{});
-  const auto gusty = vehicle(StandardAtmosphere{}, PeriodicWind{}, QuadraticDrag{}, ConyersGroundEffect{});
+  const auto by_height = vehicle(StandardAtmosphere{}, QuadraticDrag{}, GroundEffect<Conyers>{});
+  const auto gusty = vehicle(StandardAtmosphere{}, PeriodicWind{}, QuadraticDrag{}, GroundEffect<Conyers>{});
   for (int i = 0; i < test::draws; ++i) {
     auto state = random.state<double>();
     state.position_m[2] = 0.877 - random.scalar<double>(0.3, 8.0);  // near the ground, where height matters

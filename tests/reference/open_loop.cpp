@@ -185,8 +185,8 @@ TEST_CASE("whole runs under constant commands: RK4 against the simulator's first
   fly_run<>("wind_const_yaw90", 1.1e-4);
   fly_run<>("wind_periodic", 1.7e-4);
   fly_run<pinnquad::test::SimulatorGroundEffect>("ge1_descend", 7.3e-4);
-  fly_run<pinnquad::ConyersGroundEffect>("ge2_descend", 6e-4);
-  fly_run<pinnquad::ConyersGroundEffect>("ge2_tilted", 2.5e-3);
+  fly_run<pinnquad::GroundEffect<pinnquad::Conyers>>("ge2_descend", 6e-4);
+  fly_run<pinnquad::GroundEffect<pinnquad::Conyers>>("ge2_tilted", 2.5e-3);
 }
 
 TEST_CASE("short runs: a better integrator stays within the simulator's first order") {

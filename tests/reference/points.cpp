@@ -221,7 +221,7 @@ void recover(const ReferenceTable& table, const char* file, std::size_t fewest_r
 TEST_CASE("the inverse recovers the simulator's commands") {
   recover<>(ReferenceTable("points/points_ge0.csv"), "points_ge0.csv", 800);
   recover<pinnquad::test::SimulatorGroundEffect>(ReferenceTable("points/points_ge1.csv"), "points_ge1.csv", 800);
-  recover<pinnquad::ConyersGroundEffect>(ReferenceTable("points/points_ge2.csv"), "points_ge2.csv", 800);
+  recover<pinnquad::GroundEffect<pinnquad::Conyers>>(ReferenceTable("points/points_ge2.csv"), "points_ge2.csv", 800);
 }
 
 TEST_SUITE("shipped rows") {
@@ -236,6 +236,6 @@ TEST_SUITE("shipped rows") {
     using pinnquad::test::shipped_rows;
     recover<>(shipped_rows("points_ge0.csv"), "points_ge0.csv", 80);
     recover<pinnquad::test::SimulatorGroundEffect>(shipped_rows("points_ge1.csv"), "points_ge1.csv", 80);
-    recover<pinnquad::ConyersGroundEffect>(shipped_rows("points_ge2.csv"), "points_ge2.csv", 80);
+    recover<pinnquad::GroundEffect<pinnquad::Conyers>>(shipped_rows("points_ge2.csv"), "points_ge2.csv", 80);
   }
 }

@@ -10,7 +10,7 @@ using namespace pinnquad;
 
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using detail::SmoothedFlights;
 
 /// Rows every `period_s` whose rates and commands are sines.
 Flight sines(double period_s, double duration_s, double rad_s) {

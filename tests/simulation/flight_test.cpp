@@ -265,7 +265,7 @@ TEST_CASE("a vehicle that can hardly climb flies within what it can") {
 }
 
 TEST_CASE("effects compose: ground effect near the ground changes the flight") {
-  const Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect> quadrotor(
+  const Quadrotor<double, StandardAtmosphere, QuadraticDrag, GroundEffect<Conyers>> quadrotor(
       airframe_value<PaperQuadrotor, double>(), paper_site<double>(), {}, {}, {});
   FlightPlan plan;
   plan.samples = 40;

@@ -83,7 +83,7 @@ TEST_CASE("better than the formula of a vehicle whose parameters are a tenth wro
 
 namespace {
 
-using NearGround = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
+using NearGround = Quadrotor<double, StandardAtmosphere, QuadraticDrag, GroundEffect<Conyers>>;
 
 /// The altitude given to the model.
 struct Altimeter {

@@ -191,8 +191,8 @@ TEST_CASE("one effect beside the usual ones is not passed over") {
 
 TEST_CASE("fly 2 s, switch, fly on: the bits of the compile-time vehicle from that state on") {
   check_switch(GroundEffectModel::none, fixed<>());
-  check_switch(GroundEffectModel::cheeseman_bennett, fixed(CheesemanBennettGroundEffect{}));
-  check_switch(GroundEffectModel::conyers, fixed(ConyersGroundEffect{}));
+  check_switch(GroundEffectModel::cheeseman_bennett, fixed(GroundEffect<CheesemanBennett>{}));
+  check_switch(GroundEffectModel::conyers, fixed(GroundEffect<Conyers>{}));
 }
 
 TEST_CASE("a choice that stays is a flight of the compile-time vehicle") {
@@ -205,8 +205,8 @@ TEST_CASE("a choice that stays is a flight of the compile-time vehicle") {
   const std::uint64_t none = hash(switched()), conyers = hash(switched(GroundEffectModel::conyers));
   const std::uint64_t cheeseman_bennett = hash(switched(GroundEffectModel::cheeseman_bennett));
   CHECK(none == hash(fixed<>()));
-  CHECK(cheeseman_bennett == hash(fixed(CheesemanBennettGroundEffect{})));
-  CHECK(conyers == hash(fixed(ConyersGroundEffect{})));
+  CHECK(cheeseman_bennett == hash(fixed(GroundEffect<CheesemanBennett>{})));
+  CHECK(conyers == hash(fixed(GroundEffect<Conyers>{})));
   CHECK(conyers != none);
   CHECK(conyers != cheeseman_bennett);
   CHECK(cheeseman_bennett != none);

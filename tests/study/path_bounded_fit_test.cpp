@@ -54,7 +54,7 @@ Flight flight_of(const Shape& shape, std::uint64_t seed) {
 }
 
 struct Fitted {
-  ResidualFit<PhysicsFeatures, PathBoundedPredictor<PhysicsFeatures, Seeing>> fit;
+  ResidualFit<MonotoneBase<PhysicsFeatures>, PathBoundedPredictor<PhysicsFeatures, Seeing>> fit;
   Certificate certificate;
   double blind_error;
 };

@@ -69,7 +69,7 @@ template <class Scalar>
 plain::Result evaluate(const Airframe<Scalar>& airframe, const plain::Point& p) {
   switch (p.ground_effect) {
     case plain::GroundEffect::cheeseman_bennett: return evaluate_with<Scalar, SimulatorGroundEffect>(airframe, p);
-    case plain::GroundEffect::conyers: return evaluate_with<Scalar, ConyersGroundEffect>(airframe, p);
+    case plain::GroundEffect::conyers: return evaluate_with<Scalar, GroundEffect<Conyers>>(airframe, p);
     case plain::GroundEffect::none: break;
   }
   return evaluate_with<Scalar>(airframe, p);

@@ -48,7 +48,7 @@ TEST_CASE("inverse(forward(u)) = u with tilted uneven rotors, products of inerti
   const Airframe<double> a = uneven_airframe<double>();
   const Quadrotor<double, StandardAtmosphere, Sag, QuadraticDrag> plain(a);
   const Quadrotor<double, StandardAtmosphere, Sag, QuadraticDrag, RotorDrag> dragged(a);
-  const Quadrotor<double, Sag, RotorGroundEffect<CheesemanBennett>, CheesemanBennettGroundEffect> low(a);
+  const Quadrotor<double, Sag, RotorGroundEffect<CheesemanBennett>, GroundEffect<CheesemanBennett>> low(a);
   REQUIRE(plain.status() == Status::ok);
   RandomStates random(91);
   for (int draw = 0; draw < draws; ++draw) {

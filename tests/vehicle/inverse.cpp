@@ -36,10 +36,10 @@ template <class Scalar>
 using Airborne = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::PeriodicWind, pinnquad::QuadraticDrag>;
 template <class Scalar>
 using NearGround =
-    Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag, pinnquad::ConyersGroundEffect>;
+    Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag, pinnquad::GroundEffect<pinnquad::Conyers>>;
 template <class Scalar>
-using NearGroundCheesemanBennett =
-    Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag, pinnquad::CheesemanBennettGroundEffect>;
+using NearGroundCheesemanBennett = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag,
+                                             pinnquad::GroundEffect<pinnquad::CheesemanBennett>>;
 
 template <class Scalar>
 Airborne<Scalar> airborne() {
@@ -49,7 +49,8 @@ Airborne<Scalar> airborne() {
 template <class Scalar>
 NearGround<Scalar> near_ground() {
   return NearGround<Scalar>(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(),
-                            pinnquad::StandardAtmosphere{}, pinnquad::QuadraticDrag{}, pinnquad::ConyersGroundEffect{});
+                            pinnquad::StandardAtmosphere{}, pinnquad::QuadraticDrag{},
+                            pinnquad::GroundEffect<pinnquad::Conyers>{});
 }
 
 /// The thrust equation is solved in closed form; where its branches meet, either may be taken within the rounding.
@@ -95,7 +96,7 @@ TEST_CASE_TEMPLATE("commands -> motion -> commands in ground effect", Scalar, fl
   RandomStates random(102);
   const NearGroundCheesemanBennett<Scalar> cheeseman_bennett(
       pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), pinnquad::StandardAtmosphere{},
-      pinnquad::QuadraticDrag{}, pinnquad::CheesemanBennettGroundEffect{});
+      pinnquad::QuadraticDrag{}, pinnquad::GroundEffect<pinnquad::CheesemanBennett>{});
   const NearGround<Scalar> conyers = near_ground<Scalar>();
   for (int draw = 0; draw < draws; ++draw) {
     State<Scalar> state = random.state<Scalar>();
@@ -255,7 +256,8 @@ TEST_CASE_TEMPLATE("commands -> motion -> commands, rotor by rotor: ground effec
 
 TEST_CASE_TEMPLATE("rotor drag tilts what ground effect sees: the two together still have one exact inverse", Scalar,
                    float, double) {
-  using Vehicle = Quadrotor<Scalar, pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::ConyersGroundEffect>;
+  using Vehicle =
+      Quadrotor<Scalar, pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::GroundEffect<pinnquad::Conyers>>;
   RandomStates random(108);
   const Vehicle vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), {}, {}, {});
   for (int draw = 0; draw < draws; ++draw) {

@@ -137,7 +137,7 @@ TEST_CASE_TEMPLATE("each lane of a step has the bits of the vehicle alone: bare"
 TEST_CASE_TEMPLATE("each lane of a step has the bits of the vehicle alone: air, wind, drag, ground", Wide, OneRegister,
                    Floats) {
   check_lanes<Wide>(StandardAtmosphere{}, ConstantWind{{1, -2, 0.5}}, PeriodicWind{}, QuadraticDrag{},
-                    ConyersGroundEffect{});
+                    GroundEffect<Conyers>{});
 }
 
 TEST_CASE_TEMPLATE("each lane of a step has the bits of the vehicle alone: all other effects", Wide, OneRegister,
@@ -145,7 +145,7 @@ TEST_CASE_TEMPLATE("each lane of a step has the bits of the vehicle alone: all o
   std::mt19937_64 engine(3);
   check_lanes<Wide>(DrydenTurbulence<>(engine, DrydenParameters::low_altitude(2.0, 30.0), 3.0),
                     BatterySag{12.6, 10.5, 8.0}, LinearDamping{}, RotorDrag{}, Inflow{}, BladeFlapping{}, Wake{},
-                    RotorGroundEffect<CheesemanBennett>{}, CheesemanBennettGroundEffect{}, RotorFault{1, 0.7, 5.0},
+                    RotorGroundEffect<CheesemanBennett>{}, GroundEffect<CheesemanBennett>{}, RotorFault{1, 0.7, 5.0},
                     GroundContact{}, Payload{0.3, 4.0});
 }
 

@@ -40,13 +40,13 @@ template <class Scalar>
 using Bare = Quadrotor<Scalar>;
 template <class Scalar>
 using Full = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::QuadraticDrag,
-                       pinnquad::CheesemanBennettGroundEffect>;
+                       pinnquad::GroundEffect<pinnquad::CheesemanBennett>>;
 
 template <class Scalar>
 Full<Scalar> full_vehicle(const std::array<double, 3>& wind) {
   return Full<Scalar>(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(),
                       pinnquad::StandardAtmosphere{}, pinnquad::ConstantWind{wind}, pinnquad::QuadraticDrag{},
-                      pinnquad::CheesemanBennettGroundEffect{});
+                      pinnquad::GroundEffect<pinnquad::CheesemanBennett>{});
 }
 
 /// A state low enough for ground effect, not next to its pole.
@@ -691,7 +691,7 @@ TEST_CASE_TEMPLATE("an effect whose values or model do not hold makes the vehicl
     rotor.y_m *= Scalar(450.0 / 690.0);
   }
   f450.propeller_diameter_m = Scalar(0.254);
-  using Near = Quadrotor<Scalar, pinnquad::ConyersGroundEffect>;
+  using Near = Quadrotor<Scalar, pinnquad::GroundEffect<pinnquad::Conyers>>;
   CHECK(Near(f450).status() == Status::out_of_range);
   CHECK(refuses(Near(f450), VehicleState<Scalar>{}, Scalar(0.001), Status::out_of_range));
   CHECK(Near(airframe).status() == Status::ok);

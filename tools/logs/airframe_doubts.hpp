@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/dynamics/allocation.hpp"
 #include "pinnquad/io/decimal.hpp"
@@ -19,7 +20,6 @@ constexpr double speed_of_sound_m_s = 340.3;  ///< standard atmosphere, sea leve
 
 /// Of the blades' tips at command 1.
 inline double tip_speed_m_s(const Airframe<double>& airframe) {
-  constexpr double pi = 3.141592653589793;
   return pi * airframe.propeller_diameter_m * airframe.max_rotor_speed_rev_s;
 }
 

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "pinnquad/core/scalar_math.hpp"
+
 namespace pinnquad::logs {
 namespace {
 
@@ -226,7 +228,6 @@ std::vector<double> savitzky_golay(const std::vector<double>& series, const std:
 
 PowerSpectrum power_spectrum(const std::vector<double>& series, const std::vector<IndexRange>& segments,
                              double period_s, std::size_t length) {
-  constexpr double pi = 3.14159265358979323846;
   const std::size_t half = length / 2;
   PowerSpectrum spectrum;
   if (half < 2 || !(period_s > 0)) return spectrum;
@@ -274,7 +275,7 @@ PowerSpectrum power_spectrum(const std::vector<double>& series, const std::vecto
 SavitzkyGolayChoice choose_savitzky_golay(const std::vector<double>& series, const std::vector<IndexRange>& segments,
                                           double period_s, int derivative) {
   constexpr std::size_t shortest_piece = 32, longest_piece = 1024, most_half_window = 100;
-  constexpr double longest_half_window_s = 0.5, pi = 3.14159265358979323846;
+  constexpr double longest_half_window_s = 0.5;
   SavitzkyGolayChoice choice;
   require_savitzky_golay(choice.filter, derivative);
   choice.bandwidth_Hz = 0.5 / period_s;

@@ -49,7 +49,7 @@ struct PolicyParts {
   }
   template <class First, class Second>
   static AnyPolicy handing_over(const First& first, const Second& second) {
-    return AnyPolicy(pinnquad::HandsOver<double, First, Second>(first, second));
+    return AnyPolicy(pinnquad::InverseWithReserve<double, First, Second>(first, second));
   }
   template <class Guard, class Compose>
   AnyPolicy of_model(const Guard& guard, const Compose& compose) const {

@@ -47,7 +47,7 @@ void print_bias(const BlockModel& model) {
 
 void print_thrust(const BlockModel& model, const Findings& findings) {
   if (!findings.thrust) return;
-  const Certificate& certificate = *findings.certificate;
+  const Certificate& certificate = *findings.certificate();
   const double own = hover_thrust_slope(model.airframe()), floor = least_thrust_share * own;
   const double held = certificate.held_thrust_slope;
   std::printf("thrust     the sum of the commands by the thrust asked: %.6f s^2/m, %.2f of the airframe's own in hover",
@@ -98,7 +98,7 @@ void print_rounding(const Findings& findings) {
     return;
   }
   std::printf("rounding   turns no order of two accelerations of the present: a sum may rest, it never falls\n");
-  const Certificate& certificate = *findings.certificate;
+  const Certificate& certificate = *findings.certificate();
   if (!std::isfinite(certificate.rounding)) return;
   const double* step = certificate.sure_step;
   std::printf(
@@ -128,13 +128,13 @@ void print_text(const BlockModel& model, const Findings& findings) {
   if (findings.proven()) {
     const AxisSlopes own = hover_slopes(model.airframe());
     std::printf("proven     each signed sum of the commands rises with the angular acceleration about its axis%s\n",
-                !findings.certificate ? ""
-                                      : (findings.by_path_bound() ? ", and each rotor goes the right way"
-                                                                  : " and with no other, before a limit "
-                                                                    "clips a command"));
+                findings.certificate() == nullptr ? ""
+                                                  : (findings.by_path_bound() ? ", and each rotor goes the right way"
+                                                                              : " and with no other, before a limit "
+                                                                                "clips a command"));
     std::printf("           %s\n", programs::least_share_in_words(findings.proof->held_slope, own).c_str());
     std::printf("for        all finite features, inside the envelope and outside of it\n");
-    std::printf("by         %s\n", in_words(findings.proof->by));
+    std::printf("by         %s\n", in_words(*findings.proof));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::printf("%s%-5s %.6f s^2/rad, %.2f of the airframe's own in hover", axis == 0 ? "slope      " : "           ",
                   axes[axis], findings.proof->held_slope[axis], findings.proof->held_slope[axis] / own[axis]);
@@ -145,8 +145,8 @@ void print_text(const BlockModel& model, const Findings& findings) {
     for (const std::string& doubt : programs::slope_doubts(findings.proof->held_slope, own)) {
       std::printf("warning    %s\n", doubt.c_str());
     }
-    if (findings.certificate) {
-      std::printf("bound      %s\n", programs::bound_in_words(*findings.certificate).c_str());
+    if (findings.certificate() != nullptr) {
+      std::printf("bound      %s\n", programs::bound_in_words(*findings.certificate()).c_str());
       print_bias(model);
       print_thrust(model, findings);
       if (findings.past_or_future) print_with_rates(findings);

@@ -14,17 +14,14 @@ using namespace pinnquad;
 
 static constexpr std::array<const char*, 3> axes = {Roll::name, Pitch::name, Yaw::name};
 
-const char* in_words(SignProof by) {
-  switch (by) {
-    case SignProof::structure:
-      return "structure: an affine base in which each signed sum sees the angular acceleration about its own axis "
-             "alone, with a slope above 0, and a residual that sees none";
-    case SignProof::path_bound:
-      return "structure and path bound: an affine base in which each signed sum sees the angular acceleration about "
-             "its own axis alone, and a network whose weights leave the slopes above 0 on every path from it";
-    case SignProof::affinity: return "the model is affine: its derivatives are the same everywhere";
+const char* in_words(const ProvenSigns& proof) {
+  if (!proof.structure) return "the model is affine: its derivatives are the same everywhere";
+  if (!proof.path_bounded) {
+    return "structure: an affine base in which each signed sum sees the angular acceleration about its own axis "
+           "alone, with a slope above 0, and a residual that sees none";
   }
-  return "";
+  return "structure and path bound: an affine base in which each signed sum sees the angular acceleration about "
+         "its own axis alone, and a network whose weights leave the slopes above 0 on every path from it";
 }
 
 bool has_base(const BlockModel& model) {
@@ -78,10 +75,7 @@ Findings findings_of(const BlockModel& model, double seconds, std::uint64_t seed
   }
   findings.uncounted = uncounted_features(model);
   findings.proof = model.proven_signs();
-  if (findings.proven() && findings.proof->by != SignProof::affinity) {
-    findings.certificate = model.certificate();
-    add_responses(model, findings);
-  }
+  if (findings.certificate() != nullptr) add_responses(model, findings);
   if (findings.proven()) return findings;
   const SearchedModel searched = searched_model(model);
   findings.search = search_counterexample(searched, seed, seconds);
@@ -100,13 +94,13 @@ static nlohmann::json by_axis(const std::array<double, 3>& values) {
 }
 
 double least_thrust_slope(const Findings& findings) {
-  return findings.certificate->held_thrust_slope + findings.thrust->residual_least[0];
+  return findings.certificate()->held_thrust_slope + findings.thrust->residual_least[0];
 }
 
 static void add_thrust(const BlockModel& model, const Findings& findings, nlohmann::json& report) {
   if (!findings.thrust) return;
-  report["thrust_slope"] = findings.certificate->thrust_slope;
-  report["held_thrust_slope"] = findings.certificate->held_thrust_slope;
+  report["thrust_slope"] = findings.certificate()->thrust_slope;
+  report["held_thrust_slope"] = findings.certificate()->held_thrust_slope;
   report["airframe_thrust_slope"] = hover_thrust_slope(model.airframe());
   report["least_thrust_slope"] = least_thrust_slope(findings);  // null where nobody can bound it
 }
@@ -127,16 +121,16 @@ nlohmann::json findings_json(const BlockModel& model, const Findings& findings) 
                            {"airframe", model.airframe_name()},
                            {"verdict", verdict_of(findings)}};
   if (findings.proven()) {
-    report["argument"] = in_words(findings.proof->by);
+    report["argument"] = in_words(*findings.proof);
     report["inputs"] = "all finite features";
     report["slope"] = by_axis(findings.proof->slope);
     report["held_slope"] = by_axis(findings.proof->held_slope);
     report["airframe_slope"] = by_axis(hover_slopes(model.airframe()));
   }
-  if (findings.proven() && findings.certificate) {
-    report["residual_lower"] = findings.certificate->residual_lower;
-    report["residual_upper"] = findings.certificate->residual_upper;
-    report["command_bound"] = findings.certificate->command_bound;
+  if (findings.certificate() != nullptr) {
+    report["residual_lower"] = findings.certificate()->residual_lower;
+    report["residual_upper"] = findings.certificate()->residual_upper;
+    report["command_bound"] = findings.certificate()->command_bound;
     if (const auto times_s = bias_time_constants_s(model)) {
       report["bias"] = {{"time_constants_s", *times_s}, {"widens_command_bound", largest_bias(model.airframe())}};
     }
@@ -145,13 +139,13 @@ nlohmann::json findings_json(const BlockModel& model, const Findings& findings) 
       const auto& response = findings.with_rates[axis];
       if (response) report["held_slope_with_body_rates"][axes[axis]] = response->least(axis + 1);
     }
-    if (std::isfinite(findings.certificate->rounding)) {
-      const double* step = findings.certificate->sure_step;
-      report["rounding"] = findings.certificate->rounding;
+    if (std::isfinite(findings.certificate()->rounding)) {
+      const double* step = findings.certificate()->sure_step;
+      report["rounding"] = findings.certificate()->rounding;
       report["sure_step"] = by_axis({step[0], step[1], step[2]});
     }
     if (findings.by_path_bound()) {
-      const double* other = findings.certificate->other_sums;
+      const double* other = findings.certificate()->other_sums;
       report["other_sums"] = by_axis({other[0], other[1], other[2]});
     }
   }

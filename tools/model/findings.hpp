@@ -21,8 +21,7 @@ namespace programs {
 /// All that is known of a model in the end.
 struct Findings {
   std::optional<pinnquad::ProvenSigns> proof;
-  std::optional<pinnquad::Certificate> certificate;  ///< of a structure
-  std::optional<Response> thrust;                    ///< of the structure, to more thrust at all instants
+  std::optional<Response> thrust;  ///< of the structure, to more thrust at all instants
   /// Of a window, to an acceleration that is held with the body rates that it makes; where it can be worked out.
   std::array<std::optional<Response>, 3> with_rates;
   Search search;                   ///< where nothing is proven
@@ -34,7 +33,9 @@ struct Findings {
   std::vector<std::string> uncounted;
 
   bool proven() const { return proof.has_value(); }
-  bool by_path_bound() const { return proof && proof->by == pinnquad::SignProof::path_bound; }
+  /// Of a proof by structure; else null.
+  const pinnquad::Certificate* certificate() const { return proof && proof->structure ? &*proof->structure : nullptr; }
+  bool by_path_bound() const { return proof && proof->path_bounded; }
 };
 
 /// Searches for `seconds` of the processor where nothing is proven. Throws InputError for a model that is asked no
@@ -42,7 +43,7 @@ struct Findings {
 Findings findings_of(const pinnquad::BlockModel& model, double seconds, std::uint64_t seed);
 
 /// The proof's argument.
-const char* in_words(pinnquad::SignProof by);
+const char* in_words(const pinnquad::ProvenSigns& proof);
 
 /// True for a model with the base of a residual.
 bool has_base(const pinnquad::BlockModel& model);

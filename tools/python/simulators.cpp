@@ -371,8 +371,8 @@ SwitchedEffects effects_of(py::handle given) {
   switch_effect(effects, BladeFlapping{}, is_on("flapping"));
   switch_effect(effects, Wake{}, is_on("wake"));
   switch_effect(effects, RotorGroundEffect<CheesemanBennett>{}, ground_effect == "rotors");
-  switch_effect(effects, CheesemanBennettGroundEffect{}, ground_effect == "cheeseman_bennett");
-  switch_effect(effects, ConyersGroundEffect{}, ground_effect == "conyers");
+  switch_effect(effects, GroundEffect<CheesemanBennett>{}, ground_effect == "cheeseman_bennett");
+  switch_effect(effects, GroundEffect<Conyers>{}, ground_effect == "conyers");
   switch_effect(effects, fault, fault.share < 1);
   switch_effect(effects, legs, is_on("ground_contact"));
   switch_effect(effects, payload, payload.mass_kg > 0);

@@ -23,6 +23,12 @@ using PearsonTerm = pinnquad::Weighted<pinnquad::PearsonCorrelation<Axis>, pinnq
 using PearsonLoss = pinnquad::PhysicsInformed<pinnquad::Mse, PearsonTerm<pinnquad::Roll>, PearsonTerm<pinnquad::Pitch>,
                                               PearsonTerm<pinnquad::Yaw>>;
 
+/// Batches in recorded order: consecutive pairs of a batch are consecutive in time.
+struct TimeOrderedBatches {
+  template <class Engine>
+  void arrange(std::vector<int>&, Engine&) const {}
+};
+
 /// A variant with the recipe's batch order and no batch norm, or others.
 template <class Order = pinnquad::ShuffledBatches, class BatchNorm = Without, class Loss, class OptimizerType>
 void add_variant(std::vector<Contender>& all, const std::string& id, const std::string& differs, const Loss& loss,
@@ -58,7 +64,7 @@ void add_trainings(std::vector<Contender>& all, const std::string& id, const Los
     add_variant<Shuffled, With>(all, id + "_batch_norm_decay_" + name, "batch norm", loss, optimizer(decay));
   }
   add_variant(all, id + "_adamw_0.01", "decoupled weight decay", loss, adam_w(0.01));
-  add_variant<pinnquad::TimeOrderedBatches>(all, id + "_time_ordered", "batch order", loss, optimizer(own_decay));
+  add_variant<TimeOrderedBatches>(all, id + "_time_ordered", "batch order", loss, optimizer(own_decay));
 }
 
 std::vector<Contender> ablation() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Models that are monotone by construction (training/structured/residual_fit.hpp) and no recipe's: with other features,
 // on the rigid body's inverse, with a network that is shown the angular acceleration.
+#include <algorithm>
 #include <optional>
 #include <random>
 
@@ -14,8 +15,8 @@ namespace study {
 
 namespace {
 
-/// `Bound`: of the residual, as it stands in the answer; `fit_answer(context, map, how, engine, goes_on)` trains.
-template <class Features, class Outputs, class Bound, class Fit>
+/// `fit_answer(context, map, how, engine, goes_on)` trains.
+template <class Features, class Outputs, class Fit>
 BeyondTraining train_structured(const BeyondTask& task, Slopes slopes, const Fit& fit_answer) {
   using Context = pinnquad::Context<Features, pinnquad::GivenAirframe, Outputs>;
   const auto context = pinnquad::make_context<Context>(task.split.train, task.airframe);
@@ -31,7 +32,7 @@ BeyondTraining train_structured(const BeyondTask& task, Slopes slopes, const Fit
   auto answer = fit.predictor;
   if (!fit.residual_kept) {
     auto* const residual = std::copy(fit.base.parameters.begin(), fit.base.parameters.end(), answer.parameters.begin());
-    for (int k = 0; k < 4; ++k) residual[Bound::lower + k] = residual[Bound::upper + k] = 0;
+    std::fill_n(residual, 8, 0.0F);  // the bounds of its four outputs stand first
   }
   const auto model = pinnquad::make_trained_model(answer, context, task.split.train);
   return {std::make_shared<programs::BlockNetwork>(pinnquad::ground_model(model), task.split.train), fit.residual_kept,
@@ -47,7 +48,7 @@ template <class Outputs>
 BeyondTraining train_monotone(const BeyondTask& task, Slopes slopes) {
   using Features = pinnquad::PhysicsFeatures;
   using Network = Residual<pinnquad::residual_inputs<Features>>;
-  return train_structured<Features, Outputs, pinnquad::MonotoneResidual<Features, Network>>(
+  return train_structured<Features, Outputs>(
       task, slopes, [&task](const auto& context, const auto& map, const auto& how, auto& engine, const auto& goes_on) {
         return pinnquad::fit_monotone<Network>(context, task.split.train, task.split.validation, map, how, engine,
                                                goes_on);
@@ -67,7 +68,7 @@ BeyondTraining train_structured_on_rigid_body(const BeyondTask& task, Slopes slo
 BeyondTraining train_path_bounded(const BeyondTask& task) {
   using Features = pinnquad::InverseFeatures;
   using Network = Residual<Features::size>;
-  return train_structured<Features, pinnquad::AxisCommandOutputs, pinnquad::Saturated<pinnquad::PathBounded<Network>>>(
+  return train_structured<Features, pinnquad::AxisCommandOutputs>(
       task, Slopes::learnt,
       [&task](const auto& context, const auto& map, const auto& how, auto& engine, const auto& goes_on) {
         return fit_path_bounded<Network>(context, task.split.train, task.split.validation, map, how, engine, goes_on);

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "loop/policy_parts.hpp"
-#include "pinnquad/control/mppi.hpp"
 #include "study/known_drag.hpp"
 #include "study/l1_adaptive.hpp"
+#include "study/mppi.hpp"
 #include "study/wind_filter.hpp"
 #include "study/wrench_block.hpp"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pinnquad/core/random.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
@@ -121,9 +122,9 @@ Flight mirrored(const Flight& flight, const pinnquad::Airframe<Scalar>& airframe
 /// angle instead. Throws std::invalid_argument for a flight with extra columns.
 template <class Engine>
 Flight turned_at_random(const Flight& flight, Engine& engine) {
-  constexpr double pi = 3.14159265358979323846;
-  return detail::changed_flight(
-      flight, "turned", [&](const Sample& sample) { return turned(sample, pinnquad::uniform(engine, -pi, pi)); });
+  return detail::changed_flight(flight, "turned", [&](const Sample& sample) {
+    return turned(sample, pinnquad::uniform(engine, -pinnquad::pi, pinnquad::pi));
+  });
 }
 inline Flight turned(const Flight& flight, double yaw_rad) {
   return detail::changed_flight(flight, "turned", [&](const Sample& sample) { return turned(sample, yaw_rad); });

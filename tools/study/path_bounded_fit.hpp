@@ -97,11 +97,12 @@ auto fit_path_bounded(const ContextType& context, const RowSet& training, const 
                       double share = 0.9) {
   using Features = typename ContextType::Features;
   using Predictor = PathBoundedPredictor<Features, Residual>;
-  const ResidualKind kind = pinnquad::detail::residual_kind<Residual, Predictor, MonotoneBase<Features>>(
+  using Base = MonotoneBase<Features>;
+  const auto kind = pinnquad::detail::residual_kind<Residual, Predictor, Base>(
       true, [projection = detail::PathProjection<ContextType, Residual>(context, map, share)](auto& trained) {
         trained.project(projection);
       });
-  return pinnquad::detail::with_types<Features, Predictor>(
+  return pinnquad::detail::with_types<Base, Predictor>(
       pinnquad::detail::fit_residual(fit_context(context), kind, training, validation, map, how, engine, goes_on));
 }
 

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 
 namespace programs {
@@ -49,7 +50,7 @@ class WelchSpectra {
         output_(length / 2),
         cross_(length / 2) {
     for (std::size_t i = 0; i < length; ++i) {
-      const double angle = 2 * pinnquad::detail::pi * static_cast<double>(i) / static_cast<double>(length);
+      const double angle = 2 * pinnquad::pi * static_cast<double>(i) / static_cast<double>(length);
       window_[i] = 0.5 * (1 - std::cos(angle));
       window_power_ += window_[i] * window_[i];
     }
@@ -172,10 +173,10 @@ inline FollowedRange followed_range(const std::vector<SpectralBand>& bands) {
     gains += weight * bands[i].gain();
     weights += weight;
     double phase = bands[i].phase_rad();
-    while (phase - before > pinnquad::detail::pi) phase -= 2 * pinnquad::detail::pi;
-    while (phase - before < -pinnquad::detail::pi) phase += 2 * pinnquad::detail::pi;
+    while (phase - before > pinnquad::pi) phase -= 2 * pinnquad::pi;
+    while (phase - before < -pinnquad::pi) phase += 2 * pinnquad::pi;
     before = phase;
-    const double turn = 2 * pinnquad::detail::pi * bands[i].frequency_hz;
+    const double turn = 2 * pinnquad::pi * bands[i].frequency_hz;
     turned -= weight * turn * phase;
     squares += weight * turn * turn;
   }

@@ -472,10 +472,10 @@ class Training {
       return;
     }
     const Airframe<double>& airframe = plan_.airframe.value;
-    const std::optional<Certificate> structure = signs->by == SignProof::affinity ? std::nullopt : model.certificate();
+    const std::optional<Certificate>& structure = signs->structure;
     const AxisSlopes &slopes = signs->held_slope, own = hover_slopes(airframe);
     const double own_thrust = hover_thrust_slope(airframe);
-    report_.certified(*signs, structure, airframe, known);
+    report_.certified(*signs, airframe, known);
     const bool known_vehicle = vehicle_.is_known();
     std::string least, ratios;
     if (known_vehicle) {

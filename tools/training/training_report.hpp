@@ -288,9 +288,9 @@ class TrainingReport {
   }
 
   /// Of what was exported.
-  /// `structure`: of a model that has one, besides.
-  void certified(const pinnquad::ProvenSigns& signs, const std::optional<pinnquad::Certificate>& structure,
-                 const pinnquad::Airframe<double>& airframe, const pinnquad::SlopesOfSums& known) {
+  void certified(const pinnquad::ProvenSigns& signs, const pinnquad::Airframe<double>& airframe,
+                 const pinnquad::SlopesOfSums& known) {
+    const std::optional<pinnquad::Certificate>& structure = signs.structure;
     json_["certificate"] = {{"proven", true},
                             {"slope", detail::by_axis(signs.held_slope)},
                             {"airframe_slope", detail::by_axis(pinnquad::hover_slopes(airframe))},

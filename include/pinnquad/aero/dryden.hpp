@@ -103,7 +103,6 @@ class DrydenTurbulence {
   }
   /// Inverse of (2 atan x - x / (1 + x^2)) / pi, which rises from 0 to 1; by bisection in atan x.
   static double across_wave_number(double energy_below) noexcept {
-    constexpr double pi = 3.141592653589793;
     double low = 0, high = pi / 2;
     for (int i = 0; i < 60; ++i) {
       const double middle = (low + high) / 2, x = std::tan(middle);

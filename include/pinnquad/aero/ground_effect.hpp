@@ -267,8 +267,4 @@ struct RotorGroundEffect {
   }
 };
 
-/// The ground effects of the vehicle as a whole, by their ratio.
-using CheesemanBennettGroundEffect = GroundEffect<CheesemanBennett>;
-using ConyersGroundEffect = GroundEffect<Conyers>;
-
 }  // namespace pinnquad

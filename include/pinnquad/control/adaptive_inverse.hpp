@@ -160,12 +160,12 @@ class AdaptiveInverse {
 /// is at its bound now and then lacks as much on the mean as one that stays there: nine times as long within the bound
 /// makes good what was beyond it.
 template <class Scalar, class First, class Second>
-class HandsOver {
+class InverseWithReserve {
  public:
   static constexpr bool across_varies =
       pinnquad::across_varies<First, Scalar> || pinnquad::across_varies<Second, Scalar>;
 
-  HandsOver(const First& first, const Second& second, Scalar patience_s = Scalar(0.5)) noexcept
+  InverseWithReserve(const First& first, const Second& second, Scalar patience_s = Scalar(0.5)) noexcept
       : first_(first), second_(second), patience_s_(patience_s) {}
 
   const First& first() const noexcept { return first_; }

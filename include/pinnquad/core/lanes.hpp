@@ -52,19 +52,11 @@ PINNQUAD_ALWAYS_INLINE bool any_bit(const Truths& truths) noexcept {
   return any;
 #endif
 }
-}  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-
-inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// Lanes of a register of float or double.
-template <class Scalar>
-inline constexpr int native_lanes = detail::RegisterTypes<Scalar>::width;
 
 /// One truth per lane of Lanes<Scalar, Count>.
 template <class Scalar, int Count>
 struct LaneMask {
-  using Types = detail::RegisterTypes<Scalar>;
+  using Types = RegisterTypes<Scalar>;
   static constexpr int registers = Types::of(Count);
   typename Types::Truths part[static_cast<std::size_t>(registers)];
 
@@ -101,17 +93,26 @@ struct LaneMask {
   friend PINNQUAD_ALWAYS_INLINE bool any_of(const LaneMask& a) noexcept {
     auto truths = a.part[0];
     for (int i = 1; i < registers; ++i) truths |= a.part[i];
-    return detail::any_bit(truths);
+    return any_bit(truths);
   }
   friend PINNQUAD_ALWAYS_INLINE bool all_of(const LaneMask& a) noexcept { return !any_of(!a); }
 };
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// Lanes of a register of float or double.
+template <class Scalar>
+inline constexpr int native_lanes = detail::RegisterTypes<Scalar>::width;
 
 /// `Count` float or double values, whole registers of them.
 template <class ScalarType, int Count>
 struct Lanes {
   using Scalar = ScalarType;
   using Types = detail::RegisterTypes<Scalar>;
-  using Mask = LaneMask<Scalar, Count>;
+  using Mask = detail::LaneMask<Scalar, Count>;
   static constexpr int count = Count;
   static constexpr int registers = Types::of(Count);
   static_assert(Count > 0 && Count % Types::width == 0,
@@ -274,7 +275,7 @@ template <class Scalar, int Count>
 class [[nodiscard]] LaneStatus {
  public:
   using Types = detail::RegisterTypes<Scalar>;
-  using Mask = LaneMask<Scalar, Count>;
+  using Mask = detail::LaneMask<Scalar, Count>;
 
   LaneStatus() = default;
   PINNQUAD_ALWAYS_INLINE constexpr LaneStatus(Status everywhere) noexcept : part_{} {
@@ -308,7 +309,7 @@ class [[nodiscard]] LaneStatus {
 
 /// One Status or the other in each lane.
 template <class Scalar, int Count>
-PINNQUAD_ALWAYS_INLINE LaneStatus<Scalar, Count> select(const LaneMask<Scalar, Count>& mask, Status yes,
+PINNQUAD_ALWAYS_INLINE LaneStatus<Scalar, Count> select(const detail::LaneMask<Scalar, Count>& mask, Status yes,
                                                         Status no) noexcept {
   return select(mask, LaneStatus<Scalar, Count>(yes), LaneStatus<Scalar, Count>(no));
 }
@@ -316,7 +317,7 @@ PINNQUAD_ALWAYS_INLINE LaneStatus<Scalar, Count> select(const LaneMask<Scalar, C
 /// Vectors, and numbers of each rotor: each lane's own.
 template <class Scalar, int Count, int Rows, int Columns, int Options>
 PINNQUAD_ALWAYS_INLINE Eigen::Matrix<Lanes<Scalar, Count>, Rows, Columns, Options> select(
-    const LaneMask<Scalar, Count>& mask, const Eigen::Matrix<Lanes<Scalar, Count>, Rows, Columns, Options>& yes,
+    const detail::LaneMask<Scalar, Count>& mask, const Eigen::Matrix<Lanes<Scalar, Count>, Rows, Columns, Options>& yes,
     const Eigen::Matrix<Lanes<Scalar, Count>, Rows, Columns, Options>& no) noexcept {
   Eigen::Matrix<Lanes<Scalar, Count>, Rows, Columns, Options> result;
   for (int i = 0; i < Rows * Columns; ++i) result.data()[i] = select(mask, yes.data()[i], no.data()[i]);
@@ -325,7 +326,7 @@ PINNQUAD_ALWAYS_INLINE Eigen::Matrix<Lanes<Scalar, Count>, Rows, Columns, Option
 /// The same of numbers of each rotor.
 template <class Scalar, int Count, std::size_t Size>
 PINNQUAD_ALWAYS_INLINE std::array<Lanes<Scalar, Count>, Size> select(
-    const LaneMask<Scalar, Count>& mask, const std::array<Lanes<Scalar, Count>, Size>& yes,
+    const detail::LaneMask<Scalar, Count>& mask, const std::array<Lanes<Scalar, Count>, Size>& yes,
     const std::array<Lanes<Scalar, Count>, Size>& no) noexcept {
   std::array<Lanes<Scalar, Count>, Size> result;
   for (std::size_t i = 0; i < Size; ++i) result[i] = select(mask, yes[i], no[i]);
@@ -334,10 +335,10 @@ PINNQUAD_ALWAYS_INLINE std::array<Lanes<Scalar, Count>, Size> select(
 
 /// Lane by lane, on the bits.
 template <class Scalar, int Count>
-PINNQUAD_ALWAYS_INLINE LaneMask<Scalar, Count> is_finite(const Lanes<Scalar, Count>& value) noexcept {
-  using Truths = typename LaneMask<Scalar, Count>::Types::Truths;
+PINNQUAD_ALWAYS_INLINE detail::LaneMask<Scalar, Count> is_finite(const Lanes<Scalar, Count>& value) noexcept {
+  using Truths = typename detail::LaneMask<Scalar, Count>::Types::Truths;
   constexpr auto exponent = sizeof(Scalar) == 4 ? 0x7f800000ll : 0x7ff0000000000000ll;
-  LaneMask<Scalar, Count> mask;
+  detail::LaneMask<Scalar, Count> mask;
   for (int i = 0; i < mask.registers; ++i) {
     const Truths all = Truths{} + static_cast<std::conditional_t<sizeof(Scalar) == 4, int, long long>>(exponent);
     mask.part[i] = ((Truths)value.part[i] & all) != all;
@@ -345,6 +346,7 @@ PINNQUAD_ALWAYS_INLINE LaneMask<Scalar, Count> is_finite(const Lanes<Scalar, Cou
   return mask;
 }
 
+namespace detail {
 /// Those of lanes.
 template <class Scalar, int Count>
 struct LaneTypes<Lanes<Scalar, Count>> {
@@ -352,6 +354,7 @@ struct LaneTypes<Lanes<Scalar, Count>> {
   using Wide = Lanes<double, Count>;
   using Outcome = LaneStatus<Scalar, Count>;
 };
+}  // namespace detail
 
 }  // namespace pinnquad
 

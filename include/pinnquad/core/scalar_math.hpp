@@ -15,6 +15,10 @@
 #include "pinnquad/core/select.hpp"
 
 namespace pinnquad {
+
+/// Half a turn in radians.
+inline constexpr double pi = 3.14159265358979323846;
+
 namespace detail {
 
 /// a == b for scalars, false for NaN: firmware is compiled with -Wfloat-equal.

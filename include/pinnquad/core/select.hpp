@@ -3,13 +3,12 @@
 // bool, one of lanes a mask, and select() chooses by either. A branch asks any_of() or all_of() whether it is taken.
 #pragma once
 
-#include <type_traits>
-
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/status.hpp"
 
 namespace pinnquad {
 
+namespace detail {
 /// Types that go with a scalar: its comparisons, time, refusals. Those of lanes have a value per lane.
 template <class Scalar>
 struct LaneTypes {
@@ -17,22 +16,19 @@ struct LaneTypes {
   using Wide = double;
   using Outcome = Status;
 };
+}  // namespace detail
 
 /// Of a comparison: bool, or one truth per lane.
 template <class Scalar>
-using Mask = typename LaneTypes<Scalar>::Mask;
+using Mask = typename detail::LaneTypes<Scalar>::Mask;
 
 /// Time: double also beside float, in which a millisecond is lost after a few hours.
 template <class Scalar>
-using Wide = typename LaneTypes<Scalar>::Wide;
+using Wide = typename detail::LaneTypes<Scalar>::Wide;
 
 /// Status, or one per lane.
 template <class Scalar>
-using Outcome = typename LaneTypes<Scalar>::Outcome;
-
-/// A type for lanes, none for scalars.
-template <class Scalar>
-using OfLanes = std::enable_if_t<!std::is_same_v<Mask<Scalar>, bool>>;
+using Outcome = typename detail::LaneTypes<Scalar>::Outcome;
 
 /// condition ? yes : no; both are worked out. Of lanes each takes its own.
 template <class Value>

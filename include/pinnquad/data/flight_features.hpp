@@ -170,14 +170,12 @@ std::vector<ColumnName> wanted_columns() {
   return wanted;
 }
 
-/// X of a row in physical units, and where the row stands.
+/// Calls `visit(flight, row, x)` for every row of a set that has features: x in physical units.
 template <class Features, class Scalar>
-using FeaturesVisit = std::function<void(const Flight&, std::size_t,
-                                         const std::array<Scalar, static_cast<std::size_t>(Features::size)>&)>;
-
-/// Calls `visit(flight, row, x)` for every row of a set that has features.
-template <class Features, class Scalar>
-void each_features(const RowSet& rows, const FeaturesVisit<Features, Scalar>& visit) {
+void each_features(
+    const RowSet& rows,
+    const std::function<void(const Flight&, std::size_t,
+                             const std::array<Scalar, static_cast<std::size_t>(Features::size)>&)>& visit) {
   using Inputs = typename Features::template Inputs<Scalar>;
   for (const FlightRows& piece : rows.pieces()) {
     const FlightInputs<Inputs> recorded(piece);

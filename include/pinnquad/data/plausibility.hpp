@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "pinnquad/core/body.hpp"
+#include "pinnquad/core/clock_time.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/motion_checks.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/data/split.hpp"
-#include "pinnquad/exported/model_agreement.hpp"
 #include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/io/file_error.hpp"
 

@@ -39,17 +39,14 @@ struct AnsweredRow {
   std::vector<double> features{};  ///< in physical units, as the model's own scalar holds them
 };
 
-/// Why each signed sum of the commands rises with the angular acceleration about its axis, for all finite features.
-enum class SignProof {
-  structure,   ///< an affine base, and a residual that sees no angular acceleration
-  path_bound,  ///< an affine base, and a network whose paths from it leave the slopes above 0
-  affinity     ///< the model is affine: its derivatives are the same everywhere
-};
-
-/// s^2/rad: by the present angular acceleration alone, and by one that is held over the window.
+/// Each signed sum of the commands rises with the angular acceleration about its axis, for all finite features.
 struct ProvenSigns {
-  SignProof by = SignProof::structure;
+  /// s^2/rad: by the present angular acceleration alone, and by one that is held over the window.
   AxisSlopes slope{}, held_slope{};
+  /// The proof's argument; none: the model is affine, its derivatives are the same everywhere.
+  std::optional<Certificate> structure{};
+  /// Of a structure: its network sees the angular acceleration, and its paths from it leave the slopes above 0.
+  bool path_bounded = false;
 };
 
 /// A block of a file, ready to predict: in float or double, as it was written.

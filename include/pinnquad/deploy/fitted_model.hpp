@@ -11,10 +11,12 @@
 
 namespace pinnquad {
 
+namespace detail {
 /// A model of a predictor that is affine, or affine with a bounded residual: its envelope is twice as wide as its rows,
-/// and more (detail::affine_reach()). `fitted`: the rows that it was fitted to, those of its context.
+/// and more (affine_reach()). `fitted`: the rows that it was fitted to, those of its context.
 GroundModel<float> fitted_model(const FitContext& context, const PredictorText& predictor,
                                 const std::vector<float>& parameters, const RowSet& fitted);
+}  // namespace detail
 
 /// The model of an affine map of standardised features to standardised outputs: a float Network of one Dense. Throws
 /// std::invalid_argument for a map of other sizes.

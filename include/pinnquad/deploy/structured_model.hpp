@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -15,20 +16,31 @@
 #include <vector>
 
 #include "pinnquad/core/body.hpp"
+#include "pinnquad/core/finite.hpp"
 #include "pinnquad/deploy/fitted_model.hpp"
 #include "pinnquad/training/structured/fit_structured.hpp"
 
 namespace pinnquad {
 
-/// The model of a fit. `fitted`: the rows that it was fitted to, those of its context.
-GroundModel<float> ground_model(const StructuredSet& from, const StructuredFit& fit, const FitContext& context,
-                                const RowSet& fitted);
-
 /// A structured model of one seed: judged, exported and asked as any other.
-struct StructuredModelFit : StructuredFit {
+struct StructuredFit : detail::SeedFit {
   GroundModel<float> model;
 };
-using StructuredFits = StructuredFitsIn<StructuredModelFit>;
+
+/// The fits of all seeds that were finished, in the order of the seeds. A model has its residual where that helps.
+struct StructuredFits {
+  StructuredAltitude altitude;
+  std::vector<StructuredFit> models;
+
+  /// The model with the least error on the validation rows. Throws std::logic_error where no model was finished.
+  const StructuredFit& best() const {
+    const auto less = [](const StructuredFit& a, const StructuredFit& b) {
+      return is_finite(a.validation_error) && !(b.validation_error <= a.validation_error);  // NaN is the worst
+    };
+    if (models.empty()) throw std::logic_error("structured fit: no model was finished");
+    return *std::min_element(models.begin(), models.end(), less);
+  }
+};
 
 /// Fits a structured model from each seed. The first seed tries both feature sets where the altitude is chosen
 /// by_validation; `higher` is null where there is no such choice. Throws std::invalid_argument for rows that are too

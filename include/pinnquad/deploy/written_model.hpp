@@ -11,7 +11,7 @@
 
 #include "pinnquad/core/body.hpp"
 #include "pinnquad/deploy/provenance.hpp"
-#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/exported/stated_bounds.hpp"
 #include "pinnquad/training/asked_model.hpp"
 
 namespace pinnquad {

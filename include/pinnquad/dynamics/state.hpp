@@ -3,6 +3,8 @@
 // World NED, body FRD, SI units.
 #pragma once
 
+#include <type_traits>
+
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/core/types.hpp"
@@ -47,7 +49,7 @@ Wrench<Scalar> operator-(const Wrench<Scalar>& a, const Wrench<Scalar>& b) noexc
 }
 
 /// Of each lane its own.
-template <class Scalar, class = OfLanes<Scalar>>
+template <class Scalar, class = std::enable_if_t<!std::is_same_v<Mask<Scalar>, bool>>>
 PINNQUAD_ALWAYS_INLINE Wrench<Scalar> select(const Mask<Scalar>& mask, const Wrench<Scalar>& yes,
                                              const Wrench<Scalar>& no) noexcept {
   return {select(mask, yes.force_N, no.force_N), select(mask, yes.torque_N_m, no.torque_N_m)};
@@ -74,7 +76,7 @@ Vector3<Scalar> body_derivative(const State<Scalar>& state, const Vector3<Scalar
 }
 
 /// Of each lane its own.
-template <class Scalar, class = OfLanes<Scalar>>
+template <class Scalar, class = std::enable_if_t<!std::is_same_v<Mask<Scalar>, bool>>>
 PINNQUAD_ALWAYS_INLINE State<Scalar> select(const Mask<Scalar>& mask, const State<Scalar>& yes,
                                             const State<Scalar>& no) noexcept {
   const Quaternion<Scalar>&a = yes.attitude, &b = no.attitude;

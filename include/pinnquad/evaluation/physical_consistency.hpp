@@ -13,13 +13,12 @@
 #include <vector>
 
 #include "pinnquad/core/body.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 
 namespace pinnquad {
 
 namespace detail {
-inline constexpr double pi = 3.14159265358979323846;
-
 /// Standard deviation along each axis: the units in which a standardised ellipse is measured.
 struct AxisDeviation {
   double x = 1;

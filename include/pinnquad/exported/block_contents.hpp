@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "pinnquad/core/clock_time.hpp"
 #include "pinnquad/exported/block_records.hpp"
 #include "pinnquad/exported/contents_hash.hpp"
 #include "pinnquad/exported/model.hpp"

@@ -185,30 +185,25 @@ constexpr bool same_contents() noexcept {
   }
 }
 
-}  // namespace detail
+/// A feature or an output.
+struct NameAndUnit {
+  std::string_view name, unit;
+};
 
-namespace detail {
-/// All texts are one.
-template <class Texts>
-constexpr bool one_unit(const Texts& texts) noexcept {
-  for (const auto& text : texts) {
-    if (std::string_view(text) != std::string_view(texts[0])) return false;
-  }
-  return true;
-}
-
-/// All that a shape says behind its answer; texts of any kind.
-template <class Names, class Units, class OutputNames, class OutputUnits>
-constexpr void absorb_shape(Fnv1a& fnv, const Names& names, const Units& units, const OutputNames& output_names,
-                            const OutputUnits& output_units, std::string_view vehicle_name,
-                            const TorqueSigns& signs) noexcept {
+/// All that a shape says behind its answer. `feature(i)` and `output(k)` have a `name` and a `unit`.
+template <class Feature, class Output>
+constexpr void absorb_shape(Fnv1a& fnv, std::size_t features, const Feature& feature, std::size_t outputs,
+                            const Output& output, std::string_view vehicle_name, const TorqueSigns& signs) noexcept {
   fnv.absorb_text(model_frame);
-  for (const auto& name : names) fnv.absorb_text(name);
-  for (const auto& unit : units) fnv.absorb_text(unit);
-  for (const auto& name : output_names) fnv.absorb_text(name);
+  for (std::size_t i = 0; i < features; ++i) fnv.absorb_text(feature(i).name);
+  for (std::size_t i = 0; i < features; ++i) fnv.absorb_text(feature(i).unit);
+  bool one_unit = outputs > 0;
+  for (std::size_t k = 0; k < outputs; ++k) {
+    fnv.absorb_text(output(k).name);
+    one_unit = one_unit && output(k).unit == output(0).unit;
+  }
   // one unit for all is said once
-  const std::size_t said = output_units.size() > 1 && one_unit(output_units) ? 1 : output_units.size();
-  for (std::size_t i = 0; i < said; ++i) fnv.absorb_text(output_units[i]);
+  for (std::size_t k = 0; k < (one_unit ? 1 : outputs); ++k) fnv.absorb_text(output(k).unit);
   fnv.absorb_text(vehicle_name);
   for (const auto& rotor : signs) {
     for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
@@ -221,7 +216,16 @@ constexpr std::uint64_t hash_of_shape(std::string_view vehicle_name, const Torqu
   using Map = OutputMap<typename Shape::Outputs>;
   Fnv1a fnv;
   absorb_description<typename Shape::Network>(fnv);
-  absorb_shape(fnv, Shape::Features::names, Shape::Features::units, Map::names, Map::units, vehicle_name, signs);
+  absorb_shape(
+      fnv, Shape::Features::names.size(),
+      [](std::size_t i) {
+        return NameAndUnit{Shape::Features::names[i], Shape::Features::units[i]};
+      },
+      Map::names.size(),
+      [](std::size_t k) {
+        return NameAndUnit{Map::names[k], Map::units[k]};
+      },
+      vehicle_name, signs);
   return fnv.hash;
 }
 }  // namespace detail

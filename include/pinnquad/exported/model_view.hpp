@@ -108,7 +108,7 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
   /// for another shape, or with a mandatory record that is unknown. `block_corrupt`: wrong checksum, records that do
   /// not fit their place, no golden vector or one outside the envelope, a value that is NaN or Inf, a deviation that is
   /// not positive, an envelope upside down or out of reach, a time above 4 s, what is said twice and contradicts itself
-  /// (exported/model_agreement.hpp), a model of proven structure whose certificate its numbers don't fulfil. `view` is
+  /// (exported/stated_bounds.hpp), a model of proven structure whose certificate its numbers don't fulfil. `view` is
   /// untouched unless the Status is ok. Reads the whole block, twice: not for a control loop.
   static Status open(const void* block, std::size_t length, ModelView& view) noexcept {
     using Layout = ModelBlockLayout<ShapeType>;

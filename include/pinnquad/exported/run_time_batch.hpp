@@ -41,8 +41,8 @@ void commands_of_rows(const RunTimeModel<Scalar>& model, const Scalar* x, std::s
       model.saturate_columns(own);
       for (std::size_t k = 0; k < inputs; ++k) in[k][lane] = own[k];
     }
-    model.network().template forward<Scalar, run_time_lanes, RunTimeEntry::lanes>(model.parameters(), in, out,
-                                                                                  network_work);
+    model.network().template forward<Scalar, run_time_lanes, detail::RunTimeEntry::lanes>(model.parameters(), in, out,
+                                                                                          network_work);
     for (std::size_t lane = 0; lane < count; ++lane) {
       for (std::size_t k = 0; k < outputs; ++k) {
         made[k] = out[k][lane] * scales.output_deviation[k] + scales.output_mean[k];

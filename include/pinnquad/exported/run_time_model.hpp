@@ -296,19 +296,10 @@ class RunTimeModel {
   std::uint64_t own_shape_hash() const noexcept {
     detail::Fnv1a fnv;
     fnv.absorb_text(records_.answer);
-    fnv.absorb_text(model_frame);
-    for (int i = 0; i < features_.size(); ++i) fnv.absorb_text(features_[i].name);
-    for (int i = 0; i < features_.size(); ++i) fnv.absorb_text(features_[i].unit);
-    bool one_unit = true;
-    for (int k = 0; k < outputs_.size(); ++k) {
-      fnv.absorb_text(output(k).name);
-      one_unit = one_unit && output(k).unit == output(0).unit;
-    }
-    for (int k = 0; k < (one_unit ? 1 : outputs_.size()); ++k) fnv.absorb_text(output(k).unit);
-    fnv.absorb_text(records_.vehicle_name);
-    for (const auto& rotor : motor_torque_signs(airframe_)) {
-      for (const int sign : rotor) fnv.absorb(static_cast<unsigned char>(sign + 1));
-    }
+    detail::absorb_shape(
+        fnv, std::size_t(features_.size()), [this](std::size_t i) { return features_[int(i)]; },
+        std::size_t(outputs_.size()), [this](std::size_t k) { return output(int(k)); }, records_.vehicle_name,
+        motor_torque_signs(airframe_));
     return fnv.hash;
   }
 

@@ -97,16 +97,16 @@ class DescriptionReader {
   std::string_view rest_;
 };
 
-}  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-
-inline namespace PINNQUAD_INSTRUCTION_SET {
-
 /// The numbers of an entry of RunTimeNetwork::forward().
 enum class RunTimeEntry {
   value_and_derivatives,  ///< a value, and its derivatives by whatever the caller moves
   lanes                   ///< a value each of so many motions
 };
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+}  // namespace detail
+
+inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// A predictor, or the sum of a few, added from left to right.
 class RunTimeNetwork {
@@ -151,7 +151,8 @@ class RunTimeNetwork {
   /// y = predictor(x), both standardised; Number is that of the parameters for the bits of the compiled predictor.
   /// Exact derivatives go with the values. At the kink of a ReLU it is the derivative from below, 0, as in
   /// nn/jacobian.hpp; of an output on its bound 0.
-  template <class Number, int Count, RunTimeEntry Kind = RunTimeEntry::value_and_derivatives, class Scalar>
+  template <class Number, int Count, detail::RunTimeEntry Kind = detail::RunTimeEntry::value_and_derivatives,
+            class Scalar>
   void forward(const Scalar* parameters, const Values<Number, Count>* x, Values<Number, Count>* y,
                Values<Number, Count>* work) const noexcept {
     const std::size_t third = workspace() / 3;
@@ -257,7 +258,7 @@ class RunTimeNetwork {
     return parameter_count_ <= most_parameters;
   }
 
-  template <class Number, int Count, RunTimeEntry Kind, class Scalar>
+  template <class Number, int Count, detail::RunTimeEntry Kind, class Scalar>
   static void run(const RunTimePart& part, const Scalar* own, const Values<Number, Count>* x, Values<Number, Count>* y,
                   Values<Number, Count>* work, Values<Number, Count>* spare) noexcept {
     if (part.axis_aligned) return run_axis_aligned<Number, Count, Kind>(part, own, x, y);
@@ -288,7 +289,7 @@ class RunTimeNetwork {
   }
 
   /// As AxisAligned::forward(): the intercept, the other features, then each axis' own of every tap.
-  template <class Number, int Count, RunTimeEntry Kind, class Scalar>
+  template <class Number, int Count, detail::RunTimeEntry Kind, class Scalar>
   static void run_axis_aligned(const RunTimePart& part, const Scalar* slopes, const Values<Number, Count>* x,
                                Values<Number, Count>* y) noexcept {
     const int others = part.shown();
@@ -306,9 +307,9 @@ class RunTimeNetwork {
   }
 
   /// A sum with its bias alone, no derivatives.
-  template <RunTimeEntry Kind, class Number, std::size_t Count>
+  template <detail::RunTimeEntry Kind, class Number, std::size_t Count>
   static void begin(Number bias, std::array<Number, Count>& sum) noexcept {
-    constexpr std::size_t values = Kind == RunTimeEntry::lanes ? Count : 1;
+    constexpr std::size_t values = Kind == detail::RunTimeEntry::lanes ? Count : 1;
     for (std::size_t c = 0; c < values; ++c) sum[c] = bias;
   }
 
@@ -317,10 +318,10 @@ class RunTimeNetwork {
     for (std::size_t c = 0; c < Count; ++c) sum[c] = multiply_add(static_cast<Number>(weight), x[c], sum[c]);
   }
 
-  template <class Number, int Count, RunTimeEntry Kind>
+  template <class Number, int Count, detail::RunTimeEntry Kind>
   static void activate(const detail::RunTimeActivation<Number>& activation, Values<Number, Count>* values,
                        int width) noexcept {
-    if constexpr (Kind == RunTimeEntry::lanes || Count == 1) {
+    if constexpr (Kind == detail::RunTimeEntry::lanes || Count == 1) {
       activation.activate_all(reinterpret_cast<Number*>(values), std::size_t(width) * std::size_t(Count));
     } else {
       for (int i = 0; i < width; ++i) {
@@ -332,15 +333,15 @@ class RunTimeNetwork {
     }
   }
 
-  template <class Number, int Count, RunTimeEntry Kind, class Scalar>
+  template <class Number, int Count, detail::RunTimeEntry Kind, class Scalar>
   static void clip(const Scalar* bounds, int outputs, Values<Number, Count>* y) noexcept {
     for (int k = 0; k < outputs; ++k) {
       const Number least = static_cast<Number>(bounds[k]), most = static_cast<Number>(bounds[outputs + k]);
-      constexpr std::size_t values = Kind == RunTimeEntry::lanes ? std::size_t(Count) : 1;
+      constexpr std::size_t values = Kind == detail::RunTimeEntry::lanes ? std::size_t(Count) : 1;
       for (std::size_t c = 0; c < values; ++c) {
         const Number value = y[k][c];
         if (value > least && value < most) continue;
-        if (Kind == RunTimeEntry::value_and_derivatives) y[k] = {};
+        if (Kind == detail::RunTimeEntry::value_and_derivatives) y[k] = {};
         y[k][c] = value < least ? least : (value > most ? most : value);
       }
     }

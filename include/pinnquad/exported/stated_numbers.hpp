@@ -8,8 +8,9 @@
 #include <limits>
 #include <type_traits>
 
+#include "pinnquad/core/clock_time.hpp"
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/exported/stated_bounds.hpp"
 #include "pinnquad/model/predictor.hpp"
 
 namespace pinnquad {
@@ -69,7 +70,7 @@ inline constexpr double shortest_bias_time_constant_s = 0.02, longest_bias_time_
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// The reach of a training (model_agreement.hpp) bounds a norm of standardised features too.
+/// The reach of a training (stated_bounds.hpp) bounds a norm of standardised features too.
 inline constexpr double furthest_squared = furthest_deviations * furthest_deviations;
 inline constexpr double no_bound = std::numeric_limits<double>::max();
 

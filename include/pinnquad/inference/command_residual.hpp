@@ -45,8 +45,9 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 ///   double command_residual_factor, in (0, 1]
 ///   double command_residual_limit: the model is distrusted once m is above it
 ///   double command_residual_cleared, not above the limit: it is trusted again once m is below it
-/// The limits hold for updates as often as those that they were fitted on (training/trust_limits.hpp). On the ground
-/// they may be static members that change at run time, as a JointDistance's.
+/// The limits hold for updates as often as those that they were fitted on
+/// (training/structured/trust_limits.hpp). On the ground they may be static members that change at run time, as a
+/// JointDistance's.
 template <class Trust, class Scalar = float>
 class CommandResidualMonitor {
  public:

@@ -10,13 +10,13 @@
 #include <utility>
 
 #include "pinnquad/core/types.hpp"
-#include "pinnquad/data/settings.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/features/features.hpp"
 #include "pinnquad/nn/scaler.hpp"
 #include "pinnquad/outputs/base.hpp"
 #include "pinnquad/outputs/output_schema.hpp"
 #include "pinnquad/schedule/schedule.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 

@@ -9,8 +9,8 @@
 #include <type_traits>
 
 #include "pinnquad/core/detected.hpp"
-#include "pinnquad/data/settings.hpp"
 #include "pinnquad/loss/loss.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 

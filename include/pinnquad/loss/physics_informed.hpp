@@ -4,10 +4,10 @@
 
 #include <tuple>
 
-#include "pinnquad/data/settings.hpp"
 #include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/schedule/schedule.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 

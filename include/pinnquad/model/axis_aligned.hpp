@@ -235,13 +235,11 @@ inline constexpr int residual_inputs = detail::MonotoneParts<Features>::others;
 template <class Features, class Scalar = float>
 using MonotoneBase = typename detail::MonotoneParts<Features>::template Base<Scalar>;
 
-/// The part that is added to it: `Residual`, a predictor of residual_inputs<Features> features, between bounds.
-template <class Features, class Residual>
-using MonotoneResidual = typename detail::MonotoneParts<Features>::template Bound<Residual>;
-
-/// Both: monotone in each axis' angular acceleration where the slopes are above 0, whatever its other weights are. For
+/// The base and what is added to it: `Residual`, a predictor of residual_inputs<Features> features, between bounds;
+/// monotone in each axis' angular acceleration where the slopes are above 0, whatever its other weights are. For
 /// AxisCommandOutputs; exported/certificate.hpp says what is proven of it.
 template <class Features, class Residual>
-using MonotonePredictor = Sum<MonotoneBase<Features, typename Residual::Scalar>, MonotoneResidual<Features, Residual>>;
+using MonotonePredictor = Sum<MonotoneBase<Features, typename Residual::Scalar>,
+                              typename detail::MonotoneParts<Features>::template Bound<Residual>>;
 
 }  // namespace pinnquad

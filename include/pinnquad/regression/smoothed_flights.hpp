@@ -19,7 +19,7 @@
 #include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
 /// From command to thrust: u(t - delay) makes the thrust fraction that is wanted, which the rotor follows with a
 /// first-order lag.
@@ -113,7 +113,7 @@ class SmoothedFlights {
   bool has_voltage_ = true;
 };
 
-}  // namespace pinnquad
+}  // namespace pinnquad::detail
 
 #ifndef PINNQUAD_COMPILED
 #include "pinnquad/regression/impl/smoothed_flights.hpp"

@@ -11,7 +11,8 @@
 #include <utility>
 
 #include "pinnquad/core/detected.hpp"
-#include "pinnquad/data/settings.hpp"
+#include "pinnquad/core/scalar_math.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 
@@ -79,10 +80,7 @@ struct CyclicalAnnealing {
 /// Rate: half a cosine from the full learning rate to 0 (Loshchilov and Hutter 2017, without restarts).
 /// (1 + cos(pi t / T)) / 2 in step t of T, from 0: PyTorch's CosineAnnealingLR with T_max = T, stepped once per batch.
 struct CosineDecay {
-  double factor(double done) const noexcept {
-    constexpr double pi = 3.14159265358979323846;
-    return 0.5 * (1.0 + std::cos(pi * done));
-  }
+  double factor(double done) const noexcept { return 0.5 * (1.0 + std::cos(pi * done)); }
 };
 
 }  // namespace pinnquad

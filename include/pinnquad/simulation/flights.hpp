@@ -132,7 +132,7 @@ struct AgileFlight {
 struct NearGroundFlight {
   static constexpr const char* name = "d2";
   static constexpr const char* summary = "near the ground, 0.1 to 2 m, with drag and ground effect";
-  using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag, ConyersGroundEffect>;
+  using Vehicle = Quadrotor<double, StandardAtmosphere, QuadraticDrag, GroundEffect<Conyers>>;
   static constexpr GroundEffectModel ground_effect = GroundEffectModel::conyers;
 
   /// Conyers' where his fit holds for the airframe, else Cheeseman and Bennett's, which hold for every one.

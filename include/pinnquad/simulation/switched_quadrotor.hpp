@@ -31,7 +31,7 @@ using SwitchedEffects =
                Switched<QuadraticDrag, Usually::on>, Switched<LinearDamping, Usually::off>,
                Switched<RotorDrag, Usually::off>, Switched<Inflow, Usually::off>, Switched<BladeFlapping, Usually::off>,
                Switched<Wake, Usually::off>, Switched<RotorGroundEffect<CheesemanBennett>, Usually::off>,
-               Switched<CheesemanBennettGroundEffect>, Switched<ConyersGroundEffect>,
+               Switched<GroundEffect<CheesemanBennett>>, Switched<GroundEffect<Conyers>>,
                Switched<RotorFault, Usually::off>, Switched<GroundContact, Usually::off>,
                Switched<Payload, Usually::off>>;
 
@@ -89,8 +89,8 @@ enum class GroundEffectModel { none, cheeseman_bennett, conyers };
 /// Switches the model of ground effect named on and the other off.
 template <class Effects>
 void set_ground_effect(Effects& effects, GroundEffectModel model) {
-  switch_effect(effects, CheesemanBennettGroundEffect{}, model == GroundEffectModel::cheeseman_bennett);
-  switch_effect(effects, ConyersGroundEffect{}, model == GroundEffectModel::conyers);
+  switch_effect(effects, GroundEffect<CheesemanBennett>{}, model == GroundEffectModel::cheeseman_bennett);
+  switch_effect(effects, GroundEffect<Conyers>{}, model == GroundEffectModel::conyers);
 }
 
 }  // namespace pinnquad

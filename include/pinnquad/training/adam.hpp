@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "pinnquad/data/settings.hpp"
 #include "pinnquad/nn/kernel/pack.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pinnquad/core/body.hpp"
-#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/exported/stated_bounds.hpp"
 #include "pinnquad/training/ground_features.hpp"
 #include "pinnquad/training/trained_model.hpp"
 

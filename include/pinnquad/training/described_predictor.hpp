@@ -25,13 +25,13 @@ std::string type_name() {
   return name;
 }
 
+namespace detail {
+
 /// A predictor by what names it.
 struct PredictorText {
   std::string description;  ///< model/description.hpp
   std::string type;         ///< as a header names it
 };
-
-namespace detail {
 
 /// A description as a text (model/description.hpp).
 struct DescriptionText {

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "pinnquad/core/detected.hpp"
-#include "pinnquad/data/settings.hpp"
 #include "pinnquad/nn/kernel/pack_generic.hpp"
 #include "pinnquad/schedule/schedule.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/exported/model_agreement.hpp"
+#include "pinnquad/exported/stated_bounds.hpp"
 #include "pinnquad/inference/pipeline.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/training/folding.hpp"

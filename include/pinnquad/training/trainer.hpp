@@ -29,12 +29,6 @@ struct ShuffledBatches {
   }
 };
 
-/// Batches in recorded order: consecutive pairs of a batch are consecutive in time.
-struct TimeOrderedBatches {
-  template <class Engine>
-  void arrange(std::vector<int>&, Engine&) const {}
-};
-
 /// Owns the network's parameters, the optimiser's moments and the work space of one batch (about 0.25 MB for the
 /// paper's network: put it on the heap or a large stack).
 template <class NetworkType, class LossType, class OptimizerType, class ContextType, class Order = ShuffledBatches,
@@ -65,7 +59,7 @@ class Trainer {
   };
 
   /// Throws std::invalid_argument if a number of the loss, of its schedules, of the optimiser or of the context makes
-  /// no sense (data/settings.hpp).
+  /// no sense (schedule/settings.hpp).
   Trainer(const Network& network, const LossType& loss, const OptimizerType& optimizer, const ContextType& context,
           const Order& order = {})
       : loss_(loss), optimizer_(optimizer), context_(context), order_policy_(order) {

@@ -255,7 +255,7 @@ class Quadrotor {
 
   /// Beyond half a turn in one step an attitude is no longer followed but guessed.
   static PINNQUAD_ALWAYS_INLINE Mask<Scalar> can_follow(const State<Scalar>& body, Scalar step_s) noexcept {
-    constexpr Scalar half_turn_rad = Scalar(3.141592653589793);
+    constexpr Scalar half_turn_rad = Scalar(pi);
     const Scalar x = body.body_rates_rad_s[0] * step_s, y = body.body_rates_rad_s[1] * step_s,
                  z = body.body_rates_rad_s[2] * step_s;
     return x * x + y * y + z * z <= half_turn_rad * half_turn_rad;

@@ -45,7 +45,7 @@ Flight flown(double gyro_noise_rad_s, std::size_t samples) {
   return flight;
 }
 
-StructuredModelFit fitted(const Flight& flight, bool pinned = false) {
+StructuredFit fitted(const Flight& flight, bool pinned = false) {
   StructuredSettings settings;
   settings.residual.epochs = 3;
   settings.altitude = StructuredSettings::Altitude::no;
@@ -59,14 +59,14 @@ const Flight& noisy() {
   static const Flight flight = flown(0.03, quiet().size());
   return flight;
 }
-const StructuredModelFit& noisy_fit() {
-  static const StructuredModelFit fit = fitted(noisy());
+const StructuredFit& noisy_fit() {
+  static const StructuredFit fit = fitted(noisy());
   return fit;
 }
 
-Certificate certificate_of_fit(const StructuredModelFit& fit) { return *fit.model.written.certificate; }
+Certificate certificate_of_fit(const StructuredFit& fit) { return *fit.model.written.certificate; }
 
-double error_on(const StructuredModelFit& fit, const Flight& flight) {
+double error_on(const StructuredFit& fit, const Flight& flight) {
   const RowSet rows(flight, {0, flight.size()});
   return model_errors(fit.model, rows).mean.mean_absolute;
 }
@@ -79,7 +79,7 @@ using Setting = Context<InverseFeatures, PaperQuadrotor, AxisCommandOutputs>;
 }  // namespace
 
 TEST_CASE("noise of the gyro bends the slopes of least squares; those by instruments are the airframe's") {
-  const StructuredModelFit& fit = noisy_fit();
+  const StructuredFit& fit = noisy_fit();
   const Certificate certificate = certificate_of_fit(fit);
   CHECK(certificate.proven());
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -107,7 +107,7 @@ TEST_CASE("of a quiet flight least squares are kept to the bit, with intervals")
   const Flight flight = flown(0, 2500);
   const Dataset dataset(flight);
   const RowSplit split = split_for_training(dataset);
-  const StructuredModelFit fit = fitted(flight);
+  const StructuredFit fit = fitted(flight);
   const auto context = make_context<Setting>(split.train);
   const auto base = monotone_base<Setting>(fit_monotone_base(context, split.train));
   CHECK_FALSE(fit.slopes.by_instruments());
@@ -123,7 +123,7 @@ TEST_CASE("of a quiet flight least squares are kept to the bit, with intervals")
 }
 
 TEST_CASE("pinned slopes are not measured, nor those about the axes of a window, nor of few rows") {
-  const StructuredModelFit pinned = fitted(flown(0.03, 1500), true);
+  const StructuredFit pinned = fitted(flown(0.03, 1500), true);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CHECK_FALSE(pinned.slopes.of[1 + axis].known);
     CHECK(certificate_of_fit(pinned).slope[axis] == doctest::Approx(own[axis]).epsilon(1e-5));
@@ -229,7 +229,7 @@ TEST_CASE("neighbours are a tenth of a second away, and none is beyond a gap or 
 }
 
 TEST_CASE("rows to judge by are nearer to the truth than those with noise, and all else is as it was") {
-  const StructuredModelFit& fit = noisy_fit();
+  const StructuredFit& fit = noisy_fit();
   const RowSet rows(noisy(), {100, 600});
   const Dataset dataset(noisy());
   const FitContext context = fit_context(make_context<Setting>(split_for_training(dataset).train));

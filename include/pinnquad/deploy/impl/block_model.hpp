@@ -152,16 +152,17 @@ PINNQUAD_BODY std::optional<Certificate> BlockModel::certificate() const {
 PINNQUAD_BODY std::optional<ProvenSigns> BlockModel::proven_signs() const {
   if (angular_accelerations().empty()) return {};
   ProvenSigns proof;
-  if (const std::optional<Certificate> structure = certificate(); structure && structure->proven()) {
-    if (network().part(network().part_count() - 1).path_bounded) proof.by = SignProof::path_bound;
+  proof.structure = certificate();
+  if (proof.structure && proof.structure->proven()) {
+    proof.path_bounded = network().part(network().part_count() - 1).path_bounded;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      proof.slope[axis] = structure->slope[axis];
-      proof.held_slope[axis] = structure->held_slope[axis];
+      proof.slope[axis] = proof.structure->slope[axis];
+      proof.held_slope[axis] = proof.structure->held_slope[axis];
     }
     return proof;
   }
+  proof.structure.reset();
   if (!has_affine_schema() || !detail::is_affine(network()) || !knows_its_features()) return {};
-  proof.by = SignProof::affinity;
   const std::vector<double> anywhere = golden_features(0);
   proof.slope = derivatives(anywhere, false);
   proof.held_slope = derivatives(anywhere, true);

@@ -46,18 +46,16 @@ PINNQUAD_BODY WrittenRecords records_of(const FitContext& context, const Predict
   return records;
 }
 
-}  // namespace detail
-
 PINNQUAD_BODY GroundModel<float> fitted_model(const FitContext& context, const PredictorText& predictor,
                                               const std::vector<float>& parameters, const RowSet& fitted) {
   GroundModel<float> ground{{}, {}, context.features.window.period_s};
-  detail::WrittenModel<float>& written = ground.written;
-  static_cast<detail::WrittenRecords&>(written) = detail::records_of(context, predictor);
-  written.input_mean = detail::converted<float>(context.input_mean);
-  written.input_deviation = detail::converted<float>(context.input_deviation);
-  written.output_mean = detail::converted<float>(context.output_mean);
-  written.output_deviation = detail::converted<float>(context.output_deviation);
-  for (const float weight : parameters) written.parameters.push_back(detail::without_negligible(weight));
+  WrittenModel<float>& written = ground.written;
+  static_cast<WrittenRecords&>(written) = records_of(context, predictor);
+  written.input_mean = converted<float>(context.input_mean);
+  written.input_deviation = converted<float>(context.input_deviation);
+  written.output_mean = converted<float>(context.output_mean);
+  written.output_deviation = converted<float>(context.output_deviation);
+  for (const float weight : parameters) written.parameters.push_back(without_negligible(weight));
   AskedModel& asked = ground;
   asked.airframe_name = context.airframe_name;
   asked.airframe = context.airframe;
@@ -65,23 +63,25 @@ PINNQUAD_BODY GroundModel<float> fitted_model(const FitContext& context, const P
   for (std::size_t i = 0; i < context.features.size(); ++i) asked.is_column.push_back(context.features.is_column(i));
   asked.each_row = context.features.each_row;
   asked.each_exact_row = context.features.each_exact_row;
-  for (const detail::ColumnStatistics& column : detail::feature_statistics(asked, fitted)) {
-    const double margin = column.margin(detail::affine_reach(asked.units[written.envelope_lower.size()]));
+  for (const ColumnStatistics& column : feature_statistics(asked, fitted)) {
+    const double margin = column.margin(affine_reach(asked.units[written.envelope_lower.size()]));
     written.envelope_lower.push_back(static_cast<float>(column.lowest - margin));
     written.envelope_upper.push_back(static_cast<float>(column.highest + margin));
   }
-  asked.envelope_lower = detail::converted<double>(written.envelope_lower);
-  asked.envelope_upper = detail::converted<double>(written.envelope_upper);
-  asked.predict = [numbers = std::make_shared<const detail::WrittenModel<float>>(written), is_column = asked.is_column,
+  asked.envelope_lower = converted<double>(written.envelope_lower);
+  asked.envelope_upper = converted<double>(written.envelope_upper);
+  asked.predict = [numbers = std::make_shared<const WrittenModel<float>>(written), is_column = asked.is_column,
                    commands = context.schema.commands,
-                   answer = detail::DescribedPredictor(predictor, written.parameters)](const double* x) {
+                   answer = DescribedPredictor(predictor, written.parameters)](const double* x) {
     const std::vector<float> own(x, x + is_column.size());
-    std::vector<float> y = answer(detail::standardised(*numbers, is_column, own.data()).data());
+    std::vector<float> y = answer(standardised(*numbers, is_column, own.data()).data());
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = y[k] * numbers->output_deviation[k] + numbers->output_mean[k];
-    return detail::in_double(commands(own.data(), y.data()));
+    return in_double(commands(own.data(), y.data()));
   };
   return ground;
 }
+
+}  // namespace detail
 
 PINNQUAD_BODY GroundModel<float> affine_model(const FitContext& context, const AffineMap& map, const RowSet& fitted) {
   if (map.inputs != context.inputs() || map.outputs != context.outputs()) {
@@ -94,7 +94,7 @@ PINNQUAD_BODY GroundModel<float> affine_model(const FitContext& context, const A
     return std::string("pinnquad::Network<float, pinnquad::") + inputs + "<" + std::to_string(map.inputs) +
            ">, pinnquad::Dense<" + std::to_string(map.outputs) + ">>";
   };
-  return fitted_model(context, {text("Inputs"), text("InputSize")}, parameters, fitted);
+  return detail::fitted_model(context, {text("Inputs"), text("InputSize")}, parameters, fitted);
 }
 
 }  // namespace pinnquad

@@ -35,23 +35,22 @@ PINNQUAD_BODY Certificate certificate_of_structured(const WrittenModel<float>& m
                               certified_vehicle<AxisCommandOutputs>(airframe_in<float>(model.airframe))});
 }
 
-}  // namespace detail
-
-PINNQUAD_BODY GroundModel<float> ground_model(const StructuredSet& from, const StructuredFit& fit,
-                                              const FitContext& context, const RowSet& fitted) {
+/// The model of a fit. `fitted`: the rows that it was fitted to, those of its context.
+PINNQUAD_BODY GroundModel<float> structured_model(const StructuredSet& from, const SeedFit& fit,
+                                                  const FitContext& context, const RowSet& fitted) {
   GroundModel<float> ground =
       fitted_model(context, fit.has_residual ? from.residual.predictor : from.residual.base, fit.parameters, fitted);
-  detail::WrittenModel<float>& written = ground.written;
-  written.certificate = detail::certificate_of_structured(written, context, fit.has_residual);
+  WrittenModel<float>& written = ground.written;
+  written.certificate = certificate_of_structured(written, context, fit.has_residual);
   if (!fit.has_residual) return ground;
-  const std::vector<int> others = detail::other_features(context.inputs(), context.features.accelerations);
+  const std::vector<int> others = other_features(context.inputs(), context.features.accelerations);
   const auto base_size = 3 * context.features.accelerations.size() + AxisCommandOutputs::size * (1 + others.size());
   const auto bounds = written.parameters.begin() + static_cast<std::ptrdiff_t>(base_size);
   const auto own = bounds + 2 * AxisCommandOutputs::size;
   ground.residual_lower.assign(bounds, bounds + AxisCommandOutputs::size);
   ground.residual_upper.assign(bounds + AxisCommandOutputs::size, own);
-  ground.residual = [numbers = std::make_shared<const detail::WrittenModel<float>>(written), others,
-                     network = detail::DescribedPredictor(from.residual.network, {own, written.parameters.end()})](
+  ground.residual = [numbers = std::make_shared<const WrittenModel<float>>(written), others,
+                     network = DescribedPredictor(from.residual.network, {own, written.parameters.end()})](
                         const double* x, double* y) {
     std::vector<float> shown;
     for (const int i : others) {
@@ -64,16 +63,20 @@ PINNQUAD_BODY GroundModel<float> ground_model(const StructuredSet& from, const S
   return ground;
 }
 
+}  // namespace detail
+
 PINNQUAD_BODY StructuredFits fit_structured(const StructuredSet& lower, const StructuredSet* higher,
                                             const RowSplit& split, const StructuredSettings& settings,
                                             const FitWork& work) {
-  auto made = detail::fit_structured_sets(lower, higher, split, settings, work);
-  StructuredFits fits{made.altitude, {}};
-  if (made.models.empty()) return fits;
+  const auto [altitude, made] = detail::fit_structured_sets(lower, higher, split, settings, work);
+  StructuredFits fits{altitude, {}};
+  if (made.empty()) return fits;
   const RowSet rows = detail::fitted_rows(split, settings);
-  const StructuredSet& set = made.altitude.taken ? *higher : lower;  // of every seed
+  const StructuredSet& set = altitude.taken ? *higher : lower;  // of every seed
   const FitContext context = set.context(rows);
-  for (const StructuredFit& fit : made.models) fits.models.push_back({fit, ground_model(set, fit, context, rows)});
+  for (const detail::SeedFit& fit : made) {
+    fits.models.push_back({fit, detail::structured_model(set, fit, context, rows)});
+  }
   return fits;
 }
 

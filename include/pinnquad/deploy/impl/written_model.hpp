@@ -21,7 +21,10 @@ PINNQUAD_BODY std::uint64_t hash_of_shape(const WrittenRecords& model) {
                       outputs = names_and_units(model.output_texts, 1);
   Fnv1a fnv;
   fnv.absorb_text(model.answer);
-  absorb_shape(fnv, features.names, features.units, outputs.names, outputs.units, model.vehicle_name,
+  const auto at = [](const NamesAndUnits& of) {
+    return [&of](std::size_t i) { return NameAndUnit{of.names[i], of.units[i]}; };
+  };
+  absorb_shape(fnv, features.names.size(), at(features), outputs.names.size(), at(outputs), model.vehicle_name,
                motor_torque_signs(model.airframe));
   return fnv.hash;
 }

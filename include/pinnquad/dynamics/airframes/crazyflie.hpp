@@ -17,7 +17,6 @@ struct Crazyflie {
 
   template <class Scalar>
   static constexpr Airframe<Scalar> value() {
-    constexpr double pi = 3.141592653589793;
     constexpr double thrust_per_rev_s_squared = 3.16e-10 * 3600;  // [U] 3.16e-10 N / rpm^2
     constexpr double torque_per_rev_s_squared = 7.94e-12 * 3600;  // [U] 7.94e-12 N m / rpm^2
     constexpr double d = 0.0462696;                               // propeller radius 23.1348 mm, Panerati

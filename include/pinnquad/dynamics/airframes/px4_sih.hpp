@@ -14,7 +14,6 @@ struct Px4Sih {
 
   template <class Scalar>
   static constexpr Airframe<Scalar> value() {
-    constexpr double pi = 3.141592653589793;
     constexpr double thrust_N = 5.0;    // [P] SIH_T_MAX
     constexpr double torque_N_m = 0.1;  // [P] SIH_Q_MAX
     constexpr double arm_m = 0.2;       // [P] SIH_L_ROLL, SIH_L_PITCH

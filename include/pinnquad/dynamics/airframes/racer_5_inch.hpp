@@ -14,7 +14,6 @@ struct Racer5Inch {
 
   template <class Scalar>
   static constexpr Airframe<Scalar> value() {
-    constexpr double pi = 3.141592653589793;
     constexpr double thrust_per_rev_s_squared = 1.562522e-6 * 4 * pi * pi;  // [A] 1.562522e-6 N s^2 / rad^2
     constexpr double torque_over_thrust_m = 0.022;                          // [A]
     constexpr double d = 0.127;                                             // 5 inches

@@ -20,7 +20,7 @@ PINNQUAD_BODY ConfidenceEllipse covariance_ellipse(const detail::JointMoments& m
   ellipse.center_y = moments.mean_y;
   ellipse.semi_major = sigmas * std::sqrt(largest);
   ellipse.semi_minor = sigmas * std::sqrt(smallest < 0 ? 0 : smallest);  // below 0 by rounding only; NaN goes through
-  ellipse.angle_deg = std::atan2(moments.covariance, half_difference) * (90 / detail::pi);
+  ellipse.angle_deg = std::atan2(moments.covariance, half_difference) * (90 / pi);
   if (ellipse.angle_deg <= -90) ellipse.angle_deg = 90;
   return ellipse;
 }
@@ -48,12 +48,12 @@ PINNQUAD_BODY double angle_difference_deg(double first_deg, double second_deg) {
 
 PINNQUAD_BODY std::vector<std::array<double, 2>> ellipse_outline(const ConfidenceEllipse& ellipse, std::size_t points) {
   if (points < 2) throw std::invalid_argument("ellipse_outline: expected at least 2 points");
-  const double angle = ellipse.angle_deg * (detail::pi / 180);
+  const double angle = ellipse.angle_deg * (pi / 180);
   const double cosine = std::cos(angle);
   const double sine = std::sin(angle);
   std::vector<std::array<double, 2>> outline(points);
   for (std::size_t i = 0; i + 1 < points; ++i) {
-    const double turn = 2 * detail::pi * static_cast<double>(i) / static_cast<double>(points - 1);
+    const double turn = 2 * pi * static_cast<double>(i) / static_cast<double>(points - 1);
     const double major = ellipse.semi_major * std::cos(turn);
     const double minor = ellipse.semi_minor * std::sin(turn);
     outline[i] = {ellipse.center_x + major * cosine - minor * sine, ellipse.center_y + major * sine + minor * cosine};

@@ -2,13 +2,14 @@
 // Bodies of identified_airframe.hpp.
 #pragma once
 
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/regression/identified_airframe.hpp"
 
 namespace pinnquad {
 
 PINNQUAD_BODY std::optional<IdentifiedAirframe> identified_airframe(const Identification& found,
                                                                     const Airframe<double>& like) {
-  constexpr double little_1_m = 0.05, pi = 3.141592653589793;
+  constexpr double little_1_m = 0.05;
   const auto positive = [](const Estimate& estimate) { return detail::is_taken(estimate); };
   if (!positive(found.thrust_m_s2) || !positive(found.effectiveness_rad_s2[0]) ||
       !positive(found.effectiveness_rad_s2[1]) || found.effectiveness_rad_s2[2].high() < 0 ||

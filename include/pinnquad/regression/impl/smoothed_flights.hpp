@@ -4,7 +4,7 @@
 
 #include "pinnquad/regression/smoothed_flights.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
 PINNQUAD_BODY SmoothedFlights::SmoothedFlights(const RowSet& rows, double window_s) : period_s_(sample_period_s(rows)) {
   if (!(period_s_ > 0)) return;
@@ -157,4 +157,4 @@ PINNQUAD_BODY void SmoothedFlights::take_stretch(const Flight& flight, const Ind
   stretches_.push_back(std::move(stretch));
 }
 
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

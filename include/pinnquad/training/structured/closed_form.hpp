@@ -74,12 +74,11 @@ std::vector<RowSet> whole_flight_groups(const RowSet& rows);
 /// Groups for cross-validation: whole_flight_groups(); where there is one flight, its quarters.
 std::vector<RowSet> left_out_groups(const RowSet& rows);
 
-/// A row's regression targets, of its standardised outputs y and its commands.
-using RegressionTarget = std::function<std::vector<double>(const double* y, const Commands<double>& commands)>;
-
-/// Sums over `rows` of standardised features and of `targets` numbers, `target(y, commands)`, a row.
-RegressionSums regression_sums(const FitContext& context, const RowSet& rows, int targets,
-                               const RegressionTarget& target);
+/// Sums over `rows` of standardised features and of `targets` numbers a row: `target` makes them of the row's
+/// standardised outputs y and its commands.
+RegressionSums regression_sums(
+    const FitContext& context, const RowSet& rows, int targets,
+    const std::function<std::vector<double>(const double* y, const Commands<double>& commands)>& target);
 
 /// Sums of standardised features and outputs.
 RegressionSums regression_sums(const FitContext& context, const RowSet& rows);

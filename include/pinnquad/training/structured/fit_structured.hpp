@@ -52,44 +52,17 @@ struct StructuredSettings {
 struct StructuredSet {
   GroundFeatures features;
   GivenAirframe airframe;
-  ResidualKind residual;
+  detail::ResidualKind residual;
 
   FitContext context(const RowSet& training) const {
     return fit_context(features, ground_outputs<AxisCommandOutputs>(airframe), airframe, training);
   }
 };
 
-/// The model of one seed: parameters of a MonotoneBase, or of a MonotonePredictor with its residual.
-struct StructuredFit {
-  std::vector<float> parameters;
-  bool has_residual = false;
-  bool with_altitude = false;
-  std::uint64_t seed = 0;
-  double validation_error = 0;  ///< mean absolute error of the commands on the validation rows, by least squares
-  double training_s = 0;        ///< wall-clock time of the residual's training
-  MeasuredSlopes slopes{};      ///< the same of all seeds
-};
-
 /// The choice of the altitude. Errors are those of the first seed; none where the rule is not by_validation.
 struct StructuredAltitude {
   bool taken = false;
   std::optional<double> error_with, error_without;
-};
-
-/// The fits of all seeds that were finished, in the order of the seeds. A model has its residual where that helps.
-template <class Fit>
-struct StructuredFitsIn {
-  StructuredAltitude altitude;
-  std::vector<Fit> models;
-
-  /// The model with the least error on the validation rows. Throws std::logic_error where no model was finished.
-  const Fit& best() const {
-    const auto less = [](const Fit& a, const Fit& b) {
-      return is_finite(a.validation_error) && !(b.validation_error <= a.validation_error);  // NaN is the worst
-    };
-    if (models.empty()) throw std::logic_error("structured fit: no model was finished");
-    return *std::min_element(models.begin(), models.end(), less);
-  }
 };
 
 /// The residual network of so many inputs.
@@ -99,7 +72,8 @@ using StructuredResidual = Mlp<float, InputSize<Inputs>, Hidden<2, 32>, OutputSi
 /// A set of features, the angular acceleration among them. `trainer`: detail::residual_trainer() of a
 /// StructuredResidual of as many inputs as there are other features, or of more: the bits are the same. Throws
 /// std::invalid_argument for features without the angular acceleration.
-StructuredSet structured_set(GroundFeatures features, const GivenAirframe& airframe, ResidualTrainer::Make trainer);
+StructuredSet structured_set(GroundFeatures features, const GivenAirframe& airframe,
+                             detail::ResidualTrainer::Make trainer);
 
 /// The set of a type. The residual trains with its inputs filled up to a multiple of sixteen: few networks are
 /// compiled, whatever the features.
@@ -128,12 +102,25 @@ class FitWork {
 
 namespace detail {
 
+/// The model of one seed: parameters of a MonotoneBase, or of a MonotonePredictor with its residual.
+struct SeedFit {
+  std::vector<float> parameters;
+  bool has_residual = false;
+  bool with_altitude = false;
+  std::uint64_t seed = 0;
+  double validation_error = 0;  ///< mean absolute error of the commands on the validation rows, by least squares
+  double training_s = 0;        ///< wall-clock time of the residual's training
+  MeasuredSlopes slopes{};      ///< the same of all seeds
+};
+
 /// Fits a structured model from each seed. The first seed tries both feature sets where the altitude is chosen
-/// by_validation; `higher` is null where there is no such choice. Throws std::invalid_argument for rows that are too
-/// few.
-StructuredFitsIn<StructuredFit> fit_structured_sets(const StructuredSet& without_altitude, const StructuredSet* higher,
-                                                    const RowSplit& split, const StructuredSettings& settings,
-                                                    const FitWork& work);
+/// by_validation; `higher` is null where there is no such choice. Fits that were finished, in the order of the seeds.
+/// Throws std::invalid_argument for rows that are too few.
+std::pair<StructuredAltitude, std::vector<SeedFit>> fit_structured_sets(const StructuredSet& without_altitude,
+                                                                        const StructuredSet* higher,
+                                                                        const RowSplit& split,
+                                                                        const StructuredSettings& settings,
+                                                                        const FitWork& work);
 
 /// The rows that a model is fitted to.
 RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings);

@@ -22,28 +22,20 @@
 
 namespace pinnquad {
 
-/// The result of a residual's fit: base alone or both.
-struct FittedResidual {
-  std::vector<float> parameters;  ///< of base and residual
-  std::vector<float> base;        ///< of the base alone: flies where the residual is not kept
+/// The result of a residual's fit, base alone and both: predictors, or their parameters.
+template <class Base, class Predictor>
+struct ResidualFit {
+  Predictor predictor{};  ///< base and residual
+  Base base{};            ///< alone: flies where the residual is not kept
   bool residual_kept = false;
   bool finished = true;              ///< false: goes_on() stopped it
   int epoch = -1;                    ///< after which the residual was best
   double base_error = 0, error = 0;  ///< mean absolute error of the commands on the validation rows
 };
 
-/// The same with types.
-template <class FeatureSet, class Predictor>
-struct ResidualFit {
-  Predictor predictor{};
-  MonotoneBase<FeatureSet> base{};
-  bool residual_kept = false;
-  bool finished = true;
-  int epoch = -1;
-  double base_error = 0, error = 0;
-};
-
 namespace detail {
+
+using FittedResidual = ResidualFit<std::vector<float>, std::vector<float>>;
 
 /// Mean absolute error of the commands over standardised rows.
 double command_error(const FitContext& context, const DescribedPredictor& predictor, const FitRows& rows);
@@ -69,16 +61,11 @@ FittedResidual fit_residual(const FitContext& context, const ResidualKind& kind,
                             const RowSet& validation, const AffineMap& map, const ResidualTraining& how,
                             std::mt19937_64& engine, const GoesOn& goes_on);
 
-template <class FeatureSet, class Predictor>
-ResidualFit<FeatureSet, Predictor> with_types(const FittedResidual& fit) {
-  ResidualFit<FeatureSet, Predictor> typed;
-  std::copy(fit.parameters.begin(), fit.parameters.end(), typed.predictor.parameters.begin());
+template <class Base, class Predictor>
+ResidualFit<Base, Predictor> with_types(const FittedResidual& fit) {
+  ResidualFit<Base, Predictor> typed{{}, {}, fit.residual_kept, fit.finished, fit.epoch, fit.base_error, fit.error};
+  std::copy(fit.predictor.begin(), fit.predictor.end(), typed.predictor.parameters.begin());
   std::copy(fit.base.begin(), fit.base.end(), typed.base.parameters.begin());
-  typed.residual_kept = fit.residual_kept;
-  typed.finished = fit.finished;
-  typed.epoch = fit.epoch;
-  typed.base_error = fit.base_error;
-  typed.error = fit.error;
   return typed;
 }
 
@@ -92,9 +79,9 @@ auto fit_monotone(const ContextType& context, const RowSet& training, const RowS
                   const ResidualTraining& how, std::mt19937_64& engine, const GoesOn& goes_on) {
   using Features = typename ContextType::Features;
   using Predictor = MonotonePredictor<Features, Residual>;
-  const ResidualKind kind =
-      detail::residual_kind<Residual, Predictor, MonotoneBase<Features>>(false, detail::NoProjection{});
-  return detail::with_types<Features, Predictor>(
+  using Base = MonotoneBase<Features>;
+  const detail::ResidualKind kind = detail::residual_kind<Residual, Predictor, Base>(false, detail::NoProjection{});
+  return detail::with_types<Base, Predictor>(
       detail::fit_residual(fit_context(context), kind, training, validation, map, how, engine, goes_on));
 }
 

@@ -38,6 +38,8 @@ struct ResidualTraining {
 /// Asked before each epoch; false stops the training.
 using GoesOn = std::function<bool(int epoch)>;
 
+namespace detail {
+
 /// Rows of standardised features and outputs, row-major: a TrainingData whose sizes are values.
 struct FitRows {
   int inputs = 0;
@@ -77,8 +79,6 @@ struct ResidualKind {
   bool shown_accelerations = false;
   ResidualTrainer::Make trainer;
 };
-
-namespace detail {
 
 /// Features of a network of so many inputs, for the trainer that sees numbers alone.
 template <int Size>

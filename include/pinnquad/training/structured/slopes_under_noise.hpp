@@ -19,18 +19,18 @@
 
 namespace pinnquad {
 
-/// A feature of which noise bends a slope, as the rows before and after tell it.
-struct DenoisedFeature {
-  int place = 0;
-  /// Of the standardised features, then of the noisy ones before and after; the noisy ones of now count nothing.
-  AffineMap by_neighbours;
-};
-
-/// Of a monotone base.
+/// The slopes of a monotone base, and what noise bends them.
 struct MeasuredSlopes {
+  /// A feature of which noise bends a slope, as the rows before and after tell it.
+  struct Denoised {
+    int place = 0;
+    /// Of the standardised features, then of the noisy ones before and after; the noisy ones of now count nothing.
+    AffineMap by_neighbours;
+  };
+
   SlopesOfSums of;
-  std::vector<int> noisy;                 ///< MonotoneShape::noisy
-  std::vector<DenoisedFeature> denoised;  ///< of the slopes by instruments
+  std::vector<int> noisy;          ///< MonotoneShape::noisy
+  std::vector<Denoised> denoised;  ///< of the slopes by instruments
   bool by_instruments() const { return !denoised.empty(); }
 };
 
@@ -52,14 +52,14 @@ std::vector<RegressionSums> instrumented_blocks(const FitContext& context, const
                                                 const std::vector<int>& noisy);
 
 /// A noisy feature as the others that `told` names, and the noisy ones of the neighbours, tell it:
-/// DenoisedFeature::by_neighbours. `all`: of instrumented_blocks().
+/// MeasuredSlopes::Denoised. `all`: of instrumented_blocks().
 AffineMap by_neighbours(const MonotoneShape& shape, const std::vector<int>& noisy, const RegressionSums& all, int place,
                         std::vector<bool> told);
 
 /// The specific force along the thrust axis at each tap of a window, as what the neighbours' windows have
 /// instrument_lag_s off this tap tells it. `all`: of instrumented_blocks(), MonotoneShape::thrusts the noisy ones.
-std::vector<DenoisedFeature> denoised_taps(const FitContext& context, const MonotoneShape& shape,
-                                           const RegressionSums& all);
+std::vector<MeasuredSlopes::Denoised> denoised_taps(const FitContext& context, const MonotoneShape& shape,
+                                                    const RegressionSums& all);
 
 }  // namespace detail
 

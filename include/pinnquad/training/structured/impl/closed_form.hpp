@@ -43,8 +43,9 @@ PINNQUAD_BODY std::vector<RowSet> left_out_groups(const RowSet& rows) {
   return groups;
 }
 
-PINNQUAD_BODY RegressionSums regression_sums(const FitContext& context, const RowSet& rows, int targets,
-                                             const RegressionTarget& target) {
+PINNQUAD_BODY RegressionSums
+regression_sums(const FitContext& context, const RowSet& rows, int targets,
+                const std::function<std::vector<double>(const double* y, const Commands<double>& commands)>& target) {
   RegressionSums sums(context.inputs(), targets);
   context.each_standardised(rows, [&](const Flight& flight, std::size_t row, const double* x, const double* y) {
     sums.add(x, target(y, flight[row].commands).data());

@@ -59,10 +59,10 @@ class StructuredFitter {
   }
 
   /// None where `goes_on` stopped it.
-  std::optional<StructuredFit> operator()(std::uint64_t seed, const GoesOn& goes_on) const {
+  std::optional<SeedFit> operator()(std::uint64_t seed, const GoesOn& goes_on) const {
     const auto start = std::chrono::steady_clock::now();
     const auto done = [&](std::vector<float> parameters, bool has_residual, double error) {
-      StructuredFit made{with_measured_slopes(std::move(parameters)), has_residual, false, seed, error, 0, slopes_};
+      SeedFit made{with_measured_slopes(std::move(parameters)), has_residual, false, seed, error, 0, slopes_};
       made.training_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       return made;
     };
@@ -75,7 +75,7 @@ class StructuredFitter {
       if (!gains) return {};
       kept = *gains;
     }
-    return kept ? done(fit.parameters, true, fit.error) : done(fit.base, false, fit.base_error);
+    return kept ? done(fit.predictor, true, fit.error) : done(fit.base, false, fit.base_error);
   }
 
  private:
@@ -136,8 +136,8 @@ class StructuredFitter {
       if (!finished) return;
       const FitRows unseen = fit_rows(context_, group);
       base_error += unseen.size() * command_error(context_, {kind_.base, fit.base}, unseen);
-      const bool has_residual = !fit.parameters.empty();
-      error += unseen.size() * (has_residual ? command_error(context_, {kind_.predictor, fit.parameters}, unseen)
+      const bool has_residual = !fit.predictor.empty();
+      error += unseen.size() * (has_residual ? command_error(context_, {kind_.predictor, fit.predictor}, unseen)
                                              : command_error(context_, {kind_.base, fit.base}, unseen));
     });
     if (!finished) return {};
@@ -151,7 +151,7 @@ class StructuredFitter {
   /// Groups left out in turn say how long the residual is trained and what share of each output counts; then base and
   /// residual are fitted to all rows.
   template <class Done>
-  std::optional<StructuredFit> fit_by_groups(std::uint64_t seed, const GoesOn& goes_on, const Done& done) const {
+  std::optional<SeedFit> fit_by_groups(std::uint64_t seed, const GoesOn& goes_on, const Done& done) const {
     const std::vector<float> base = base_parameters(context_.features.accelerations, map_);
     if (groups_.size() < 2) {  // nothing to choose by
       return done(base, false, std::numeric_limits<double>::quiet_NaN());
@@ -222,10 +222,9 @@ class StructuredFitter {
   bool whole_flights_ = false;
 };
 
-PINNQUAD_BODY StructuredFitsIn<StructuredFit> fit_structured_sets(const StructuredSet& without_altitude,
-                                                                  const StructuredSet* higher, const RowSplit& split,
-                                                                  const StructuredSettings& settings,
-                                                                  const FitWork& work) {
+PINNQUAD_BODY std::pair<StructuredAltitude, std::vector<SeedFit>> fit_structured_sets(
+    const StructuredSet& without_altitude, const StructuredSet* higher, const RowSplit& split,
+    const StructuredSettings& settings, const FitWork& work) {
   using Altitude = StructuredSettings::Altitude;
   std::optional<StructuredFitter> fitters[2];  // without the altitude, with it
   const Altitude rule = higher != nullptr ? settings.altitude : Altitude::no;
@@ -237,15 +236,15 @@ PINNQUAD_BODY StructuredFitsIn<StructuredFit> fit_structured_sets(const Structur
     return made;
   };
 
-  StructuredFitsIn<StructuredFit> fits;
-  StructuredAltitude& choice = fits.altitude;
+  StructuredAltitude choice;
+  std::vector<SeedFit> fits;
   choice.taken = rule == Altitude::yes;
-  std::vector<std::optional<StructuredFit>> made(static_cast<std::size_t>(std::max(settings.seeds, 0)));
+  std::vector<std::optional<SeedFit>> made(static_cast<std::size_t>(std::max(settings.seeds, 0)));
   std::size_t next = 0;  // seed that is fitted next
   if (rule == Altitude::by_validation && !made.empty()) {
-    std::optional<StructuredFit> tried[2];
+    std::optional<SeedFit> tried[2];
     work.run(2, [&](std::size_t i) { return (tried[i] = fit(i == 1, settings.first_seed)).has_value(); });
-    if (!tried[0] || !tried[1]) return fits;
+    if (!tried[0] || !tried[1]) return {choice, fits};
     choice.error_without = tried[0]->validation_error;
     choice.error_with = tried[1]->validation_error;
     choice.taken = *choice.error_with < (1 - settings.least_altitude_gain) * *choice.error_without;
@@ -258,9 +257,9 @@ PINNQUAD_BODY StructuredFitsIn<StructuredFit> fit_structured_sets(const Structur
   };
   if (next < made.size()) work.run(made.size() - next, finish);
   for (auto& one : made) {
-    if (one) fits.models.push_back(std::move(*one));
+    if (one) fits.push_back(std::move(*one));
   }
-  return fits;
+  return {choice, fits};
 }
 
 /// The residual, the base, and both, of these features: as descriptions, or as types of a header, which have other
@@ -281,11 +280,11 @@ PINNQUAD_BODY std::array<std::string, 3> monotone_texts(const GroundFeatures& fe
 }  // namespace detail
 
 PINNQUAD_BODY StructuredSet structured_set(GroundFeatures features, const GivenAirframe& airframe,
-                                           ResidualTrainer::Make trainer) {
+                                           detail::ResidualTrainer::Make trainer) {
   if (features.accelerations.empty()) {
     throw std::invalid_argument("a structured model needs features that hold the angular acceleration");
   }
-  const PredictorText one = detail::predictor_text<StructuredResidual<1>>();
+  const detail::PredictorText one = detail::predictor_text<StructuredResidual<1>>();
   const auto said =
       detail::monotone_texts(features, one.description, "pinnquad::Inputs", "pinnquad::Bounded", "pinnquad::Withheld");
   const auto types =

@@ -91,8 +91,8 @@ PINNQUAD_BODY FittedResidual fit_residual(const FitContext& context, const Resid
                                   best = trainer.parameters();
                                 });
   if (!fit.finished || best.empty()) return fit;
-  fit.parameters = base_and_residual(kind, fit.base, best, rows);
-  fit.error = command_error(context, {kind.predictor, fit.parameters}, unseen);
+  fit.predictor = base_and_residual(kind, fit.base, best, rows);
+  fit.error = command_error(context, {kind.predictor, fit.predictor}, unseen);
   fit.residual_kept = fit.error < (1 - how.least_gain) * fit.base_error;
   return fit;
 }

@@ -4,7 +4,7 @@
 
 #include "pinnquad/training/structured/residual_trainer.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
 PINNQUAD_BODY FitRows fit_rows(const FitContext& context, const RowSet& from) {
   FitRows rows{context.inputs(), {}, {}};
@@ -15,4 +15,4 @@ PINNQUAD_BODY FitRows fit_rows(const FitContext& context, const RowSet& from) {
   return rows;
 }
 
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

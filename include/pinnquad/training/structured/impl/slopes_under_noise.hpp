@@ -95,14 +95,14 @@ PINNQUAD_BODY AffineMap by_neighbours(const MonotoneShape& shape, const std::vec
   return fit_ridge(all.of_input(place), smallest_penalty(), told);
 }
 
-PINNQUAD_BODY std::vector<DenoisedFeature> denoised_taps(const FitContext& context, const MonotoneShape& shape,
-                                                         const RegressionSums& all) {
+PINNQUAD_BODY std::vector<MeasuredSlopes::Denoised> denoised_taps(const FitContext& context, const MonotoneShape& shape,
+                                                                  const RegressionSums& all) {
   const std::size_t taps = shape.thrusts.size();
   const RunTimeWindow& window = context.features.window;
   const auto time_s = [&window](std::size_t tap) {
     return tap == 0 ? 0.0 : window.offset_s(static_cast<int>(tap) - 1);
   };
-  std::vector<DenoisedFeature> denoised;
+  std::vector<MeasuredSlopes::Denoised> denoised;
   for (std::size_t tap = 0; tap < taps; ++tap) {
     std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
     for (std::size_t i = 0; i < 2 * taps; ++i) {
@@ -127,7 +127,7 @@ PINNQUAD_BODY void each_denoised(const FitContext& context, const MeasuredSlopes
         [&](std::size_t row, const double* x, const double*, const double* before, const double* after) {
           const std::vector<double> told = detail::with_instruments(context, slopes.noisy, x, before, after);
           std::vector<double> denoised(x, x + context.inputs());
-          for (const DenoisedFeature& feature : slopes.denoised) {
+          for (const MeasuredSlopes::Denoised& feature : slopes.denoised) {
             const auto at = static_cast<std::size_t>(feature.place);
             denoised[at] =
                 context.input_mean[at] + context.input_deviation[at] * feature.by_neighbours(told.data()).front();

@@ -55,12 +55,12 @@ constexpr void check_settings(const Policy& policy) {
   static_assert(
       detail::has_whole_check<Policy>(),
       "pinnquad: a policy's check() must be `void check() const` without parameters; this one would be passed "
-      "over (data/settings.hpp)");
+      "over (schedule/settings.hpp)");
   if constexpr (is_detected<detail::CheckOf, Policy>) policy.check();
 }
 
 }  // namespace pinnquad
 
 #ifndef PINNQUAD_COMPILED
-#include "pinnquad/data/impl/settings.hpp"
+#include "pinnquad/schedule/impl/settings.hpp"
 #endif

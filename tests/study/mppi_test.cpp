@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pinnquad/control/mppi.hpp"
+#include "study/mppi.hpp"
 
 #include <doctest/doctest.h>
 
@@ -15,6 +15,7 @@
 namespace {
 
 using namespace pinnquad;
+using namespace study;
 using Vehicle = Quadrotor<float, StandardAtmosphere, QuadraticDrag>;
 using Small = Mppi<Vehicle, 64, 20>;  // an unoptimised build flies a tenth of the flights of 512 x 40
 

@@ -6,18 +6,10 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
 
 namespace pinnquad {
-
-/// Times that an exported model can state of its clock: a sample period, a lag that was removed. False for NaN.
-inline constexpr double longest_clock_s = 4.0;
-/// 0 to longest_clock_s.
-PINNQUAD_ALWAYS_INLINE constexpr bool is_clock_time(double seconds) noexcept {
-  return seconds >= 0.0 && seconds <= longest_clock_s;
-}
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {

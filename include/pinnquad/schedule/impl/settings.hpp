@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "pinnquad/data/settings.hpp"
+#include "pinnquad/schedule/settings.hpp"
 
 namespace pinnquad::detail {
 

@@ -16,7 +16,9 @@
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/vehicle/lanes_of_vehicles.hpp"
 
-namespace pinnquad {
+namespace study {
+
+using namespace pinnquad;
 
 /// Costs are per step, of squares; the values are ours.
 struct MppiSettings {
@@ -66,11 +68,11 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
     bool holds = true;
     for (const float positive :
          {s.step_s, s.temperature, s.thrust_deviation_m_s2, s.rate_deviation_rad_s, s.most_off_m}) {
-      holds = holds && detail::plausible(positive);
+      holds = holds && pinnquad::detail::plausible(positive);
     }
     for (const float cost : {s.position_cost_1_m2, s.velocity_cost_s2_m2, s.attitude_cost, s.rate_cost_s2,
                              s.thrust_cost_s4_m2, s.rate_gain_1_s, s.yaw_rate_gain_1_s}) {
-      holds = holds && detail::plausible_or_zero(cost);
+      holds = holds && pinnquad::detail::plausible_or_zero(cost);
     }
     return holds ? vehicle_.status() : Status::out_of_range;
   }
@@ -174,7 +176,7 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
       if (flat != Status::ok) return flat;
     }
     const Vector3<float> off = start.body.position_m - sample(start.time_s).position_m;
-    const float off_m = detail::square_root(off.squaredNorm());
+    const float off_m = pinnquad::detail::square_root(off.squaredNorm());
     if (off_m > settings_.most_off_m) {
       for (TrajectoryPoint<float>& point : points_) point.position_m += off * (1 - settings_.most_off_m / off_m);
     }
@@ -201,7 +203,7 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
       if (!(cost_[rollout] < std::numeric_limits<float>::max())) continue;
       const float exponent = temperature > 0 ? (cost_[rollout] - least) / temperature : 0.0f;
       if (exponent > 20) continue;
-      const float weight = detail::exponential(-exponent);
+      const float weight = pinnquad::detail::exponential(-exponent);
       whole += weight;
       for (std::size_t stretch = 0; stretch < mean.size(); ++stretch) {
         const Change<float> tried = disturbance(rollout, stretch);
@@ -269,4 +271,4 @@ class Mppi<Quadrotor<float, Effects...>, Rollouts, Steps> {
   bool begun_ = false;
 };
 
-}  // namespace pinnquad
+}  // namespace study
