@@ -87,7 +87,7 @@ def test_what_flies_worse_than_without_jerk_is_not_exported_without_a_word(pinnq
     report, comment = report_of("asked"), Path("asked/model.hpp").read_text().split("#pragma once")[0]
     loop = report["closed_loop"]
     assert report["exported_model"] == "ridge_causal" and loop["model"]["rmse_m"] > loop["without_jerk"]["rmse_m"]
-    assert re.search("^train: warning: DO NOT FLY .* without the path's jerk .* cm", done.err, re.M), done
+    assert re.search("^train: warning: DO NOT FLY: .* without the path's jerk .* cm", done.err, re.M), done
     assert any("DO NOT FLY" in warning for warning in report["warnings"])
     assert comment.splitlines()[2].startswith("// DO NOT FLY: ") and "without the path's jerk" in comment
     assert all(len(line) <= 120 for line in comment.splitlines())

@@ -64,8 +64,11 @@ def test_reports(pinnquad, trained, flight):
     structured, warned = default["models"]["structured"], (trained() / "stderr.txt").read_text()
     motors = [motor["r2"]["mean"] for motor in structured["per_motor"].values()]
     assert abs(default["verdict"]["worst_motor_r2"] - min(motors)) <= 1e-9 < default["verdict"]["r2"] - min(motors)
-    for network in "paper_vanilla", "paper_physics_informed":  # a network that errs less is told, and no other
-        less = default["models"][network]["validation_mae"]["mean"] < structured["validation_mae"]["mean"]
+    error = default["verdict"]["held_out_rmse"]
+    networks = {name: default["models"][name]["rmse"]["mean"] for name in ("paper_vanilla", "paper_physics_informed")}
+    assert error["best_other_model"] == min(networks, key=networks.get) and error["exported"] == structured["rmse"]["mean"]
+    for network in networks:  # one that errs less by a tenth is told, and no other
+        less = network == error["best_other_model"] and networks[network] < 0.9 * structured["rmse"]["mean"]
         assert (f"--export {network} exports it" in warned) == less, network
 
     of_paper, of_best, of_small = (report["settings"]["networks"][name] for report, name in (

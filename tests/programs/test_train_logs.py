@@ -38,6 +38,8 @@ HELD = "--hold-out flight3"
     ("logs --hold-out flight1 --hold-out-each flight", "", "--hold-out-each"),
     ("--hold-out flight1", "", "expected FLIGHTS"), ("logs --hold-out flight1 --models ridge --slopes pinned", "", "--slopes"),
     ("logs --hold-out flight1 --recipe best", "", "--models NAME"),
+    ("logs --hold-out flight1 --validate flight1", "", "--validate flight1: is held out"),
+    ("logs --hold-out flight1 --validate fligth2", "", "nearest: flight"),
     ("logs --hold-out flight1 --models formula,paper_vanilla --export formula", "", "nearest"),
     ("logs --hold-out-each row", "", "hold-out-each"),
     # a lag or a clock that no header can state, a command that stands still: found before the folder and the training
@@ -120,12 +122,51 @@ def test_lost_in_the_loop(pinnquad, logs):
     for words, exported in ("", "structured"), ("--export ridge", "ridge"):
         done = pinnquad(f"{TRAIN} --hold-out flight3 --models constant,ridge,structured --slopes pinned {words} --seeds 1 --out lost")
         report = report_of("lost")
-        error = {kind: report["models"][kind]["validation_mae"]["mean"] for kind in ("ridge", "structured")}
+        error = {kind: report["models"][kind]["choosing_rmse"] for kind in ("ridge", "structured")}
         assert error["ridge"] < error["structured"]
         loop = report["closed_loop"]
         assert report["exported_model"] == exported
         assert (loop["model"]["rmse_m"] > loop["without_jerk"]["rmse_m"]) == (exported == "ridge"), loop
         assert re.search("^train: warning: ridge .* not fit to fly", done.err, re.M), done
+
+
+def test_another_payload_has_no_say(pinnquad, dataset, flown):
+    """It trains; each other flight that is not held out chooses what is exported, and header, report and page begin
+    with what comes of it."""
+    pinnquad("airframe convert paper_quadrotor --out heavy.toml")
+    Path("heavy.toml").write_text(re.sub("(?m)^mass_kg = .*", "mass_kg = 1.95", Path("heavy.toml").read_text()))
+    pinnquad("fly --airframe heavy.toml --seed 4 --samples 1000 --out heavy.csv")
+    flights = {f"flight{seed}": flown(f"--seed {seed} --samples 1000") for seed in (1, 2, 3)}
+    dataset("mixed", {"heavy": "heavy.csv", **flights})
+    words = "train mixed --airframe paper_quadrotor --hold-out flight3 --models constant,linear,ridge --seeds 1"
+    done = pinnquad(f"{words} --out own")
+    assert "import: heavy: columns u1 to u4: thrust of a rotor over mass" in done.err
+    report = report_of("own")
+    (fold,) = report["folds"]
+    assert fold["chosen_by"].startswith("flight") and "not by heavy" in fold["chosen_by"], fold
+    assert fold["validation"] != ["heavy"] and "heavy" in fold["train"]
+    models, verdict = report["models"], report["verdict"]
+    assert models["ridge"]["choosing_rmse"] < models["linear"]["choosing_rmse"] and report["exported_model"] == "ridge"
+    error = verdict["held_out_rmse"]
+    assert error["exported"] == models["ridge"]["rmse"]["mean"] and error["best_other_model"] == "linear"
+    assert error["exported"] < error["best_other"] == models["linear"]["rmse"]["mean"] < error["mean_commands"]
+    assert verdict["in_words"] in done.out.split("[4/5]")[1].split("\n")[1]
+    comment = " ".join(line[3:] for line in Path("own/model.hpp").read_text().split("#pragma once")[0].split("\n")[2:])
+    assert comment.startswith(f"{verdict['in_words']}. rms error of the commands held out: "), comment
+    assert verdict["in_words"].split(",")[0] in Path("own/report.html").read_text().split("chosen for the header")[0]
+
+    done = pinnquad(f"{words} --validate heavy --out named")
+    assert report_of("named")["folds"][0]["chosen_by"] == "heavy, as --validate says"
+    assert report_of("named")["folds"][0]["validation"] == ["heavy"]
+    # a worse one by name: which is better, and that this one is not to fly
+    done = pinnquad(f"{words} --export linear --out asked")
+    assert re.search("^train: warning: DO NOT FLY: linear .*(beaten by ridge.*--export ridge|figure-eight)", done.err, re.M), done
+    assert not report_of("asked")["verdict"]["fit_to_fly"]
+    # the only flight of its vehicle: by its quarters, and what would be better
+    dataset("two", {"heavy": "heavy.csv", "flight1": flights["flight1"], "flight3": flights["flight3"]})
+    replaced("two/dataset.json", "two/dataset.json", ('"name": "flight1"', '"name": "alone"'))
+    done = pinnquad("train two --airframe paper_quadrotor --hold-out flight3 --models constant,ridge --seeds 1 --out two_out")
+    assert re.search("^train: warning: what is exported is chosen by alone, each quarter .* better: another flight", done.err, re.M), done
 
 
 def test_not_proven(pinnquad, logs):
@@ -275,7 +316,7 @@ def test_vehicle_that_is_not_told(pinnquad, recorded, made):
     assert list(report["closed_loop"]) == ["why_not"] and "not flown" in done.err
     assert "airframe's own" not in done.out and "slope is not" not in done.err, done
     header = Path("nano/model.hpp").read_text()
-    assert 'name = "crazyflie_2_1, assumed"' in header and header.splitlines()[2].startswith("// AIRFRAME ASSUMED")
+    assert 'name = "crazyflie_2_1, assumed"' in header and "\n// AIRFRAME ASSUMED" in header
     assert 9.81 / 4 / effects_of("nano/model.hpp")[0] == pytest.approx(0.8486, rel=0.01)  # the mean of the commands
 
 

@@ -118,6 +118,9 @@ class VehicleCheck {
   VehicleCheck(std::vector<Judged> flights, const Airframe<double>& airframe, bool known)
       : flights_(std::move(flights)), airframe_(airframe), known_(known) {}
 
+  /// Flights whose numbers are not those of most others.
+  const std::vector<std::size_t>& unlike() const { return unlike_; }
+
   std::vector<VehicleFinding> run() {
     for (std::size_t i = 0; i < flights_.size(); ++i) {
       if (check_force(i) || check_signs(i)) continue;
@@ -300,6 +303,7 @@ class VehicleCheck {
     }
     for (std::size_t i = 0; i < flights_.size(); ++i) {
       if (off[i].empty()) continue;
+      unlike_.push_back(i);
       say(i,
           "columns u1 to u4: " + off[i] + (none_agree ? ", and no two flights agree" : "") +
               ": a payload, another battery or propeller, or another range of the commands",
@@ -310,7 +314,7 @@ class VehicleCheck {
   std::vector<Judged> flights_;
   const Airframe<double>& airframe_;
   bool known_;
-  std::vector<std::size_t> wrong_;
+  std::vector<std::size_t> wrong_, unlike_;
   std::vector<VehicleFinding> findings_;
 };
 
@@ -329,8 +333,14 @@ void check_vehicle(ImportedDataset& dataset, const Airframe<double>& airframe, b
     judged[i] = judge(flights[i], airframe, dataset.lag_removed_s);
     done.fetch_add(1);
   });
-  for (const VehicleFinding& finding : VehicleCheck(std::move(judged), airframe, known).run()) {
-    dataset.warnings.push_back(finding.sentence);
+  VehicleCheck check(std::move(judged), airframe, known);
+  const std::vector<VehicleFinding> findings = check.run();
+  dataset.unlike.clear();
+  for (const std::size_t i : check.unlike()) dataset.unlike.push_back(flights[i].name);
+  for (const VehicleFinding& finding : findings) {
+    if (std::find(dataset.warnings.begin(), dataset.warnings.end(), finding.sentence) == dataset.warnings.end()) {
+      dataset.warnings.push_back(finding.sentence);  // an import may have found it
+    }
     if (!finding.contradicts) continue;
     dataset.contradictions.push_back(
         dataset.sources[finding.flight] +

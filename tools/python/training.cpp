@@ -137,7 +137,7 @@ class Training {
     if (choices.hold_out.empty()) {
       folds.push_back(programs::fold_in_order(dataset_.flights));
     } else {
-      folds = programs::folds_of(dataset_.flights, {choices.hold_out, {}});
+      folds = programs::folds_of(dataset_.flights, {choices.hold_out, {}, {}, dataset_.unlike});
     }
     programs::require_sound(options, dataset_, folds);
     bool known_by_name = false;

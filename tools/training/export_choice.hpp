@@ -24,38 +24,35 @@ namespace programs {
 inline constexpr const char* export_causal = "causal";
 inline constexpr const char* export_centred = "centred";
 
-namespace detail {
-
-/// Over the fits that were not fitted to the validation rows.
-inline double mean_validation_mae(const JudgedKind& kind) {
+/// The error that chooses between kinds, mean over the judges. After a rotation the judges are the partings whose
+/// flights were held out: every flight was once, and the export is fitted anew. Else they are none of the rows held
+/// out, which have no say.
+inline double choosing_error(const FitPlan& plan, const JudgedKind& kind) {
   std::vector<double> errors;
   for (const JudgedFit& fit : kind.fits) {
-    if (std::isfinite(fit.validation_mae)) errors.push_back(fit.validation_mae);
+    const bool rotated = plan.folds.size() > 1;
+    if (rotated && plan.folds[fit.fold].chooses) errors.push_back(mean_over_motors(fit.errors.root_mean_square));
+    if (!rotated) errors.insert(errors.end(), fit.chosen_by.begin(), fit.chosen_by.end());
   }
   return pinnquad::summarize(errors).mean;
 }
 
-}  // namespace detail
-
 /// The kinds that may be exported, indices of judged.kinds, best first; none if nothing fits the choice. One whose
-/// signs are not proven is exported by its name alone. After a rotation by their held-out error: every flight was held
-/// out once, and the export is fitted anew. Else by their error on the validation rows: the rows held out have no say.
-/// Throws std::invalid_argument for the key of a kind that was not judged.
-inline std::vector<std::size_t> kinds_to_export(const JudgedKinds& judged, const std::string& choice, bool rotated) {
+/// signs are not proven is exported by its name alone. Throws std::invalid_argument for the key of a kind that was not
+/// judged.
+inline std::vector<std::size_t> kinds_to_export(const FitPlan& plan, const JudgedKinds& judged,
+                                                const std::string& choice) {
   for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
     if (choice != judged.kinds[k].kind.key) continue;
     if (judged.kinds[k].applicable()) return {k};  // what was asked for by name
     throw std::invalid_argument("--export " + choice + ": not applicable: " + judged.kinds[k].not_applicable);
   }
-  std::vector<std::size_t> order = ranking(judged, choice == export_centred);
-  order.erase(std::remove_if(
-                  order.begin(), order.end(),
-                  [&judged](std::size_t k) { return !judged.kinds[k].kind.exportable || !judged.kinds[k].proven(); }),
-              order.end());
-  if (rotated) return order;
-  const auto error_of = [&judged](std::size_t k) { return detail::mean_validation_mae(judged.kinds[k]); };
-  order.erase(std::remove_if(order.begin(), order.end(), [&](std::size_t k) { return !std::isfinite(error_of(k)); }),
-              order.end());
+  const auto error_of = [&](std::size_t k) { return choosing_error(plan, judged.kinds[k]); };
+  std::vector<std::size_t> order;
+  for (const std::size_t k : ranking(judged, choice == export_centred)) {
+    const JudgedKind& kind = judged.kinds[k];
+    if (kind.kind.exportable && kind.proven() && std::isfinite(error_of(k))) order.push_back(k);
+  }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return error_of(a) < error_of(b); });
   return order;
 }

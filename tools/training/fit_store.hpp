@@ -14,6 +14,7 @@
 #include <system_error>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "command_line/folders.hpp"
 #include "pinnquad/core/fnv1a.hpp"
@@ -44,6 +45,10 @@ class FitStore : public KnownFits {
       if (!read(file, row)) return false;
     }
     if (!read(file, loaded.guard)) return false;
+    loaded.chosen_by.resize(head.judges <= most_judges ? head.judges : 0);
+    for (double& error : loaded.chosen_by) {
+      if (!read(file, error)) return false;
+    }
     loaded.validation_mae = head.validation_mae;
     loaded.fit_s = head.fit_s;
     loaded.biases = head.biases;
@@ -68,10 +73,12 @@ class FitStore : public KnownFits {
     head.derivatives = job.derivatives;
     head.altitude = job.altitude;
     head.proven = job.proven ? 1 : 0;
+    head.judges = job.chosen_by.size();
     pinnquad::AtomicFile file(path_of(job));
     write(file.stream(), head);
     for (const auto& row : job.held_out) write(file.stream(), row);
     write(file.stream(), job.guard);
+    for (const double error : job.chosen_by) write(file.stream(), error);
     file.commit();
   }
 
@@ -85,16 +92,18 @@ class FitStore : public KnownFits {
   }
 
  private:
+  static constexpr std::uint64_t most_judges = 100000;  // a broken file asks for no more
+
   /// As this machine has it in memory: such a file is read by the program that wrote it.
   struct Head {
-    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '5'};
+    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '6'};
     std::uint64_t key = 0, rows = 0;
     double validation_mae = 0, fit_s = 0;
     pinnquad::BiasTrial biases;
     double looks_ahead_s = 0;
     DerivativeFigures derivatives;
     AltitudeChoice altitude;
-    std::uint64_t proven = 0;
+    std::uint64_t proven = 0, judges = 0;
   };
   static_assert(std::is_trivially_copyable_v<Head>);
 
@@ -179,8 +188,10 @@ class FitStore : public KnownFits {
     fnv.absorb_word(of_plan_);
     fnv.absorb_text(plan_.kinds[job.kind].key);
     fnv.absorb_word(job.seed);
-    const pinnquad::RowSplit& split = plan_.folds[job.fold].split;
-    for (const pinnquad::RowSet* rows : {&split.train, &split.validation, &split.test}) {
+    const Fold& fold = plan_.folds[job.fold];
+    std::vector<const pinnquad::RowSet*> all = {&fold.split.train, &fold.split.validation, &fold.split.test};
+    for (const Judge& judge : fold.judges) all.push_back(&judge.rows);
+    for (const pinnquad::RowSet* rows : all) {
       fnv.absorb_word(rows->pieces().size());
       for (const pinnquad::FlightRows& piece : rows->pieces()) {
         fnv.absorb_word(hash_of(*piece.flight));

@@ -52,8 +52,12 @@ struct FinishedFit {
   std::size_t kind = 0, fold = 0;  ///< of the plan
   std::uint64_t seed = 0;
   Predictions held_out;
-  /// Mean absolute error of the commands on the validation rows that it answers; NaN if it was fitted to them.
+  /// Mean absolute error of the commands on the validation rows that it answers; if it was fitted to them on those of
+  /// all judges, NaN without.
   double validation_mae = pinnquad::not_a_number;
+  std::vector<double>
+      chosen_by;  ///< root mean square errors that choose between kinds: Fold::judges, or of a slow kind
+                  ///< that on the validation rows
   double fit_s = 0;
   pinnquad::BiasTrial biases;     ///< on validation rows that it was not fitted to; none where there are none
   double looks_ahead_s = 0;       ///< TrainedNetwork::looks_ahead_s()
@@ -88,18 +92,23 @@ inline bool answered(const std::array<double, pinnquad::rotor_count>& commands) 
   return std::all_of(commands.begin(), commands.end(), [](double u) { return std::isfinite(u); });
 }
 
-inline double mean_absolute_error(const pinnquad::RowSet& rows, const Predictions& predictions) {
-  double sum = 0;
-  std::size_t count = 0;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    if (!answered(predictions[row])) continue;
-    for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
-      sum += std::abs(predictions[row][motor] - rows[row].commands[motor]);
+/// Of commands, over the rows that are answered.
+struct ErrorSums {
+  double absolute = 0, squares = 0, count = 0;
+  void add(const pinnquad::RowSet& rows, const Predictions& predictions) {
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (!answered(predictions[row])) continue;
+      for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
+        const double error = predictions[row][motor] - rows[row].commands[motor];
+        absolute += std::abs(error);
+        squares += error * error;
+        ++count;
+      }
     }
-    count += pinnquad::rotor_count;
   }
-  return count > 0 ? sum / static_cast<double>(count) : pinnquad::not_a_number;
-}
+  double mean_absolute() const { return count > 0 ? absolute / count : pinnquad::not_a_number; }
+  double root_mean_square() const { return count > 0 ? std::sqrt(squares / count) : pinnquad::not_a_number; }
+};
 
 /// A row that reads ahead is known so much later.
 inline pinnquad::PastRows past_of(pinnquad::PastRows past, double looks_ahead_s) {
@@ -121,18 +130,23 @@ struct Ended {
 
 }  // namespace detail
 
-/// Fits one kind and asks it what the rows held out need. Where validation chooses between kinds (one parting, whose
-/// rows held out have no say), one that takes the validation rows for fitting is fitted without them too, from the
-/// first seed. Throws what the kind's fit() throws.
+/// Fits one kind and asks it what the rows held out need. Where other rows choose between kinds (one parting, whose
+/// rows held out have no say), a quick one is fitted once more for each judge, without its rows, from the first seed;
+/// networks take minutes: the validation rows that stop them judge them. Throws what the kind's fit() throws.
 inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) {
   const ModelKind& kind = plan.kinds[job.kind];
   const Fold& fold = plan.folds[job.fold];
-  const auto error_of = [&](const TrainedNetwork& model) {
-    const Predictions predictions = model.predictions(fold.split.validation);
-    detail::require_all(kind, predictions, fold.split.validation);
-    job.biases = pinnquad::try_biases(fold.split.validation, predictions, plan.airframe.value,
-                                      detail::past_of(plan.past, model.looks_ahead_s()));
-    return detail::mean_absolute_error(fold.split.validation, predictions);
+  detail::ErrorSums unseen;
+  const auto ask = [&](const TrainedNetwork& model, const pinnquad::RowSet& rows, bool sets_biases) {
+    const Predictions predictions = model.predictions(rows);
+    detail::require_all(kind, predictions, rows);
+    detail::ErrorSums of_rows;
+    of_rows.add(rows, predictions);
+    if (!sets_biases) return of_rows.root_mean_square();
+    unseen.add(rows, predictions);
+    job.biases +=
+        pinnquad::try_biases(rows, predictions, plan.airframe.value, detail::past_of(plan.past, model.looks_ahead_s()));
+    return of_rows.root_mean_square();
   };
   const auto start = std::chrono::steady_clock::now();
   job.model = kind.fit(task);
@@ -140,14 +154,23 @@ inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) 
   job.looks_ahead_s = job.model->looks_ahead_s();
   job.altitude = job.model->altitude();
   job.proven = job.model->is_proven();
-  if (!kind.takes_validation(plan.settings)) {
-    job.validation_mae = error_of(*job.model);
-  } else if (plan.folds.size() == 1 && job.seed == plan.first_seed && !fold.split.test.empty()) {
-    const pinnquad::RowSet none;
-    const FitTask without{task.airframe,        task.training, none,        task.absent,
-                          task.sample_period_s, task.seed,     task.epochs, task.settings};
-    job.validation_mae = error_of(*kind.fit(without));
+  const bool saw_validation = kind.takes_validation(plan.settings);
+  if (!saw_validation) {
+    const double error = ask(*job.model, fold.split.validation, true);
+    if (!kind.quick) job.chosen_by = {error};
   }
+  if ((kind.quick || saw_validation) && job.seed == plan.first_seed) {
+    FitSettings settings = task.settings;
+    settings.without_residual = settings.fit_validation = true;
+    if (job.altitude.applies) settings.altitude = job.altitude.taken;
+    const pinnquad::RowSet none;
+    for (const Judge& judge : fold.judges) {
+      const FitTask without{task.airframe,        judge.others, none,        task.absent,
+                            task.sample_period_s, task.seed,    task.epochs, settings};
+      job.chosen_by.push_back(ask(*kind.fit(without), judge.rows, saw_validation));
+    }
+  }
+  job.validation_mae = unseen.mean_absolute();
   if (fold.split.test.empty()) return;  // to be exported
   Answers answers = job.model->answers(fold.split.test);
   detail::require_all(kind, answers.predictions, fold.split.test);

@@ -28,6 +28,7 @@ struct JudgedFit {
   FlightErrors adaptive;
   pinnquad::SignedSums<double> bias_time_constants_s{};
   double validation_mae = pinnquad::not_a_number;
+  std::vector<double> chosen_by;  ///< FinishedFit::chosen_by
   double fit_s = 0;
   bool proven = false;
 };
@@ -213,6 +214,7 @@ inline JudgedKinds judge_fits(const FitPlan& plan, const Fits& fits) {
                              {},
                              {},
                              fit->validation_mae,
+                             fit->chosen_by,
                              fit->fit_s,
                              fit->proven});
       }

@@ -169,7 +169,7 @@ class LastCommands : public TrainedNetwork {
 /// A closed form of this name.
 ModelKind closed_form(const char* key, const char* title, std::string (*not_applicable)(const FitTask&),
                       Model (*fit)(const FitTask&), TimeReach reach = TimeReach::present) {
-  return {key, title, reach, false, not_applicable, fit, takes_validation_rows};
+  return {key, title, reach, false, not_applicable, fit, takes_validation_rows, nullptr, true, true};
 }
 
 }  // namespace

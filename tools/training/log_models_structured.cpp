@@ -93,7 +93,7 @@ template <TimeReach Reach>
 std::shared_ptr<const TrainedNetwork> fit_structured_kind(const FitTask& task) {
   using Rule = pinnquad::StructuredSettings::Altitude;
   pinnquad::StructuredSettings settings;
-  settings.residual.epochs = structured_epochs(task);
+  settings.residual.epochs = task.settings.without_residual ? 0 : structured_epochs(task);
   settings.pinned_slopes = task.settings.pinned_slopes;
   settings.fit_validation = task.settings.fit_validation;
   settings.altitude = task.lacks("altitude")    ? Rule::no
@@ -128,7 +128,9 @@ ModelKind structured(const char* key, const char* title, std::string (*not_appli
           not_applicable,
           fit_structured_kind<Reach>,
           [](const FitSettings& settings) { return settings.fit_validation; },
-          pinnquad::structured_in_words};
+          pinnquad::structured_in_words,
+          true,
+          true};
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ struct FitSettings {
   std::optional<bool> altitude;   ///< is the model shown it? none: where the validation rows gain much
   bool pinned_slopes = false;     ///< to the airframe's in hover; false: learnt
   bool fit_validation = false;    ///< of the structured model: no rows are left to find limits of trust by
+  bool without_residual = false;  ///< its closed form alone: to be compared with other kinds
 };
 
 /// Epochs of flights' networks where --epochs does not say another number.
@@ -69,6 +70,7 @@ struct ModelKind {
   bool (*takes_validation)(const FitSettings&) = never_takes_validation;
   const char* words = nullptr;  ///< its training, in an exported header; null: the title says it
   bool exportable = true;       ///< false: to be compared with alone
+  bool quick = false;           ///< a fit takes moments (FitSettings::without_residual): every flight judges it in turn
 };
 
 inline std::string always_applicable(const FitTask&) { return ""; }

@@ -36,6 +36,10 @@ void add_flights(CLI::App& app, TrainOptions& options) {
   app.add_option("--hold-out-each", options.hold_out_each, "each in turn; the export is fitted to all")
       ->check(CLI::IsMember({"flight", "trajectory"}))
       ->type_name("flight|trajectory");
+  app.add_option("--validate", options.validate, "flights or trajectories that choose what is exported (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...");
 }
 
 void add_kinds(CLI::App& app, TrainOptions& options, GivenWords& words) {
@@ -70,8 +74,8 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
       "  pinnquad train logs --mapping px4 --hold-out flight7 --out my_model\n"
       "  pinnquad train my_logs --hold-out-each trajectory --out my_model\n"
       "More of each option: docs/train.md, docs/log_training.md.\n"
-      "Exit codes: 0; 1 nothing exported: no model was finished, or the best is worse than the mean of the commands;\n"
-      "2 bad input or a file that can't be read or written; 130 interrupted: the same command goes on from there.");
+      "Exit codes: 0; 1 nothing exported; 2 bad input or a file that can't be read or written;\n"
+      "130 interrupted: the same command goes on from there.");
   add_flights(app, options);
   app.add_option("--airframe", words.airframe, "what flew: see airframe list")
       ->type_name("NAME|FILE.toml")

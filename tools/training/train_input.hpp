@@ -223,14 +223,23 @@ inline std::vector<pinnquad::ColumnName> unused_columns(const pinnquad::Dataset&
   return unused;
 }
 
-/// The partings that the options ask for. Flights of which none is named are held out in their order; logs are not.
-inline std::vector<Fold> folds_asked_for(const TrainOptions& options, const pinnquad::Dataset& flights) {
-  HoldOutChoice choice;
-  choice.names = options.hold_out;
+/// The flights that the options hold out, and let choose.
+inline HoldOutChoice hold_out_choice(const TrainOptions& options, const pinnquad::logs::ImportedDataset& dataset) {
+  HoldOutChoice choice{options.hold_out, {}, options.validate, dataset.unlike};
   if (!options.hold_out_each.empty()) {
     choice.each = options.hold_out_each == "flight" ? HoldOutEach::flight : HoldOutEach::trajectory;
   }
+  return choice;
+}
+
+/// The partings that the options ask for. Flights of which none is named are held out in their order; logs are not.
+inline std::vector<Fold> folds_asked_for(const TrainOptions& options, const pinnquad::logs::ImportedDataset& dataset) {
+  const pinnquad::Dataset& flights = dataset.flights;
+  const HoldOutChoice choice = hold_out_choice(options, dataset);
   if (choice.each || !choice.names.empty()) return folds_of(flights, choice);
+  if (!options.flights.empty() && !choice.validate.empty()) {
+    throw std::invalid_argument("--validate: say with --hold-out what judges besides");
+  }
   if (!options.flights.empty()) return {fold_in_order(flights)};
   throw std::invalid_argument(
       "say what judges: --hold-out NAME[,NAME...] or --hold-out-each flight|trajectory; the flights are " +

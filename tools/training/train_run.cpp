@@ -25,6 +25,7 @@
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "training/closed_loop.hpp"
 #include "training/export_choice.hpp"
+#include "training/export_verdict.hpp"
 #include "training/fit_store.hpp"
 #include "training/flown_vehicle.hpp"
 #include "training/train_input.hpp"
@@ -206,7 +207,8 @@ class Training {
     if (!unlike.empty()) report_.warn(unlike);
     for (const std::string& doubt : vehicle_.doubts) report_.warn("the flights contradict --airframe: " + doubt);
     for (const programs::Fold& fold : plan_.folds) {
-      if (fold.part_validates) {
+      if (is_default_choice()) tell_judges(fold);
+      if (fold.part_validates && !(is_default_choice() && !fold.judges.empty())) {
         report_.warn("holding out " + fold.name +
                      " leaves one trajectory: its last fifth validates, no flight of its own");
       }
@@ -228,6 +230,22 @@ class Training {
                    ": nothing changes in the training rows; the model will not know what it does, and answers only "
                    "near the value flown");
     }
+  }
+
+  /// A parting of a rotation has none.
+  void tell_judges(const programs::Fold& fold) {
+    constexpr double shortest_s = 30;
+    if (fold.judges.empty()) return;
+    announce("      choose what is exported: " + fold.chosen_by);
+    double rows = 0;
+    for (const programs::Judge& judge : fold.judges) rows += static_cast<double>(judge.rows.size());
+    const double duration_s = rows * plan_.sample_period_s;
+    std::string caution = fold.caution;
+    if (duration_s < shortest_s) {
+      caution += (caution.empty() ? "" : "; ") + decimals(duration_s, 0) + " s of flight are few, " +
+                 decimals(shortest_s, 0) + " s or more are better";
+    }
+    if (!caution.empty()) report_.warn("what is exported is chosen by " + fold.chosen_by + ": " + caution);
   }
 
   std::size_t judges() const {
@@ -295,7 +313,7 @@ class Training {
   }
 
   int export_best() {
-    const std::vector<std::size_t> order = programs::kinds_to_export(judged_, export_choice(), rotated());
+    const std::vector<std::size_t> order = programs::kinds_to_export(plan_, judged_, export_choice());
     if (order.empty()) {
       return refuse(
           "no model of the kind asked for was judged of which it is proven that it turns the way it is told to",
@@ -323,6 +341,7 @@ class Training {
       next.flown = fly(next, judged_.kinds[k].kind);
       const std::string unfit = programs::unfit_to_fly(next.flown);
       if (!unfit.empty()) {
+        unfit_.push_back(k);
         report_.warn(std::string(judged_.kinds[k].kind.title) + " " + unfit + ": not fit to fly" +
                      (k != order.back() ? "; the next best is tried" : ""));
       }
@@ -345,21 +364,16 @@ class Training {
     const Verdict verdict = verdict_of(*chosen_);
     const std::string title = kind.kind.title;
     report_.verdict(kind.kind, rotated() ? std::optional<std::uint64_t>{} : made.seed, verdict, true);
-    if (verdict.worse_than_mean()) {
-      report_.warn("NOT FOR FLIGHT: " + title + " is worse than the mean of the commands");
-    } else if (programs::any_by_instruments(made.model->slopes())) {
+    const bool by_instruments = programs::any_by_instruments(made.model->slopes());
+    if (by_instruments) {
       report_.warn("noise of gyro or accelerometer bends the slopes of least squares: those of " + title +
                    " are by instruments, and it was judged by rows without that noise, as their neighbours tell them; "
                    "on the noisy rows, by which all others were judged, bent slopes err less");
-    } else if (verdict.test_r_squared <= verdict.linear_regression_r_squared) {
+    } else if (kind.kind.key != std::string("linear") && !verdict.worse_than_mean() &&
+               verdict.test_r_squared <= verdict.linear_regression_r_squared) {
       report_.warn(title + " does not beat linear regression on the paper's features (R^2 " +
                    decimals(verdict.test_r_squared, 4) + " against " +
                    decimals(verdict.linear_regression_r_squared, 4) + "): a linear map of them would fly as well");
-    }
-    const programs::KindVerdict& beside_simpler = verdicts_[*chosen_];
-    if (beside_simpler.standing > programs::Standing::undecided &&
-        !programs::any_by_instruments(made.model->slopes())) {
-      report_.warn("what is exported, " + title + ": " + beside_simpler.sentence);
     }
     if (verdict.has_poor_motor()) {
       report_.warn("one motor's commands are predicted worse than by their mean (R^2 " +
@@ -368,34 +382,14 @@ class Training {
     if (kind.kind.reach == programs::TimeReach::centred) {
       report_.warn(title + " looks ahead: it takes planned trajectories, not measured motion");
     }
-    if (!programs::any_by_instruments(made.model->slopes())) warn_of_better_kind(kind);
     announce("[4/5] export " + title);
     write(made, kind.kind, verdict);
-  }
-
-  /// A proven model is exported, and may err more than one that is not.
-  void warn_of_better_kind(const programs::JudgedKind& exported) {
-    if (!options_.export_choice.empty() || !exported.proven()) return;
-    const auto least = [&](const programs::JudgedKind& kind) {
-      double error = not_a_number;
-      for (const programs::JudgedFit& fit : kind.fits) {
-        if (!(error <= fit.validation_mae)) error = fit.validation_mae;
-      }
-      return error;
-    };
-    const double own = least(exported);
-    for (const programs::JudgedKind& kind : judged_.kinds) {
-      if (!kind.applicable() || !kind.kind.exportable || kind.proven() || !(least(kind) < own)) continue;
-      report_.warn("the best " + std::string(kind.kind.title) + " errs less on the validation rows (" +
-                   decimals(least(kind), 4) + " against " + decimals(own, 4) +
-                   "), but nothing is proven of its signs; --export " + kind.kind.key + " exports it");
-    }
   }
 
   /// The model to write: after a rotation fitted to all flights, else that of the best seed.
   Exported exported(std::size_t kind) {
     if (rotated()) {
-      all_ = programs::fold_of_all(dataset_.flights);
+      all_ = programs::fold_of_all(dataset_.flights, programs::hold_out_choice(options_, dataset_));
       programs::FitPlan once = plan_;
       once.kinds = {plan_.kinds[kind]};
       once.folds = {*all_};
@@ -418,14 +412,26 @@ class Training {
 
   void write(const Exported& made, const programs::ModelKind& kind, const Verdict& verdict) {
     const std::optional<SignedSums<double>>& bias = judged_.kinds[*chosen_].bias_time_constants_s;
-    const std::string do_not_fly = programs::do_not_fly(kind.title, made.flown);
-    if (!do_not_fly.empty()) report_.warn("DO NOT FLY what is exported: " + do_not_fly);
+    const programs::BesideOthers others = programs::beside_others(plan_, judged_, *chosen_, unfit_);
+    const std::string beside = programs::in_words(others, judged_, *chosen_);
+    const std::vector<std::string> beaten = programs::beaten_in_words(others, judged_, *chosen_);
+    const bool by_a_proven_one =
+        others.beaten() && judged_.kinds[*others.best].proven() && !programs::any_by_instruments(made.model->slopes());
+    const programs::ExportVerdict said =
+        programs::export_verdict(kind.title, verdict, made.flown, by_a_proven_one ? beaten.front() : "");
+    report_.export_verdict(said, beside, programs::beside_json(others, judged_));
+    announce("  " + said.words + "\n  " + beside);
+    for (const std::string& line : beaten) {
+      if (said.words.find(line) == std::string::npos) report_.warn(line);
+    }
+    if (!said.fit_to_fly) report_.warn(said.words);
     Provenance from =
         programs::provenance_of(*made.model,
                                 programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
                                                         plan_.settings, made.seed, plan_.epochs, verdict),
                                 bias, vehicle_.is_known());
-    from.do_not_fly = do_not_fly;
+    from.fitness = said.words;
+    from.beside = beside;
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
     const pinnquad::Exported written = made.model->export_to({header, block, made.model->has_trust() ? trust : ""},
@@ -437,7 +443,7 @@ class Training {
                            made.fold->split.test.empty() ? made.fold->split.validation : made.fold->split.test);
     std::printf("  %s: struct %s, %s%s%s\n", header.c_str(), options_.model_name.c_str(), kind.title,
                 kind.seeded ? (" of seed " + std::to_string(made.seed)).c_str() : "",
-                verdict.worse_than_mean() || !do_not_fly.empty() ? "; NOT FOR FLIGHT, and its header says so" : "");
+                said.fit_to_fly ? "" : "; its header says DO NOT FLY");
     if (trusted) {
       std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and command residual\n",
                   trust.c_str(), options_.model_name.c_str());
@@ -459,8 +465,7 @@ class Training {
             (rotated() ? "fitted anew to all flights, validated on " + made.fold->validation.front() +
                              ": the figures are of the fits of the rotation"
                        : "the very model that was judged") +
-            (verdict.worse_than_mean() ? ". NOT FOR FLIGHT: worse than the mean of the commands." : ".") +
-            (do_not_fly.empty() ? "" : " DO NOT FLY: " + do_not_fly + ".");
+            ". " + beside + ".";
   }
 
   /// Proof of an export's signs, as `certify` finds it in the header.
@@ -626,6 +631,7 @@ class Training {
   programs::JudgedKinds judged_;
   std::vector<programs::KindVerdict> verdicts_;
   std::optional<std::size_t> chosen_;
+  std::vector<std::size_t> unfit_;                     ///< kinds that were found not fit to fly
   std::optional<programs::HeldOutDynamics> dynamics_;  ///< of it, or of the best that was judged
   std::string told_;                                   ///< what became of the export
 };
@@ -644,9 +650,9 @@ int programs::train(const TrainOptions& options) {
   require_separate_files(options);
   announce("[1/5] read");
   pinnquad::logs::ImportedDataset dataset = dataset_of(options, vehicle.airframe.value);
-  std::vector<Fold> folds = folds_asked_for(options, dataset.flights);
-  require_sound(options, dataset, folds);
+  require_sound(options, dataset, folds_asked_for(options, dataset));
   if (!options.dataset.empty()) check_vehicle(dataset, vehicle.airframe.value, given.has_value());
+  std::vector<Fold> folds = folds_asked_for(options, dataset);  // it may say which flights are unlike
   require_one_vehicle(dataset);
   const FolderLock lock(options.out);
   if (!options.logs.empty()) write_dataset_folder(options.dataset_folder(), dataset);

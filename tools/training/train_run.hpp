@@ -16,6 +16,7 @@ struct TrainOptions {
   std::string mapping;
   std::vector<std::string> hold_out;  ///< flights or trajectories
   std::string hold_out_each;          ///< "flight", "trajectory"; empty: those of hold_out
+  std::vector<std::string> validate;  ///< flights or trajectories that alone choose what is exported; empty: all do
   std::vector<std::string> models;    ///< keys of kinds; empty: what flights, or logs, are compared by
   std::string export_choice;          ///< empty: Selection::exported()
   std::optional<bool> altitude;       ///< of the structured kinds, as what follows; none: validation says

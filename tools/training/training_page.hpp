@@ -431,6 +431,7 @@ inline std::string training_page(const TrainingPage& in) {
       {"logged", !in.dataset.mapping.empty() || !in.dataset.steps.empty()},
       {"fewest_pairs", fewest_pairs},
       {"can_decide", in.judged.flights.size() >= fewest_pairs},
+      {"verdict", detail::or_false(in.report["verdict"].is_object() ? in.report["verdict"].value("in_words", "") : "")},
       {"export_sentence", in.export_sentence},
       {"airframe", in.plan.airframe.name},
       {"bias_delay", shown::number(1e3 * in.plan.past.delay_s, 0)},

@@ -21,6 +21,7 @@
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/version.hpp"
 #include "training/certificate_words.hpp"
+#include "training/export_verdict.hpp"
 #include "training/held_out_dynamics.hpp"
 #include "training/kind_figures.hpp"
 #include "training/kind_verdict.hpp"
@@ -175,6 +176,8 @@ class TrainingReport {
                        {"validation", detail::printable_names(fold.validation)},
                        {"train", detail::printable_names(fold.train)},
                        {"by_time", fold.by_time},
+                       {"chosen_by", fold.chosen_by},
+                       {"chooses", fold.chooses},
                        {"rows",
                         {{"train", fold.split.train.size()},
                          {"validation", fold.split.validation.size()},
@@ -249,6 +252,7 @@ class TrainingReport {
           flights[pinnquad::printable(judgement.flights[i])] = {{"rmse", errors[i]}};
         }
         model["by_flight"] = std::move(flights);
+        model["choosing_rmse"] = choosing_error(plan, kind);
         model["validation_mae"] = described(per_seed(kind, [](const JudgedFit& fit) { return fit.validation_mae; }));
         model["training_s"] = described(per_seed(kind, [](const JudgedFit& fit) { return fit.fit_s; }));
       } else {
@@ -285,6 +289,14 @@ class TrainingReport {
                         {"worse_than_mean", verdict.worse_than_mean()},
                         {"beats_linear_regression", verdict.beats_linear_regression()},
                         {"exported", may_be_exported}};
+  }
+
+  /// The words that an export's header begins with.
+  void export_verdict(const ExportVerdict& said, const std::string& beside, nlohmann::json errors) {
+    json_["verdict"].update({{"fit_to_fly", said.fit_to_fly},
+                             {"in_words", pinnquad::printable(said.words)},
+                             {"beside_in_words", beside},
+                             {"held_out_rmse", std::move(errors)}});
   }
 
   /// Of what was exported.

@@ -164,3 +164,65 @@ TEST_CASE("a leak is refused: the same flight under another name, or a stretch o
   refused([&] { programs::folds_of(cut, {{"a"}, {}}); }, "100 of the 300 rows of the held-out flight a");
   CHECK_NOTHROW(programs::folds_of(cut, {{"b"}, {}}));  // there both train
 }
+
+namespace {
+
+Names judges_of(const programs::Fold& fold) {
+  Names names;
+  for (const programs::Judge& judge : fold.judges) {
+    names.push_back(judge.name);
+    std::size_t rows = 0;
+    for (const pinnquad::RowSet* part : {&judge.rows, &judge.others}) {
+      for (const pinnquad::FlightRows& piece : part->pieces()) {
+        rows += piece.rows.size();
+        CHECK(std::find(fold.held_out.begin(), fold.held_out.end(), piece.flight->name) == fold.held_out.end());
+      }
+    }
+    CHECK(rows == fold.split.train.size() + fold.split.validation.size());  // every row once
+  }
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("every trajectory that is not held out chooses in turn; another vehicle never does, unless it is named") {
+  const pinnquad::Dataset dataset = repeats();
+  const auto fold_of = [&](const Names& validate, const Names& unlike) {
+    return programs::folds_of(dataset, {{"y"}, {}, validate, unlike}).front();
+  };
+  CHECK(judges_of(fold_of({}, {})) == Names{"circle_1, circle_2", "star_1", "x", "eight_1"});
+  CHECK(fold_of({}, {}).caution.empty());
+  // eight_1 is closest to a fifth of the rows: it neither chooses nor stops networks
+  const auto unlike = fold_of({}, {"eight_1", "circle_2"});
+  CHECK(judges_of(unlike) == Names{"circle_1", "star_1", "x"});
+  CHECK(unlike.validation != Names{"eight_1"});
+  CHECK(unlike.chosen_by.find("not by circle_2, eight_1, of another vehicle") != std::string::npos);
+  const auto named = fold_of({"eight"}, {"eight_1"});
+  CHECK(judges_of(named) == Names{"eight_1"});
+  CHECK(named.validation == Names{"eight_1"});
+  CHECK_FALSE(fold_of({}, {"circle_1", "circle_2", "eight_1", "star_1", "x"}).caution.empty());
+
+  // the only one of its vehicle chooses by quarters of itself, and the others train
+  const auto one = fold_of({}, {"circle_1", "circle_2", "eight_1", "star_1"});
+  CHECK(judges_of(one) == Names{"x from row 0", "x from row 25", "x from row 50", "x from row 75"});
+  CHECK(one.part_validates);
+  CHECK(one.validation == Names{"x"});
+  CHECK(one.caution.find("quarters") != std::string::npos);
+
+  refused([&] { fold_of({"y"}, {}); }, "--validate y: is held out");
+  refused([&] { fold_of({"eigth"}, {}); }, "--validate eigth: no flight");
+}
+
+TEST_CASE("of a rotation the partings that hold another vehicle out have no say") {
+  const pinnquad::Dataset dataset = repeats();
+  const auto chooses = [&](const Names& validate, const Names& unlike) {
+    Names list;
+    for (const auto& fold : programs::folds_of(dataset, {{}, programs::HoldOutEach::trajectory, validate, unlike})) {
+      if (fold.chooses) list.push_back(fold.name);
+    }
+    return list;
+  };
+  CHECK(chooses({}, {"x", "circle_2"}) == Names{"circle", "eight", "star", "y"});
+  CHECK(chooses({"x"}, {"x"}) == Names{"x"});
+  CHECK(chooses({}, {"circle_1", "circle_2", "eight_1", "star_1", "x", "y"}).size() == 5);
+}

@@ -14,6 +14,7 @@
 #include "judged_run.hpp"
 #include "support/temporary_folder.hpp"
 #include "training/export_choice.hpp"
+#include "training/export_verdict.hpp"
 #include "training/fit_store.hpp"
 #include "training/log_kinds.hpp"
 #include "training/train_input.hpp"
@@ -201,9 +202,9 @@ TEST_CASE("models that look ahead are ranked apart, and are no simpler model of 
   prove(run.judged);
   CHECK(programs::ranking(run.judged, false) == std::vector<std::size_t>{2, 0});
   CHECK(programs::ranking(run.judged, true) == std::vector<std::size_t>{1});
-  CHECK(programs::kinds_to_export(run.judged, "causal", true) == std::vector<std::size_t>{2, 0});
-  CHECK(programs::kinds_to_export(run.judged, "centred", true) == std::vector<std::size_t>{1});
-  CHECK(programs::kinds_to_export(run.judged, "constant", true) == std::vector<std::size_t>{0});
+  CHECK(programs::kinds_to_export(run.plan, run.judged, "causal") == std::vector<std::size_t>{2, 0});
+  CHECK(programs::kinds_to_export(run.plan, run.judged, "centred") == std::vector<std::size_t>{1});
+  CHECK(programs::kinds_to_export(run.plan, run.judged, "constant") == std::vector<std::size_t>{0});
   CHECK(run.of("linear").standing == Standing::success);
   CHECK(run.of("linear").against.size() == 1);
   // the row that the oracle leaves without an answer counts for no kind
@@ -297,17 +298,16 @@ TEST_CASE("what is exported: by validation, none that diverged, of networks what
 
   Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::linear_kind()}, {{"flight2"}, {}}, 1);
   prove(run.judged);
-  CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{1, 0});
-  // the rows held out have no say: what errs less on the validation rows goes first
-  run.judged.kinds[0].fits[0].validation_mae = run.judged.kinds[1].fits[0].validation_mae / 2;
-  CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{0, 1});
-  CHECK(programs::kinds_to_export(run.judged, "causal", true) == std::vector<std::size_t>{1, 0});
+  CHECK(programs::kinds_to_export(run.plan, run.judged, "causal") == std::vector<std::size_t>{1, 0});
+  // the rows held out have no say: what errs less on the rows of the judges goes first
+  run.judged.kinds[0].fits[0].chosen_by = {run.judged.kinds[1].fits[0].chosen_by[0] / 2};
+  CHECK(programs::kinds_to_export(run.plan, run.judged, "causal") == std::vector<std::size_t>{0, 1});
   run.judged.kinds[0].fits[0].proven = false;  // of which nothing is proven is exported by its name alone
-  CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{1});
-  CHECK(programs::kinds_to_export(run.judged, "constant", false) == std::vector<std::size_t>{0});
+  CHECK(programs::kinds_to_export(run.plan, run.judged, "causal") == std::vector<std::size_t>{1});
+  CHECK(programs::kinds_to_export(run.plan, run.judged, "constant") == std::vector<std::size_t>{0});
   run.judged.kinds[0].fits[0].proven = true;
   run.judged.kinds[1].kind.exportable = false;
-  CHECK(programs::kinds_to_export(run.judged, "causal", false) == std::vector<std::size_t>{0});
+  CHECK(programs::kinds_to_export(run.plan, run.judged, "causal") == std::vector<std::size_t>{0});
 }
 
 TEST_CASE("the verdict on an export is that of its own fit, after a rotation the mean; the worst motor is the worst") {
@@ -343,7 +343,7 @@ TEST_CASE("an export says the flights and as many rows as it was fitted to") {
   CHECK(from(true).lag_removed_s == 0.02);
 }
 
-TEST_CASE("the validation error of a kind that is fitted to the validation rows is of a fit that has not seen them") {
+TEST_CASE("every flight that is not held out chooses between kinds, by a fit that has not seen it") {
   programs::ModelKind kind = pinnquad_test::constant_kind();
   kind.takes_validation = programs::takes_validation_rows;
   kind.fit = [](const programs::FitTask& task) {
@@ -357,12 +357,22 @@ TEST_CASE("the validation error of a kind that is fitted to the validation rows 
     });
   };
   const Judged run(3, {kind}, {{"flight2"}, {}}, 1);
-  const pinnquad::RowSet& rows = run.plan.folds[0].split.validation;
-  double sum = 0;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    for (const double u : rows[row].commands) sum += u / 4;
+  double absolute = 0, rows = 0;
+  const std::vector<programs::Judge>& judges = run.plan.folds[0].judges;
+  REQUIRE(judges.size() == 2);
+  for (std::size_t i = 0; i < judges.size(); ++i) {
+    double squares = 0;
+    for (std::size_t row = 0; row < judges[i].rows.size(); ++row) {
+      for (const double u : judges[i].rows[row].commands) {
+        absolute += u / 4;
+        squares += u * u / 4;
+      }
+    }
+    const auto of_judge = static_cast<double>(judges[i].rows.size());
+    rows += of_judge;
+    CHECK(run.fits.finished[0].chosen_by[i] == doctest::Approx(std::sqrt(squares / of_judge)));
   }
-  CHECK(run.fits.finished[0].validation_mae == doctest::Approx(sum / static_cast<double>(rows.size())));
+  CHECK(run.fits.finished[0].validation_mae == doctest::Approx(absolute / rows));
 }
 
 TEST_CASE("figures over seeds: mean, deviation and each; null where one is not finite") {
@@ -496,6 +506,7 @@ TEST_CASE(
   REQUIRE(store.load(loaded));
   CHECK(loaded.held_out == kept.held_out);
   CHECK(loaded.validation_mae == kept.validation_mae);
+  CHECK(loaded.chosen_by == kept.chosen_by);
   CHECK(loaded.derivatives.median == kept.derivatives.median);
 
   programs::FinishedFit other_seed = asked;
@@ -527,4 +538,47 @@ TEST_CASE(
   CHECK(loaded.held_out.empty());
   store.clear();
   CHECK_FALSE(std::filesystem::exists(folder.path("fits")));
+}
+
+TEST_CASE("the verdict on an export: not fit where it is worse than the mean, flies ill or a proven one errs less") {
+  const auto verdict = [](double r2, double model_m, const std::string& beaten) {
+    return programs::export_verdict(
+        "ridge", {r2, 0.1, r2},
+        {{"model", {{"answered_share", 1}, {"status", "ok"}, {"largest_error_m", 0.1}, {"rmse_m", model_m}}},
+         {"formula", {{"rmse_m", 0.02}}},
+         {"without_jerk", {{"largest_error_m", 0.1}, {"rmse_m", 0.2}}},
+         {"half_length_m", 1}},
+        beaten);
+  };
+  CHECK(verdict(0.9, 0.03, "").fit_to_fly);
+  CHECK(verdict(0.9, 0.03, "").words.find("good enough to fly in simulation: ridge, R^2 0.900") == 0);
+  for (const auto& not_fit :
+       {verdict(-0.1, 0.03, ""), verdict(0.49, 0.03, ""), verdict(0.9, 0.21, ""), verdict(0.9, 0.03, "beaten")}) {
+    CHECK_FALSE(not_fit.fit_to_fly);
+    CHECK(not_fit.words.find("DO NOT FLY: ") == 0);
+  }
+}
+
+TEST_CASE("an export beside the others: a tenth less is said, and the commands of 100 ms ago, and what to do") {
+  Judged run(3, {pinnquad_test::constant_kind(), pinnquad_test::linear_kind(), pinnquad_test::spoiled_linear_kind()},
+             {{"flight2"}, {}}, 1);
+  prove(run.judged);
+  const auto lines = [&](std::size_t exported) {
+    return programs::beaten_in_words(programs::beside_others(run.plan, run.judged, exported), run.judged, exported);
+  };
+  // of these flights, which are lively, the commands of 100 ms ago tell more than either map
+  REQUIRE(lines(1).size() == 1);
+  CHECK(lines(1)[0].find("worse on the rows held out than the commands of 100 ms ago") != std::string::npos);
+  CHECK(lines(2).size() == 1);  // by less than a tenth
+  for (double& error : run.judged.kinds[2].fits[0].errors.root_mean_square) error *= 1.2;
+  REQUIRE(lines(2).size() == 2);
+  CHECK(lines(2)[0].find("is beaten by linear, paper's features") != std::string::npos);
+  CHECK(lines(2)[0].find("--export linear") != std::string::npos);
+  const programs::BesideOthers beside = programs::beside_others(run.plan, run.judged, 2);
+  CHECK(beside.best == 1);
+  CHECK(beside.own == doctest::Approx(programs::mean_over_motors(run.judged.kinds[2].fits[0].errors.root_mean_square)));
+  for (double& error : run.judged.kinds[2].fits[0].errors.root_mean_square) error = 0.5 * beside.last_commands;
+  CHECK(lines(2).empty());
+  run.judged.kinds[2].fits[0].proven = false;
+  CHECK(lines(1)[0].find("of whose signs nothing is proven; --export spoiled") != std::string::npos);
 }

@@ -50,10 +50,12 @@ PINNQUAD_BODY void write_opening_comment(std::ostream& out, const WrittenRecords
   const bool over_own = records.airframe_known;
   const AxisSlopes own_slopes = over_own ? hover_slopes(own) : AxisSlopes{1, 1, 1};
   const int decimals = over_own ? 2 : 4;
-  if (records.verdict && records.verdict->worse_than_mean()) {
+  if (records.fitness.empty() && records.verdict && records.verdict->worse_than_mean()) {
     out << "// NOT FOR FLIGHT: on rows that it was not trained on this model is worse than the mean of the commands.\n";
   }
-  if (!records.do_not_fly.empty()) write_comment(out, "DO NOT FLY: " + printable(records.do_not_fly) + ".");
+  for (const std::string* said : {&records.fitness, &records.beside}) {
+    if (!said->empty()) write_comment(out, printable(*said) + ".");
+  }
   if (!over_own) {
     out << "// AIRFRAME ASSUMED: the flights do not tell the vehicle wholly; the analytic inverse is another one's.\n";
   }

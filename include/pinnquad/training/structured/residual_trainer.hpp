@@ -28,7 +28,7 @@ namespace pinnquad {
 
 /// How the residual is trained.
 struct ResidualTraining {
-  int epochs = 300;
+  int epochs = 300;  ///< 0: no residual, where the validation rows are fitted too
   double learning_rate = 3e-3;
   double weight_decay = 1e-3;
   /// A residual is kept if it lowers the error on the validation rows by more than this share of it.

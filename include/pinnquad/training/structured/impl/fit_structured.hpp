@@ -153,7 +153,7 @@ class StructuredFitter {
   template <class Done>
   std::optional<SeedFit> fit_by_groups(std::uint64_t seed, const GoesOn& goes_on, const Done& done) const {
     const std::vector<float> base = base_parameters(context_.features.accelerations, map_);
-    if (groups_.size() < 2) {  // nothing to choose by
+    if (groups_.size() < 2 || settings_.residual.epochs < 1) {  // nothing to choose by
       return done(base, false, std::numeric_limits<double>::quiet_NaN());
     }
     const int epochs = settings_.residual.epochs;

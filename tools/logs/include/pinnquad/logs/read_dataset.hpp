@@ -35,6 +35,7 @@ struct ImportedDataset {
   std::vector<std::string> notes;           ///< how what the logs lack was computed
   std::vector<std::string> warnings;        ///< what looks wrong
   std::vector<std::string> contradictions;  ///< of these, with the file: what no model should learn from
+  std::vector<std::string> unlike;          ///< flights of another vehicle or payload than the others
 
   bool lacks(const std::string& quantity) const {
     for (const std::string& missing : absent) {

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// The verdict on what is exported, in plain words: may it fly in simulation, and what errs less on the rows held out.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "training/closed_loop.hpp"
+#include "training/export_choice.hpp"
+#include "training/kind_figures.hpp"
+#include "training/log_kinds.hpp"
+
+namespace programs {
+
+/// Root mean square errors of the commands held out, mean over motors, partings and seeds.
+struct BesideOthers {
+  double own = pinnquad::not_a_number;
+  std::optional<std::size_t> best;  ///< of judged.kinds: of all others that may be exported the one that errs least
+  double best_other = pinnquad::not_a_number;
+  double last_commands = pinnquad::not_a_number, mean_commands = pinnquad::not_a_number;
+
+  /// So much less is told: a tenth.
+  bool beaten() const { return best_other < 0.9 * own; }
+};
+
+namespace detail {
+
+inline double held_out_rmse(const JudgedKind& kind) {
+  return pinnquad::summarize(over_seeds(kind, error_figures[3])).mean;
+}
+
+/// Of a kind that may not be among those compared.
+inline double held_out_rmse(const FitPlan& plan, const JudgedKinds& judged, const ModelKind& kind) {
+  const JudgedKind* known = judged.find(kind.key);
+  if (known != nullptr && known->applicable()) return held_out_rmse(*known);
+  double sum = 0;
+  for (std::size_t fold = 0; fold < plan.folds.size(); ++fold) {
+    const pinnquad::RowSet& rows = plan.folds[fold].split.test;
+    const Predictions made = kind.fit(plan.task(plan.folds[fold], plan.first_seed))->predictions(rows);
+    std::vector<bool> counts = judged.counts[fold];
+    for (std::size_t row = 0; row < counts.size(); ++row) counts[row] = counts[row] && answered(made[row]);
+    sum += mean_over_motors(flight_errors(rows, made, counts).root_mean_square);
+  }
+  return sum / static_cast<double>(plan.folds.size());
+}
+
+inline std::string thousandths(double error) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.1fe-3", 1e3 * error);
+  return text;
+}
+
+}  // namespace detail
+
+/// `unfit`: kinds that were found not fit to fly, which are not among the others.
+inline BesideOthers beside_others(const FitPlan& plan, const JudgedKinds& judged, std::size_t exported,
+                                  const std::vector<std::size_t>& unfit = {}) {
+  const ModelKind last = log_last_commands(), mean = log_constant();
+  const JudgedKind& kind = judged.kinds[exported];
+  BesideOthers beside;
+  beside.own = detail::held_out_rmse(kind);
+  for (const std::size_t k : ranking(judged, kind.kind.reach == TimeReach::centred)) {
+    const double error = detail::held_out_rmse(judged.kinds[k]);
+    const ModelKind& other = judged.kinds[k].kind;
+    if (k == exported || !other.exportable || other.key == std::string(mean.key)) continue;
+    if (std::find(unfit.begin(), unfit.end(), k) != unfit.end() || beside.best_other <= error) continue;
+    beside.best = k;
+    beside.best_other = error;
+  }
+  beside.last_commands = detail::held_out_rmse(plan, judged, last);
+  beside.mean_commands = detail::held_out_rmse(plan, judged, mean);
+  return beside;
+}
+
+/// "Held out, rms error: ridge 33.6e-3; structured, the best of the others, 31.6e-3; ..."
+inline std::string in_words(const BesideOthers& beside, const JudgedKinds& judged, std::size_t exported) {
+  std::string words = "rms error of the commands held out: " + std::string(judged.kinds[exported].kind.title) + " " +
+                      detail::thousandths(beside.own);
+  if (beside.best) {
+    words += "; best of the others, " + std::string(judged.kinds[*beside.best].kind.title) + ", " +
+             detail::thousandths(beside.best_other);
+  }
+  return words + "; the commands of 100 ms ago " + detail::thousandths(beside.last_commands) +
+         "; the mean of the commands " + detail::thousandths(beside.mean_commands);
+}
+
+inline nlohmann::json beside_json(const BesideOthers& beside, const JudgedKinds& judged) {
+  return {{"exported", beside.own},
+          {"best_other", beside.best_other},
+          {"best_other_model", beside.best ? nlohmann::json(judged.kinds[*beside.best].kind.key) : nlohmann::json()},
+          {"last_commands", beside.last_commands},
+          {"mean_commands", beside.mean_commands}};
+}
+
+/// A line each where the export is beaten by a tenth, and where the commands of 100 ms ago err less: what to do.
+inline std::vector<std::string> beaten_in_words(const BesideOthers& beside, const JudgedKinds& judged,
+                                                std::size_t exported) {
+  std::vector<std::string> lines;
+  const std::string own = std::string(judged.kinds[exported].kind.title) + ", which is exported,";
+  const auto errors = [&](double less) {
+    return " (rms " + detail::thousandths(less) + " against " + detail::thousandths(beside.own) + ")";
+  };
+  if (beside.beaten()) {
+    const JudgedKind& best = judged.kinds[*beside.best];
+    const std::string key = best.kind.key;
+    lines.push_back(own + " is beaten by " + best.kind.title + " on the rows held out" + errors(beside.best_other) +
+                    (best.proven() ? "; flights that cover what is held out would let it be chosen"
+                                   : ", of whose signs nothing is proven") +
+                    "; --export " + key + " exports it");
+  }
+  if (beside.last_commands < beside.own) {
+    lines.push_back(own + " is worse on the rows held out than the commands of 100 ms ago" +
+                    errors(beside.last_commands) +
+                    ": fly flights that cover what is held out, or let it learn a bias in flight (docs/adaptive.md)");
+  }
+  return lines;
+}
+
+struct ExportVerdict {
+  bool fit_to_fly = false;
+  std::string words;  ///< "good enough to fly in simulation: ..." or "DO NOT FLY: ..."
+};
+
+/// `beaten`: a proven model of the same run errs less by a tenth.
+inline ExportVerdict export_verdict(const std::string& title, const pinnquad::Verdict& held_out,
+                                    const nlohmann::json& flown, const std::string& beaten) {
+  constexpr double least_r2 = 0.5;
+  const std::string unfit = unfit_to_fly(flown);
+  char r2[32];
+  std::snprintf(r2, sizeof r2, "R^2 %.3f", held_out.test_r_squared);
+  if (!(held_out.test_r_squared >= least_r2)) {
+    const char* tells = held_out.worse_than_mean() ? " is worse than the mean of the commands"
+                                                   : " explains less than half of the commands' variance";
+    return {false, "DO NOT FLY: " + title + tells + " on the rows held out (" + r2 +
+                       "); train on more and livelier flights of this vehicle, that cover what is held out"};
+  }
+  if (!unfit.empty()) {
+    return {false, "DO NOT FLY: " + title + " " + unfit + ": " + flight_in_words(flown) +
+                       "; fly the analytic inverse of the airframe, or train on more and livelier flights of this "
+                       "vehicle"};
+  }
+  if (!beaten.empty()) return {false, "DO NOT FLY: " + beaten};
+  return {true, "good enough to fly in simulation: " + title + ", " + r2 + " on the rows held out, " +
+                    flight_in_words(flown)};
+}
+
+}  // namespace programs
