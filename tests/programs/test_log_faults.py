@@ -76,7 +76,7 @@ def logged(flight):
 
 def written(path, rows):
     with open(path, "w", newline="") as file:
-        out = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        out = csv.DictWriter(file, rows[0], lineterminator="\n")
         out.writeheader()
         out.writerows(rows)
 

@@ -11,12 +11,6 @@
 namespace pinnquad::logs {
 namespace {
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 /// Runs of identical values that last `longest_s` or longer and hold `fewest_rows` or more; NaN ends a run.
 std::vector<IndexRange> frozen_rows(const std::vector<double>& time_s, const std::vector<double>& values,
                                     double longest_s = 0.3, std::size_t fewest_rows = 10) {
@@ -35,6 +29,17 @@ std::vector<IndexRange> frozen_rows(const std::vector<double>& time_s, const std
 }  // namespace
 
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string with_interval(const Estimate& estimate, const char* unit) {
+  return short_number(estimate.value) + " " + unit + " (" + short_number(estimate.low()) + " to " +
+         short_number(estimate.high()) + ")";
+}
 
 std::vector<std::string> check_clock(const std::string& topic, const ClockReport& report) {
   constexpr double jump_s = 1, jump_periods = 20, share_in_gaps = 0.05, share_of_rows = 0.01;

@@ -9,11 +9,18 @@
 #include <vector>
 
 #include "logs/clock.hpp"
+#include "pinnquad/regression/block_regression.hpp"
 
 namespace pinnquad::logs {
 
 /// "37 %" of 0.37.
 std::string percent(double share);
+
+/// Three digits: "80.2".
+std::string short_number(double value);
+
+/// "80.2 rad/s^2 (78 to 82.4)"
+std::string with_interval(const Estimate& estimate, const char* unit);
 
 /// A step of more than a second and 20 nominal periods is a jump; more than 5 % of the time in gaps is a logger that
 /// lost rows; more than 1 % of rows with a time that another has, or none. `topic`: its name, "the log" for one table.

@@ -22,6 +22,7 @@
 #include "logs/mapping.hpp"
 #include "logs/mapping_texts.hpp"
 #include "logs/row_checks.hpp"
+#include "logs/sensor_check.hpp"
 #include "logs/specific_force.hpp"
 #include "logs/vehicle_check.hpp"
 #include "pinnquad/data/plausibility.hpp"
@@ -367,6 +368,12 @@ class Import {
         if (flight.size() < fewest_rows) continue;
         flight.trajectory = passage.trajectory;
         flight.name = free_name(dataset_.flights, passage.name, ++part);
+        const bool misread = causes_.find(flight.name) != causes_.end();
+        const auto sensors = misread ? std::vector<std::string>() : check_sensors(flight, !dataset_.lacks("velocity"));
+        for (const std::string& finding : sensors) {
+          warn(flight.name + ": " + finding);
+          if (finding.find("heading") != std::string::npos) causes_.emplace(flight.name, finding);
+        }
         require_plausible_flight(flight, passage.source);
         const std::string unchecked = motion_not_checked(flight);
         if (!unchecked.empty()) add(dataset_.notes, flight.name + ": not checked: too little motion: " + unchecked);

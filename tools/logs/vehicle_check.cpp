@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -41,18 +40,6 @@ bool is_told(const Estimate& estimate) {
   return estimate.half_width <= told_share * std::abs(estimate.value) && estimate.value != 0;
 }
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-/// "80.2 rad/s^2 (78 to 82.4)"
-std::string told(const Estimate& estimate, const char* unit) {
-  return short_number(estimate.value) + " " + unit + " (" + short_number(estimate.low()) + " to " +
-         short_number(estimate.high()) + ")";
-}
-
 /// A number that flights of one vehicle have in common.
 struct SharedNumber {
   const char* words;
@@ -72,6 +59,10 @@ struct Judged {
   std::string name;
   std::vector<Flight> aligned;  ///< by its own lag, where it has one
   Identification found;
+  std::array<Identification, 2> halves;  ///< of its time
+  double half_s = 0;                     ///< its time at the second one's begin
+  double voltage_V = 0;                  ///< mean of `battery_voltage`; 0 without
+  double highest_command = 0;
   double lag_s = 0;  ///< from the commands as they were logged
   bool has_lag = false;
   bool lag_found = false;  ///< with confidence
@@ -99,12 +90,30 @@ Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_
   Flight begin = flight;
   std::size_t row = 0;
   if (begin.size() > most) begin.keep_rows([&](std::size_t) { return row++ < most; });
+  judged.half_s = (begin[0].time_s + begin[begin.size() - 1].time_s) / 2;
   judged.aligned = split_at_gaps(std::move(begin), 1.5 * period_s);
   IdentificationSettings settings;
   settings.thrust_curve = airframe.rotors[0].thrust_curve;
   RowSet rows;
-  for (const Flight& segment : judged.aligned) rows.add(segment, {0, segment.size()});
+  std::array<RowSet, 2> half_rows;
+  for (const Flight& segment : judged.aligned) {
+    std::size_t middle = 0;
+    while (middle < segment.size() && segment[middle].time_s < judged.half_s) ++middle;
+    rows.add(segment, {0, segment.size()});
+    half_rows[0].add(segment, {0, middle});
+    half_rows[1].add(segment, {middle, segment.size()});
+  }
   judged.found = identify(rows, axis_signs(airframe), settings);
+  for (std::size_t half = 0; half < 2; ++half) {
+    judged.halves[half] = identify(half_rows[half], axis_signs(airframe), settings);
+  }
+  for (std::size_t i = 0; i < flight.size(); ++i) {
+    const auto& u = flight[i].commands;
+    judged.highest_command = std::max(judged.highest_command, *std::max_element(u.begin(), u.end()));
+  }
+  if (const ExtraColumn* const battery = flight.column("battery_voltage")) {
+    for (const double volts : battery->values) judged.voltage_V += volts / static_cast<double>(flight.size());
+  }
   const CommandLag lag = widest_lag(judged.aligned, period_s);
   judged.lag_found = lag.found && lag.confidence >= least_confidence;
   judged.lag_s = lag.lag_s + lag_removed_s;
@@ -126,7 +135,10 @@ class VehicleCheck {
       if (check_force(i) || check_signs(i)) continue;
       check_lag(i);
       check_range(i);
+      check_halves(i);
     }
+    check_highest();
+    check_voltages();
     check_slopes();
     compare();
     return std::move(findings_);
@@ -148,7 +160,7 @@ class VehicleCheck {
     const Estimate& thrust = flights_[i].found.thrust_m_s2;
     if (!(thrust.high() < 0)) return false;
     say(i,
-        "column vdot_bz: thrust of a rotor over mass is " + told(thrust, "m/s^2") +
+        "column vdot_bz: thrust of a rotor over mass is " + with_interval(thrust, "m/s^2") +
             ": the specific force points along +z of the body: that is x forward, y left, z up (FLU), or the force is "
             "negated",
         true);
@@ -165,7 +177,8 @@ class VehicleCheck {
       const Estimate& yaw = flight.found.effectiveness_rad_s2[2];
       const bool measured = order.yaw_reversed && yaw.high() < 0;
       say(i,
-          columns + *order.finding + (measured ? "; yaw effectiveness " + told(yaw, "rad/s^2") + " in column w_z" : ""),
+          columns + *order.finding +
+              (measured ? "; yaw effectiveness " + with_interval(yaw, "rad/s^2") + " in column w_z" : ""),
           true);
       wrong_.push_back(i);
       return true;
@@ -175,8 +188,8 @@ class VehicleCheck {
       const Estimate& estimate = flight.found.effectiveness_rad_s2[axis];
       if (!(estimate.high() < 0) || !order.turns_against[axis]) continue;
       say(i,
-          columns + turns[axis] + " turns against the commands, " + told(estimate, "rad/s^2") + " in column w_" +
-              "xyz"[axis] +
+          columns + turns[axis] + " turns against the commands, " + with_interval(estimate, "rad/s^2") +
+              " in column w_" + "xyz"[axis] +
               (axis == 2 ? ": the propellers turn the other way than the airframe says (spin), or motors are exchanged"
                          : ": motors are exchanged, or the rate is negated"),
           true);
@@ -215,10 +228,60 @@ class VehicleCheck {
       const Estimate estimate = shared.of(flights_[i].found);
       const double has = rotor_effects(airframe_)[number];
       if (!is_told(estimate) || (estimate.high() > has / factor && estimate.low() < has * factor)) continue;
-      off += (off.empty() ? "" : ", ") + (shared.words + (" is " + told(estimate, shared.unit))) +
+      off += (off.empty() ? "" : ", ") + (shared.words + (" is " + with_interval(estimate, shared.unit))) +
              " where the airframe has " + short_number(has);
     }
     if (!off.empty()) say(i, "columns u1 to u4: " + off + another_range);
+  }
+
+  /// Numbers of the second half of a flight that are not those of the first.
+  void check_halves(std::size_t i) {
+    const Judged& flight = flights_[i];
+    std::string off;
+    for (const SharedNumber& shared : shared_numbers) {
+      const Estimate first = shared.of(flight.halves[0]), second = shared.of(flight.halves[1]);
+      if (!is_told(first) || !is_told(second) || agree(flight.halves[0], flight.halves[1], shared)) continue;
+      const double share = second.value / first.value - 1;
+      off += (off.empty() ? "" : ", ") + (shared.words + (" is " + with_interval(second, shared.unit))) + ", " +
+             percent(std::abs(share)) + (share < 0 ? " less" : " more") + " than before (" +
+             with_interval(first, shared.unit) + ")";
+    }
+    if (off.empty()) return;
+    say(i, "columns u1 to u4: from " + short_number(flight.half_s) + " s on, half of the flight, " + off +
+               ": other propellers, another battery or payload within a flight");
+  }
+
+  /// Commands of all flights that may be tenths of what they should be.
+  void check_highest() {
+    constexpr double least = 0.15;
+    double highest = 0;
+    for (const Judged& flight : flights_) highest = std::max(highest, flight.highest_command);
+    if (highest >= least || known_) return;
+    for (std::size_t i = 0; i < flights_.size(); ++i) {
+      say(i, "columns u1 to u4: no command is above " + short_number(highest) +
+                 ", where 1 is a rotor's most and quadrotors hover at 0.2 to 0.7" + another_range);
+    }
+  }
+
+  /// A cell has 2.5 to 4.4 V: flights of one vehicle are no further apart.
+  void check_voltages() {
+    constexpr double empty_V = 2.5, full_V = 4.4, most_cells = 14;
+    for (std::size_t i = 0; i < flights_.size(); ++i) {
+      const double volts = flights_[i].voltage_V;
+      if (volts == 0) continue;
+      std::vector<double> others;
+      for (std::size_t k = 0; k < flights_.size(); ++k) {
+        if (k != i && flights_[k].voltage_V > 0) others.push_back(flights_[k].voltage_V);
+      }
+      const double usual = others.empty() ? volts : detail::median_of(std::move(others));
+      const std::string is = "column battery_voltage: " + short_number(volts) + " V on average";
+      if (volts < empty_V || volts > most_cells * full_V) {
+        say(i, is + ", where batteries of 1 to 14 cells have 2.5 to 61.6 V: another unit");
+      } else if (volts * empty_V > usual * full_V || usual * empty_V > volts * full_V) {
+        say(i, is + ", in the other flights " + short_number(usual) +
+                   " V, where a cell has 2.5 to 4.4 V: another unit, or another battery");
+      }
+    }
   }
 
   /// By how much the slope of the thrust over the commands is off its level; empty where a flight does not tell.
@@ -243,21 +306,22 @@ class VehicleCheck {
       const bool against = by < 0 && flights_[i].found.thrust_m_s2.value > 0;
       if (!against && !(by > most_bent && 2 * off > telling)) continue;
       say(i,
-          "columns u1 to u4: thrust of a rotor over mass is " + told(flights_[i].found.thrust_m_s2, "m/s^2") +
-              " by its level and " + told(flights_[i].found.thrust_slope_m_s2, "m/s^2") + " by its slope" +
+          "columns u1 to u4: thrust of a rotor over mass is " + with_interval(flights_[i].found.thrust_m_s2, "m/s^2") +
+              " by its level and " + with_interval(flights_[i].found.thrust_slope_m_s2, "m/s^2") + " by its slope" +
               (against ? ": a velocity along down, or the specific force, is negated (column vdot_bz)" : another_range),
           against);
     }
   }
 
-  bool agree(std::size_t a, std::size_t b, std::size_t number) const {
-    const Estimate of_a = shared_numbers[number].of(flights_[a].found);
-    const Estimate of_b = shared_numbers[number].of(flights_[b].found);
-    double tolerance = shared_numbers[number].tolerance;
-    const double volts_a = flights_[a].found.mean_voltage_V, volts_b = flights_[b].found.mean_voltage_V;
-    if (volts_a > 0 && volts_b > 0) tolerance += 2 * std::abs(volts_a / volts_b - 1);
+  /// A higher voltage makes more thrust, up to twice its own share, and never less.
+  static bool agree(const Identification& a, const Identification& b, const SharedNumber& number) {
+    const Estimate of_a = number.of(a), of_b = number.of(b);
     const double scale = std::min(std::abs(of_a.value), std::abs(of_b.value));
-    return std::abs(of_a.value - of_b.value) <= tolerance * scale + std::hypot(of_a.half_width, of_b.half_width);
+    const bool has_volts = a.mean_voltage_V > 0 && b.mean_voltage_V > 0;
+    const double by_volts = has_volts ? 2 * scale * (a.mean_voltage_V / b.mean_voltage_V - 1) : 0;
+    const double apart = of_a.value - of_b.value;
+    const double unexplained = apart - std::clamp(apart, std::min(0.0, by_volts), std::max(0.0, by_volts));
+    return std::abs(unexplained) <= number.tolerance * scale + std::hypot(of_a.half_width, of_b.half_width);
   }
 
   /// The flights whose number agrees with that of most others; empty where none tells it.
@@ -266,7 +330,7 @@ class VehicleCheck {
     for (const std::size_t pivot : flights) {
       std::vector<std::size_t> with;
       for (const std::size_t other : flights) {
-        if (agree(pivot, other, number)) with.push_back(other);
+        if (agree(flights_[pivot].found, flights_[other].found, shared_numbers[number])) with.push_back(other);
       }
       if (with.size() > group.size()) group = with;
     }
@@ -295,8 +359,8 @@ class VehicleCheck {
         if (std::find(group.begin(), group.end(), i) != group.end()) continue;
         const Estimate estimate = shared.of(flights_[i].found);
         const double share = estimate.value / usual - 1;
-        off[i] += (off[i].empty() ? "" : ", ") + (shared.words + (" is " + told(estimate, shared.unit))) + ", " +
-                  percent(std::abs(share)) + (share < 0 ? " less" : " more") + " than in " +
+        off[i] += (off[i].empty() ? "" : ", ") + (shared.words + (" is " + with_interval(estimate, shared.unit))) +
+                  ", " + percent(std::abs(share)) + (share < 0 ? " less" : " more") + " than in " +
                   (group.size() == 1 ? flights_[group.front()].name : std::to_string(group.size()) + " other flights") +
                   " (" + short_number(usual) + ")";
       }

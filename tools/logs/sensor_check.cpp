@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "logs/sensor_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "logs/log_checks.hpp"
+#include "logs/specific_force.hpp"
+#include "pinnquad/data/motion_checks.hpp"
+#include "pinnquad/data/row_set.hpp"
+#include "pinnquad/regression/block_regression.hpp"
+
+namespace pinnquad::logs {
+namespace {
+
+constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
+
+/// Steps of a flight without a gap in time, one after the other, each of `size` rows.
+struct StepsOfFlight {
+  std::size_t size = 0;
+  double duration_s = 0;
+  std::vector<std::size_t> begins;
+};
+
+StepsOfFlight steps_of(const Flight& flight, double period_s, double step_s) {
+  StepsOfFlight steps;
+  steps.size = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(step_s / period_s)));
+  steps.duration_s = static_cast<double>(steps.size) * period_s;
+  for (std::size_t row = 0; row + steps.size < flight.size();) {
+    const double taken_s = flight[row + steps.size].time_s - flight[row].time_s;
+    const bool whole = std::abs(taken_s - steps.duration_s) < 0.6 * period_s;
+    if (whole) steps.begins.push_back(row);
+    row += whole ? steps.size : 1;
+  }
+  return steps;
+}
+
+/// Mean over the rows of a step, its ends by half.
+template <class Of>
+Vector3<double> mean_of(const Flight& flight, std::size_t begin, std::size_t size, const Of& of) {
+  Vector3<double> sum = Vector3<double>::Zero();
+  for (std::size_t row = begin; row <= begin + size; ++row) {
+    sum += (row == begin || row == begin + size ? 0.5 : 1.0) * Vector3<double>(of(flight[row]));
+  }
+  return sum / static_cast<double>(size);
+}
+
+/// Adds expected - measured = r x measured + others of one step: three rows, one to an axis.
+template <std::size_t Unknowns, class Others>
+void add_step(BlockRegression& regression, std::size_t block, const Vector3<double>& expected,
+              const Vector3<double>& measured, const Others& others) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t next = (axis + 1) % 3, last = (axis + 2) % 3;
+    const auto at = [](const Vector3<double>& v, std::size_t i) { return v[static_cast<Eigen::Index>(i)]; };
+    std::array<double, Unknowns> x{};
+    x[next] = at(measured, last);
+    x[last] = -at(measured, next);
+    others(axis, x);
+    regression.add(block, x.data(), at(expected, axis) - at(measured, axis));
+  }
+}
+
+/// The unknowns of `Unknowns` by all steps of a flight; nothing where they are too few.
+template <std::size_t Unknowns, class Add>
+std::optional<BlockSolution> solved(const StepsOfFlight& steps, const Add& add) {
+  constexpr std::size_t most_blocks = 20, fewest_blocks = 8;
+  const std::size_t count = steps.begins.size(), blocks = std::min(most_blocks, count / 2);
+  if (blocks < fewest_blocks) return std::nullopt;
+  BlockRegression regression(Unknowns, 0, blocks);
+  for (std::size_t step = 0; step < count; ++step) add(regression, step * blocks / count, steps.begins[step]);
+  return regression.solve();
+}
+
+/// True where the whole interval is further from zero than that.
+bool is_beyond(const Estimate& estimate, double most) { return std::abs(estimate.value) - estimate.half_width > most; }
+
+Estimate positive(const Estimate& estimate) { return {std::abs(estimate.value), estimate.half_width}; }
+
+/// A finding for each of the first `count` axes about which one is turned against the other.
+void check_rotation(const BlockSolution& found, std::size_t count, const std::string& what, const std::string& cause,
+                    std::vector<std::string>& findings) {
+  constexpr double most_rad = 5 / degrees_per_radian;
+  for (std::size_t axis = 0; axis < count; ++axis) {
+    const Estimate turned = found.estimate(axis);
+    if (!is_beyond(turned, most_rad) || turned.half_width > most_rad) continue;
+    findings.push_back(what + " turned by " + with_interval(positive(turned) * degrees_per_radian, "degrees") +
+                       " about " + axes[axis] + cause);
+  }
+}
+
+void check_rates(const Flight& flight, double period_s, std::vector<std::string>& findings) {
+  constexpr double step_s = 0.2, most_late_s = 0.02;
+  constexpr std::array<double, 3> most_rad_s = {0.04, 0.04, 0.012};
+  constexpr std::size_t bias = 3, late = 6, unknowns = 7;
+  const StepsOfFlight steps = steps_of(flight, period_s, step_s);
+  const auto rates = [](const Sample& sample) { return sample.body_rates_rad_s; };
+  const std::size_t end_rows = std::max<std::size_t>(1, steps.size / 8);  // their mean has less noise
+  const auto found = solved<unknowns>(steps, [&](BlockRegression& regression, std::size_t block, std::size_t row) {
+    const std::size_t last = row + steps.size;
+    const Vector3<double> turned = detail::turn_vector(conjugate(attitude(flight[row])) * attitude(flight[last]));
+    const Vector3<double> integral = mean_of(flight, row, steps.size, rates) * steps.duration_s;
+    Vector3<double> change = Vector3<double>::Zero();
+    for (std::size_t i = 0; i < end_rows; ++i) {
+      change += (rates(flight[last - i]) - rates(flight[row + i])) / static_cast<double>(end_rows);
+    }
+    add_step<unknowns>(regression, block, turned, integral, [&](std::size_t axis, std::array<double, unknowns>& x) {
+      x[bias + axis] = -steps.duration_s;
+      x[late] = change[static_cast<Eigen::Index>(axis)];
+    });
+  });
+  if (!found) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Estimate off = found->estimate(bias + axis);
+    if (!is_beyond(off, most_rad_s[axis])) continue;
+    findings.push_back(std::string("column w_") + axes[axis] + ": on average " + with_interval(positive(off), "rad/s") +
+                       (off.value > 0 ? " more" : " less") + " than the attitude turns by: a gyro's bias" +
+                       (axis == 2 ? ", or a heading (yaw) that drifts" : ""));
+  }
+  const Estimate late_ms = found->estimate(late) * 1e3;
+  if (late_ms.low() > 1e3 * most_late_s) {
+    findings.push_back("columns w_x to w_z: the rates come " + with_interval(late_ms, "ms") +
+                       " after the turning of the attitude, and so do the angular accelerations, where filters of a "
+                       "gyro take 2 to 10 ms: a low-pass, or a topic's clock");
+  }
+  check_rotation(*found, 3, "columns w_x to w_z: the rates are",
+                 " against the attitude: the gyro is mounted askew, or one of the two is in other axes", findings);
+}
+
+void check_force(const Flight& flight, double period_s, std::vector<std::string>& findings) {
+  constexpr double step_s = 0.4;
+  constexpr std::size_t unknowns = 3;
+  const StepsOfFlight steps = steps_of(flight, period_s, step_s);
+  const auto in_world = [](const Sample& sample, const Vector3<double>& v) {
+    return body_to_world<double>(attitude(sample), v);
+  };
+  const auto found = solved<unknowns>(steps, [&](BlockRegression& regression, std::size_t block, std::size_t row) {
+    const Sample &first = flight[row], &last = flight[row + steps.size];
+    const Vector3<double> gravity(0, 0, standard_gravity_m_s2<double>);
+    const Vector3<double> expected =
+        (in_world(last, last.velocity_m_s) - in_world(first, first.velocity_m_s)) / steps.duration_s - gravity;
+    const Vector3<double> measured = mean_of(
+        flight, row, steps.size, [&](const Sample& sample) { return in_world(sample, specific_force_m_s2(sample)); });
+    const Quaternion<double> middle = attitude(flight[row + steps.size / 2]);
+    add_step<unknowns>(regression, block, world_to_body<double>(middle, expected),
+                       world_to_body<double>(middle, measured), [](std::size_t, const auto&) {});
+  });
+  // about z: the heading against the velocity's world, which few flights tell
+  if (found) {
+    check_rotation(*found, 2, "columns vdot_bx to vdot_bz: the specific force is",
+                   " against attitude and velocity: the accelerometer is mounted askew, or has an offset", findings);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> check_sensors(const Flight& flight, bool has_velocity) {
+  std::vector<std::string> findings;
+  const double period_s = sample_period_s(RowSet(flight, {0, flight.size()}));
+  if (!(period_s > 0)) return findings;
+  check_rates(flight, period_s, findings);
+  if (has_velocity) check_force(flight, period_s, findings);
+  return findings;
+}
+
+}  // namespace pinnquad::logs
