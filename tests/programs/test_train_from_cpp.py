@@ -42,8 +42,11 @@ def test_train_from_cpp(pinnquad, program, flown):
     pinnquad("train flight.csv --out a --name MyModel --models structured --seeds 1 "
              "--epochs 20")
     said = train("b flight.csv").out
-    for file in "model.hpp", "model.block", "trust.hpp":
+    for file in "model.block", "trust.hpp":
         same_bytes(f"a/{file}", f"b/{file}")
+    # the program has flown the model too, and judged others: it alone says so above
+    by_program, by_example = (Path(f"{folder}/model.hpp").read_text().split("#pragma once") for folder in "ab")
+    assert by_program[1] == by_example[1] and "good enough to fly in simulation" in by_program[0]
     assert said.startswith("test rows: R^2 0.9") or "\ntest rows: R^2 0.9" in said, said
 
     # too few validation rows: limits of an earlier export do not stay

@@ -15,9 +15,9 @@ namespace pinnquad::logs {
 /// looked at. Compared is what a flight tells to 15 %. Found, with 95 % intervals beyond it: thrust of a rotor over
 /// mass that is 8 % off the other flights' (beyond what the battery's voltage explains), an effectiveness 30 %; 1.4
 /// times the airframe's or less than it over 1.4; a thrust whose slope over the commands is not its level, by a factor
-/// of 1.6, in most flights. And a lag of 0.12 s or more either way, or 0.06 s off the other flights'. The second half of
-/// a flight is compared with the first as another flight is. Battery voltages that no battery has, or 1.76 times those
-/// of the other flights; commands that are all below 0.15.
+/// of 1.6, in most flights. And a lag of 0.12 s or more either way, or 0.06 s off the other flights'. The second half
+/// of a flight is compared with the first as another flight is. Battery voltages that no battery has, or 1.76 times
+/// those of the other flights; commands that are all below 0.15.
 /// Limits: calm flights tell little, and are compared in what they tell. Rates and attitude are taken as right
 /// (find_turning_mistake()).
 void check_vehicle(ImportedDataset& dataset, const Airframe<double>& airframe, bool known,

@@ -62,7 +62,7 @@ int train_wrench(const TrainOptions& options) {
     flights.add(with_rotor_states(flight, airframe.value, lag_removed_s));
   }
   dataset.flights = std::move(flights);
-  const std::vector<Fold> folds = folds_asked_for(options, dataset.flights);
+  const std::vector<Fold> folds = folds_asked_for(options, dataset);
   require_sound(options, dataset, folds);
   const RowSplit& split = folds.front().split;
   const GivenAirframe flown(airframe.name, airframe.value);
