@@ -68,7 +68,7 @@ add_test(NAME flight_stacks.crazyflie_refuses.little_app_stack COMMAND "${CMAKE_
 set_tests_properties(flight_stacks.crazyflie_refuses.little_app_stack PROPERTIES LABELS flight_stacks
   PASS_REGULAR_EXPRESSION "raise CONFIG_APP_STACKSIZE to 800")
 pinnquad_thorough(flight_stacks.past)
-pinnquad_thorough_target(test_flight_stacks_past)
+pinnquad_thorough_target(test_flight_stacks_past flight_stacks_past_core)
 
 target_compile_definitions(test_flight_stacks PRIVATE "PINNQUAD_PX4_MESSAGES=\"${PROJECT_SOURCE_DIR}/examples/px4_module/msg\"")
 
