@@ -47,6 +47,8 @@ class Done:
         self.words, self.code = words, code
         self.out, self.err = (text.decode(errors="surrogateescape") for text in (out, err))
         self.lines = [line for line in re.split(r"\n", self.err)[:-1] if not PROGRESS.fullmatch(line)]
+        shares = [int(share) for share in re.findall(r"^fitting [^:]*: +(\d+) %", self.err, re.M)]
+        assert shares == sorted(shares), f"progress runs backwards: {shares}"
         if self.err and not self.err.endswith("\n"):
             self.lines.append(self.err[self.err.rfind("\n") + 1 :])
 

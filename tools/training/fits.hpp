@@ -230,7 +230,8 @@ inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{})
       return;
     }
     FitTask task = plan.task(plan.folds[jobs[i].fold], jobs[i].seed);
-    task.share_done = [&shares, i](double share) { shares[i].store(std::min(share, 0.99)); };
+    // of a kind that is fitted several times the longest fit counts: no progress runs backwards
+    task.share_done = [&shares, i](double share) { shares[i].store(std::clamp(share, shares[i].load(), 0.99)); };
     if (first != i && jobs[first].altitude.applies) task.settings.altitude = jobs[first].altitude.taken;
     try {
       fit_one(plan, jobs[i], task);
