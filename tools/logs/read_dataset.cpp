@@ -369,10 +369,11 @@ class Import {
         flight.trajectory = passage.trajectory;
         flight.name = free_name(dataset_.flights, passage.name, ++part);
         const bool misread = causes_.find(flight.name) != causes_.end();
-        const auto sensors = misread ? std::vector<std::string>() : check_sensors(flight, !dataset_.lacks("velocity"));
-        for (const std::string& finding : sensors) {
-          warn(flight.name + ": " + finding);
-          if (finding.find("heading") != std::string::npos) causes_.emplace(flight.name, finding);
+        if (!misread) {
+          for (const SensorFinding& finding : check_sensors(flight, !dataset_.lacks("velocity"))) {
+            warn(flight.name + ": " + finding.words);
+            if (finding.may_be_heading) causes_.emplace(flight.name, finding.words);
+          }
         }
         require_plausible_flight(flight, passage.source);
         const std::string unchecked = motion_not_checked(flight);

@@ -81,17 +81,18 @@ Estimate positive(const Estimate& estimate) { return {std::abs(estimate.value), 
 
 /// A finding for each of the first `count` axes about which one is turned against the other.
 void check_rotation(const BlockSolution& found, std::size_t count, const std::string& what, const std::string& cause,
-                    std::vector<std::string>& findings) {
+                    std::vector<SensorFinding>& findings) {
   constexpr double most_rad = 5 / degrees_per_radian;
   for (std::size_t axis = 0; axis < count; ++axis) {
     const Estimate turned = found.estimate(axis);
     if (!is_beyond(turned, most_rad) || turned.half_width > most_rad) continue;
-    findings.push_back(what + " turned by " + with_interval(positive(turned) * degrees_per_radian, "degrees") +
-                       " about " + axes[axis] + cause);
+    findings.push_back({what + " turned by " + with_interval(positive(turned) * degrees_per_radian, "degrees") +
+                            " about " + axes[axis] + cause,
+                        false});
   }
 }
 
-void check_rates(const Flight& flight, double period_s, std::vector<std::string>& findings) {
+void check_rates(const Flight& flight, double period_s, std::vector<SensorFinding>& findings) {
   constexpr double step_s = 0.2, most_late_s = 0.02;
   constexpr std::array<double, 3> most_rad_s = {0.04, 0.04, 0.012};
   constexpr std::size_t bias = 3, late = 6, unknowns = 7;
@@ -115,21 +116,25 @@ void check_rates(const Flight& flight, double period_s, std::vector<std::string>
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Estimate off = found->estimate(bias + axis);
     if (!is_beyond(off, most_rad_s[axis])) continue;
-    findings.push_back(std::string("column w_") + axes[axis] + ": on average " + with_interval(positive(off), "rad/s") +
-                       (off.value > 0 ? " more" : " less") + " than the attitude turns by: a gyro's bias" +
-                       (axis == 2 ? ", or a heading (yaw) that drifts" : ""));
+    findings.push_back({std::string("column w_") + axes[axis] + ": on average " +
+                            with_interval(positive(off), "rad/s") + (off.value > 0 ? " more" : " less") +
+                            " than the attitude turns by: a gyro's bias" +
+                            (axis == 2 ? ", or a heading (yaw) that drifts" : ""),
+                        axis == 2});
   }
   const Estimate late_ms = found->estimate(late) * 1e3;
   if (late_ms.low() > 1e3 * most_late_s) {
-    findings.push_back("columns w_x to w_z: the rates come " + with_interval(late_ms, "ms") +
-                       " after the turning of the attitude, and so do the angular accelerations, where filters of a "
-                       "gyro take 2 to 10 ms: a low-pass, or a topic's clock");
+    findings.push_back(
+        {"columns w_x to w_z: the rates come " + with_interval(late_ms, "ms") +
+             " after the turning of the attitude, and so do the angular accelerations, where filters of a "
+             "gyro take 2 to 10 ms: a low-pass, or a topic's clock",
+         false});
   }
   check_rotation(*found, 3, "columns w_x to w_z: the rates are",
                  " against the attitude: the gyro is mounted askew, or one of the two is in other axes", findings);
 }
 
-void check_force(const Flight& flight, double period_s, std::vector<std::string>& findings) {
+void check_force(const Flight& flight, double period_s, std::vector<SensorFinding>& findings) {
   constexpr double step_s = 0.4;
   constexpr std::size_t unknowns = 3;
   const StepsOfFlight steps = steps_of(flight, period_s, step_s);
@@ -156,8 +161,8 @@ void check_force(const Flight& flight, double period_s, std::vector<std::string>
 
 }  // namespace
 
-std::vector<std::string> check_sensors(const Flight& flight, bool has_velocity) {
-  std::vector<std::string> findings;
+std::vector<SensorFinding> check_sensors(const Flight& flight, bool has_velocity) {
+  std::vector<SensorFinding> findings;
   const double period_s = sample_period_s(RowSet(flight, {0, flight.size()}));
   if (!(period_s > 0)) return findings;
   check_rates(flight, period_s, findings);

@@ -61,7 +61,6 @@ struct Judged {
   Identification found;
   std::array<Identification, 2> halves;  ///< of its time
   double half_s = 0;                     ///< its time at the second one's begin
-  double voltage_V = 0;                  ///< mean of `battery_voltage`; 0 without
   double highest_command = 0;
   double lag_s = 0;  ///< from the commands as they were logged
   bool has_lag = false;
@@ -110,9 +109,6 @@ Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_
   for (std::size_t i = 0; i < flight.size(); ++i) {
     const auto& u = flight[i].commands;
     judged.highest_command = std::max(judged.highest_command, *std::max_element(u.begin(), u.end()));
-  }
-  if (const ExtraColumn* const battery = flight.column("battery_voltage")) {
-    for (const double volts : battery->values) judged.voltage_V += volts / static_cast<double>(flight.size());
   }
   const CommandLag lag = widest_lag(judged.aligned, period_s);
   judged.lag_found = lag.found && lag.confidence >= least_confidence;
@@ -267,11 +263,12 @@ class VehicleCheck {
   void check_voltages() {
     constexpr double empty_V = 2.5, full_V = 4.4, most_cells = 14;
     for (std::size_t i = 0; i < flights_.size(); ++i) {
-      const double volts = flights_[i].voltage_V;
-      if (volts == 0) continue;
+      const double volts = flights_[i].found.mean_voltage_V;
+      if (!(volts > 0)) continue;
       std::vector<double> others;
       for (std::size_t k = 0; k < flights_.size(); ++k) {
-        if (k != i && flights_[k].voltage_V > 0) others.push_back(flights_[k].voltage_V);
+        const double of_other = flights_[k].found.mean_voltage_V;
+        if (k != i && of_other > 0) others.push_back(of_other);
       }
       const double usual = others.empty() ? volts : detail::median_of(std::move(others));
       const std::string is = "column battery_voltage: " + short_number(volts) + " V on average";

@@ -33,7 +33,7 @@ struct Findings {
   std::vector<std::string> uncounted;
 
   bool proven() const { return proof.has_value(); }
-  /// Of a proof by structure; else null.
+  /// Not null for a proof by structure.
   const pinnquad::Certificate* certificate() const { return proof && proof->structure ? &*proof->structure : nullptr; }
   bool by_path_bound() const { return proof && proof->path_bounded; }
 };

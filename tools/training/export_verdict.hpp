@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
@@ -37,7 +36,7 @@ inline double held_out_rmse(const JudgedKind& kind) {
   return pinnquad::summarize(over_seeds(kind, error_figures[3])).mean;
 }
 
-/// Of a kind that may not be among those compared.
+/// The same for a kind that may not be among those compared.
 inline double held_out_rmse(const FitPlan& plan, const JudgedKinds& judged, const ModelKind& kind) {
   const JudgedKind* known = judged.find(kind.key);
   if (known != nullptr && known->applicable()) return held_out_rmse(*known);
@@ -50,12 +49,6 @@ inline double held_out_rmse(const FitPlan& plan, const JudgedKinds& judged, cons
     sum += mean_over_motors(flight_errors(rows, made, counts).root_mean_square);
   }
   return sum / static_cast<double>(plan.folds.size());
-}
-
-inline std::string thousandths(double error) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.1fe-3", 1e3 * error);
-  return text;
 }
 
 }  // namespace detail
@@ -83,13 +76,13 @@ inline BesideOthers beside_others(const FitPlan& plan, const JudgedKinds& judged
 /// "Held out, rms error: ridge 33.6e-3; structured, the best of the others, 31.6e-3; ..."
 inline std::string in_words(const BesideOthers& beside, const JudgedKinds& judged, std::size_t exported) {
   std::string words = "rms error of the commands held out: " + std::string(judged.kinds[exported].kind.title) + " " +
-                      detail::thousandths(beside.own);
+                      thousandths(beside.own, 1);
   if (beside.best) {
     words += "; best of the others, " + std::string(judged.kinds[*beside.best].kind.title) + ", " +
-             detail::thousandths(beside.best_other);
+             thousandths(beside.best_other, 1);
   }
-  return words + "; the commands of 100 ms ago " + detail::thousandths(beside.last_commands) +
-         "; the mean of the commands " + detail::thousandths(beside.mean_commands);
+  return words + "; the commands of 100 ms ago " + thousandths(beside.last_commands, 1) +
+         "; the mean of the commands " + thousandths(beside.mean_commands, 1);
 }
 
 inline nlohmann::json beside_json(const BesideOthers& beside, const JudgedKinds& judged) {
@@ -106,7 +99,7 @@ inline std::vector<std::string> beaten_in_words(const BesideOthers& beside, cons
   std::vector<std::string> lines;
   const std::string own = std::string(judged.kinds[exported].kind.title) + ", which is exported,";
   const auto errors = [&](double less) {
-    return " (rms " + detail::thousandths(less) + " against " + detail::thousandths(beside.own) + ")";
+    return " (rms " + thousandths(less, 1) + " against " + thousandths(beside.own, 1) + ")";
   };
   if (beside.beaten()) {
     const JudgedKind& best = judged.kinds[*beside.best];
@@ -134,8 +127,7 @@ inline ExportVerdict export_verdict(const std::string& title, const pinnquad::Ve
                                     const nlohmann::json& flown, const std::string& beaten) {
   constexpr double least_r2 = 0.5;
   const std::string unfit = unfit_to_fly(flown);
-  char r2[32];
-  std::snprintf(r2, sizeof r2, "R^2 %.3f", held_out.test_r_squared);
+  const std::string r2 = "R^2 " + decimals(held_out.test_r_squared, 3);
   if (!(held_out.test_r_squared >= least_r2)) {
     const char* tells = held_out.worse_than_mean() ? " is worse than the mean of the commands"
                                                    : " explains less than half of the commands' variance";

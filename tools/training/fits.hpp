@@ -92,7 +92,7 @@ inline bool answered(const std::array<double, pinnquad::rotor_count>& commands) 
   return std::all_of(commands.begin(), commands.end(), [](double u) { return std::isfinite(u); });
 }
 
-/// Of commands, over the rows that are answered.
+/// Errors of the commands, over the rows that are answered.
 struct ErrorSums {
   double absolute = 0, squares = 0, count = 0;
   void add(const pinnquad::RowSet& rows, const Predictions& predictions) {

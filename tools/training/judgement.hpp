@@ -111,16 +111,20 @@ inline std::vector<Figure> figures() {
   return list;
 }
 
+inline std::string decimals(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+/// "27.5e-3" of 0.0275.
+inline std::string thousandths(double value, int digits) { return decimals(1e3 * value, digits) + "e-3"; }
+
 /// "12.34 +- 0.56", or without deviation for a single value.
 inline std::string mean_and_deviation(const std::vector<double>& values, double scale, int digits) {
   const pinnquad::Summary summary = pinnquad::summarize(values);
-  char text[64];
-  if (summary.count < 2) {
-    std::snprintf(text, sizeof text, "%.*f", digits, scale * summary.mean);
-  } else {
-    std::snprintf(text, sizeof text, "%.*f +- %.*f", digits, scale * summary.mean, digits, scale * summary.deviation);
-  }
-  return text;
+  const std::string mean = decimals(scale * summary.mean, digits);
+  return summary.count < 2 ? mean : mean + " +- " + decimals(scale * summary.deviation, digits);
 }
 
 }  // namespace programs

@@ -37,6 +37,8 @@
 namespace {
 
 using namespace pinnquad;
+using programs::decimals;
+using programs::thousandths;
 using programs::TrainOptions;
 
 /// Of an export; the others of --out are written whatever comes of it.
@@ -58,12 +60,6 @@ void require_separate_files(const TrainOptions& options) {
   if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
   roles.writes("--out", options.out);
   each_output(options, [&roles](const std::string& path) { roles.writes("--out", path); });
-}
-
-std::string decimals(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
 }
 
 void announce(const std::string& step) {
@@ -182,12 +178,11 @@ class Training {
   void tell_altitude() {
     for (const programs::FinishedFit& fit : fits_.finished) {
       if (!fit.altitude.applies) continue;
-      const auto thousandths = [](double error) { return decimals(1e3 * error, 2) + "e-3"; };
       const programs::AltitudeChoice& choice = fit.altitude;
       const std::string why = !is_finite(choice.error_with)
                                   ? std::string("as --altitude asks")
-                                  : "error on the validation rows with it " + thousandths(choice.error_with) +
-                                        ", without " + thousandths(choice.error_without) +
+                                  : "error on the validation rows with it " + thousandths(choice.error_with, 2) +
+                                        ", without " + thousandths(choice.error_without, 2) +
                                         (choice.taken ? "" : "; a fifth less would take it");
       std::printf("  the structured model is %s the altitude: %s\n", choice.taken ? "shown" : "not shown", why.c_str());
       report_.altitude(choice, options_.altitude, why);
@@ -650,9 +645,12 @@ int programs::train(const TrainOptions& options) {
   require_separate_files(options);
   announce("[1/5] read");
   pinnquad::logs::ImportedDataset dataset = dataset_of(options, vehicle.airframe.value);
-  require_sound(options, dataset, folds_asked_for(options, dataset));
-  if (!options.dataset.empty()) check_vehicle(dataset, vehicle.airframe.value, given.has_value());
-  std::vector<Fold> folds = folds_asked_for(options, dataset);  // it may say which flights are unlike
+  std::vector<Fold> folds = folds_asked_for(options, dataset);
+  require_sound(options, dataset, folds);
+  if (!options.dataset.empty()) {  // of logs it was checked when they were read
+    check_vehicle(dataset, vehicle.airframe.value, given.has_value());
+    folds = folds_asked_for(options, dataset);  // without the flights that it found unlike
+  }
   require_one_vehicle(dataset);
   const FolderLock lock(options.out);
   if (!options.logs.empty()) write_dataset_folder(options.dataset_folder(), dataset);

@@ -45,7 +45,7 @@ struct ProvenSigns {
   AxisSlopes slope{}, held_slope{};
   /// The proof's argument; none: the model is affine, its derivatives are the same everywhere.
   std::optional<Certificate> structure{};
-  /// Of a structure: its network sees the angular acceleration, and its paths from it leave the slopes above 0.
+  /// True of a structure whose network sees the angular acceleration, where its paths from it leave the slopes above 0.
   bool path_bounded = false;
 };
 

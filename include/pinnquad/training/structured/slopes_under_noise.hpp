@@ -24,7 +24,7 @@ struct MeasuredSlopes {
   /// A feature of which noise bends a slope, as the rows before and after tell it.
   struct Denoised {
     int place = 0;
-    /// Of the standardised features, then of the noisy ones before and after; the noisy ones of now count nothing.
+    /// By standardised feature, then by noisy feature before and after; the noisy ones of now count nothing.
     AffineMap by_neighbours;
   };
 
