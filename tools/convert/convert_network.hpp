@@ -14,8 +14,8 @@ struct Conversion {
   std::string features;  ///< features.toml (docs/convert.md)
   std::string out;       ///< a folder, for model.hpp and model.block
   std::string name = "TrainedQuadModel";
-  std::string prefix;  ///< of the tensors that are taken, where a file has several networks
-  std::string output;  ///< of a graph that has several
+  std::string prefix = {};  ///< of the tensors that are taken, where a file has several networks
+  std::string output = {};  ///< of a graph that has several
   bool in_double = false;
 };
 
