@@ -26,9 +26,9 @@ using namespace pinnquad;
 [[noreturn]] void refuse_difference(const Conversion& conversion, double difference) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1e", difference);
-  throw InputError(conversion.source, 0, 0, "a network that the model's arithmetic answers within 1e-6 of a command",
-                   std::string("a difference of ") + text +
-                       (conversion.in_double ? "" : " (--double has more digits)"));
+  throw InputError(
+      conversion.source, 0, 0, "a network that the model's arithmetic answers within 1e-6 of a command",
+      std::string("a difference of ") + text + (conversion.in_double ? "" : " (--double has more digits)"));
 }
 
 /// Of a block whose weights may not give its golden commands: BlockModel refuses such a one.
@@ -62,19 +62,14 @@ void require_widths(const ForeignNetwork& network, const ForeignMeaning& meaning
 template <class Scalar>
 std::string write_model(const Conversion& conversion, const ForeignMeaning& meaning, const AskPython& ask) {
   const AskedRows rows = asked_rows<Scalar>(meaning);
-  const nlohmann::json request = {{"source", conversion.source},
-                                  {"rows", rows.of_network},
-                                  {"activations", meaning.activations},
-                                  {"one_activation", meaning.one_activation},
-                                  {"layers", meaning.layers},
-                                  {"features_path", meaning.path},
-                                  {"prefix", conversion.prefix},
-                                  {"output", conversion.output}};
+  const nlohmann::json request = {{"source", conversion.source},        {"rows", rows.of_network},
+                                  {"activations", meaning.activations}, {"one_activation", meaning.one_activation},
+                                  {"layers", meaning.layers},           {"features_path", meaning.path},
+                                  {"prefix", conversion.prefix},        {"output", conversion.output}};
   ForeignNetwork network = asked_network(ask, request.dump(), conversion.source);
   network.source = printable(std::filesystem::path(conversion.source).filename().string());
   require_widths(network, meaning);
-  pinnquad::detail::WrittenModel<Scalar> written =
-      converted_model<Scalar>(network, meaning, rows, conversion.name);
+  pinnquad::detail::WrittenModel<Scalar> written = converted_model<Scalar>(network, meaning, rows, conversion.name);
   const std::string block_path = conversion.out + "/model.block", header_path = conversion.out + "/model.hpp";
   const std::vector<unsigned char> block = pinnquad::detail::block_beside_header(written);
   double difference = golden_difference<Scalar>(block);
@@ -100,11 +95,13 @@ std::string write_model(const Conversion& conversion, const ForeignMeaning& mean
   char most[32];
   std::snprintf(most, sizeof most, "%.1e", difference);
   std::string said = printable(header_path) + ": struct " + conversion.name + ", " + model.answer() + ", " +
-                     std::to_string(model.network().parameter_count()) + " parameters\n" + printable(block_path) + ": " +
-                     std::to_string(block.size()) + " bytes; at most " + most + " from the source's commands, over " +
-                     std::to_string(model.golden_count()) + " golden vectors and 1000 motions inside the envelope\n";
+                     std::to_string(model.network().parameter_count()) + " parameters\n" + printable(block_path) +
+                     ": " + std::to_string(block.size()) + " bytes; at most " + most +
+                     " from the source's commands, over " + std::to_string(model.golden_count()) +
+                     " golden vectors and 1000 motions inside the envelope\n";
   if (written.signs_unproven) {
-    said += "not proven to follow the angular acceleration that is asked: pinnquad certify " + printable(block_path) + "\n";
+    said +=
+        "not proven to follow the angular acceleration that is asked: pinnquad certify " + printable(block_path) + "\n";
   }
   return said;
 }

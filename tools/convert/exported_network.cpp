@@ -19,7 +19,8 @@ using nlohmann::json;
 json dense(std::size_t width, const Numbers& weights, const Numbers& bias) {
   json rows = json::array();
   for (std::size_t row = 0; row < bias.size(); ++row) {
-    rows.push_back(Numbers(weights.begin() + std::ptrdiff_t(row * width), weights.begin() + std::ptrdiff_t((row + 1) * width)));
+    rows.push_back(
+        Numbers(weights.begin() + std::ptrdiff_t(row * width), weights.begin() + std::ptrdiff_t((row + 1) * width)));
   }
   return {{"weights", rows}, {"bias", bias}};
 }

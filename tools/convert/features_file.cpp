@@ -167,7 +167,8 @@ void take_outputs(const std::string& path, TomlTable& root, ForeignMeaning& mean
 void take_activations(TomlTable& root, ForeignMeaning& meaning) {
   // those that networks.py makes of the library's, and nothing at all
   std::vector<std::string> words = {"sigmoid", "relu6", "hardtanh", "identity"};
-  for (const auto& one : pinnquad::detail::run_time_activations<float>) words.push_back(activation_word(one.description));
+  for (const auto& one : pinnquad::detail::run_time_activations<float>)
+    words.push_back(activation_word(one.description));
   const std::string expected =
       "one of " + listed(words, [](const std::string& word) { return "\"" + word + "\""; }) + ", or a list of them";
   const toml::node* node = root.optional("activations");

@@ -6,14 +6,14 @@
 namespace programs {
 
 nlohmann::json python_answer(const AskPython& ask, const std::string& request, const std::string& path) {
-  nlohmann::json answer = nlohmann::json::parse(ask(request));
-  if (answer.contains("expected")) {
-    const nlohmann::json& where = answer.at("path");
-    throw pinnquad::InputError(where.is_string() ? where.get<std::string>() : path, 0, 0,
-                               pinnquad::printable(answer.at("expected").get<std::string>()),
-                               pinnquad::printable(answer.at("found").get<std::string>()));
-  }
-  return answer;
+  nlohmann::json answer = nlohmann::json::parse(ask(request), nullptr, false);
+  if (!answer.is_object()) throw pinnquad::InputError(path, 0, 0, "an answer of networks.py", "none");
+  if (!answer.contains("expected")) return answer;
+  const auto text = [&answer](const char* key, const std::string& otherwise) {
+    return answer.contains(key) && answer[key].is_string() ? answer[key].get<std::string>() : otherwise;
+  };
+  throw pinnquad::InputError(text("path", path), 0, 0, pinnquad::printable(text("expected", "a network")),
+                             pinnquad::printable(text("found", "none")));
 }
 
 }  // namespace programs

@@ -21,7 +21,7 @@
 namespace pinnquad {
 
 /// Every activation of the library. The program finds one here by its `description` when it reads a header.
-using Activations = std::tuple<Relu, Tanh, Gelu, Silu, Softplus, Sine, Clip, Elu, LeakyRelu, GeluTanh, HardSwish, Mish,
-                               Softsign>;
+using Activations =
+    std::tuple<Relu, Tanh, Gelu, Silu, Softplus, Sine, Clip, Elu, LeakyRelu, GeluTanh, HardSwish, Mish, Softsign>;
 
 }  // namespace pinnquad

@@ -25,10 +25,10 @@ struct GeluTanh {
 
    private:
     static constexpr auto root = Scalar(0.79788456080286536), cubic = Scalar(0.79788456080286536 * 0.044715);
-    /// 1 / (1 + exp(-2 z)) = (1 + tanh(z)) / 2: the tail below 0 keeps its digits.
+    /// (1 + tanh(z)) / 2 = 1 / (1 + exp(-2 z)): the tail below 0 keeps its digits. Further out than 20 it is 0 or 1.
     static PINNQUAD_ALWAYS_INLINE Scalar gate(Scalar v) noexcept {
-      const Scalar far(20), bounded = v > far ? far : (v < -far ? -far : v);
-      return detail::logistic(Scalar(2) * bounded * (root + cubic * bounded * bounded));
+      const Scalar far(20), bounded = v > far ? far : v;
+      return v < -far ? Scalar(0) : detail::logistic(Scalar(2) * bounded * (root + cubic * bounded * bounded));
     }
   };
 };
