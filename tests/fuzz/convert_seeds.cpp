@@ -10,7 +10,8 @@ int main(int argument_count, char** arguments) {
       R"(N{"inputs": 2, "outputs": 4, "answers": [[0.5, 0.5, 0.5, 0.5]], "layers": [
         {"weights": [[0.5, -0.25], [1, 2], [-0.125, 0.75]], "bias": [0, 0.5, -1]}, "leaky_relu",
         {"weights": [[1, 0, 0.5], [0, 1, 0.25], [0.5, 0.5, 0], [-1, 0, 1]], "bias": [0.5, 0.5, 0.5, 0.5]}]})",
-      R"(N{"inputs": 1, "outputs": 4, "answers": [], "layers": [{"weights": [[1], [2], [3], [4]], "bias": [0, 0, 0, 0]}]})",
+      R"(N{"inputs": 1, "outputs": 4, "answers": [],
+        "layers": [{"weights": [[1], [2], [3], [4]], "bias": [0, 0, 0, 0]}]})",
       R"(N{"expected": "an ONNX model", "found": "none", "path": null})",
       "N",
       "Ffeature = [{ name = \"s_z\", unit = \"g\", lower = -3, upper = 1, mean = -1, scale = 0.5 },\n"

@@ -22,6 +22,7 @@
 #include "convert/python_answer.hpp"
 #include "model/given_model.hpp"
 #include "pinnquad/deploy/block_model.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/logs/read_dataset.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What Python answers: networks.py (tools/python/pinnquad), which the program carries along and runs by python3.
+// Answers of networks.py (tools/python/pinnquad), which the program carries along and runs by python3.
 #pragma once
 
 #include <string>
