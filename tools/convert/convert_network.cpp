@@ -16,8 +16,8 @@
 #include "convert/features_file.hpp"
 #include "convert/python_answer.hpp"
 #include "pinnquad/deploy/block_model.hpp"
-#include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 
 namespace programs {
 namespace {
