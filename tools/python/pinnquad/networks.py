@@ -844,9 +844,9 @@ class OnnxReader:
         except ImportError:
             raise missing("onnx") from None
         self.onnx, self.path, self.files, self.asked = onnx, Path(path), {}, asked
-        model = onnx.ModelProto()
+        model, data = onnx.ModelProto(), network_bytes(path)
         try:
-            model.ParseFromString(network_bytes(path))
+            model.ParseFromString(data)
         except Exception:
             model = None
         if not model or not model.HasField("graph"):
