@@ -358,6 +358,7 @@ void features_are_the_same() {
 TEST_CASE_TEMPLATE("commands to the bit: the paper's network, each activation, double, layers without bias", Model,
                    ModelOf<Paper10, PaperFeatures>, Activated<Relu>, Activated<Tanh>, Activated<Gelu>, Activated<Silu>,
                    Activated<Softplus>, Activated<Sine>, Activated<Clip>, Activated<Elu>, Activated<LeakyRelu>,
+                   Activated<GeluTanh>, Activated<HardSwish>, Activated<Mish>, Activated<Softsign>,
                    ActivatedInDouble<Relu>, ActivatedInDouble<Tanh>, ActivatedInDouble<Gelu>, ActivatedInDouble<Silu>,
                    ActivatedInDouble<Softplus>, ActivatedInDouble<Sine>, ActivatedInDouble<Clip>,
                    ActivatedInDouble<Elu>, ActivatedInDouble<LeakyRelu>, ModelOf<WithoutBias, PaperFeatures>,

@@ -7,14 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pinnquad/nn/elu.hpp"
-#include "pinnquad/nn/gelu.hpp"
-#include "pinnquad/nn/leaky_relu.hpp"
-#include "pinnquad/nn/relu.hpp"
-#include "pinnquad/nn/silu.hpp"
-#include "pinnquad/nn/sine.hpp"
-#include "pinnquad/nn/softplus.hpp"
-#include "pinnquad/nn/tanh.hpp"
+#include "pinnquad/nn/activations.hpp"
 #include "support/packs.hpp"
 
 using namespace pinnquad;
@@ -28,6 +21,8 @@ struct Row {
 template <class Spec>
 extern const Row table[13];
 // Gelu: v (1 + erf(v / sqrt 2)) / 2. Silu: v / (1 + exp(-v)). Softplus: log(1 + exp(v)). Sine: sin(v).
+// GeluTanh: v (1 + tanh(sqrt(2 / pi) (v + 0.044715 v^3))) / 2. Mish: v tanh(log(1 + exp(v))). HardSwish:
+// v min(max(v + 3, 0), 6) / 6. Softsign: v / (1 + |v|). These by Python's decimal.
 template <>
 const Row table<Gelu>[13] = {{-12, -2.1317785344932148e-32, -2.5578956616748956e-31},
                              {-5, -1.4332578593959696e-6, -7.1469460017922946e-6},
@@ -42,6 +37,62 @@ const Row table<Gelu>[13] = {{-12, -2.1317785344932148e-32, -2.5578956616748956e
                              {3, 2.9959503059051097, 1.0119456472041839},
                              {8, 7.999999999999995, 1.0000000000000398},
                              {20, 20.0, 1.0}};
+template <>
+const Row table<GeluTanh>[13] = {{-6, -8.439646700762297e-11, -7.709973930953696e-10},
+                                 {-5, -2.291796196629506e-07, -1.5463619875325946e-06},
+                                 {-2.5, -0.015084266089998582, -0.037951576212666184},
+                                 {-1, -0.15880800939172329, -0.082964083845782549},
+                                 {-0.25, -0.100324649298315, 0.30464590484893955},
+                                 {-0.0009765625, -0.00048790078905422456, 0.49922081610751284},
+                                 {0, 0.0, 0.5},
+                                 {0.0009765625, 0.00048866171094577538, 0.5007791838924871},
+                                 {0.5, 0.34571400982514394, 0.86736990353464227},
+                                 {1, 0.84119199060827665, 1.0829640838457826},
+                                 {3, 2.9963626079182268, 1.0115841666309697},
+                                 {8, 8.0, 1.0},
+                                 {20, 20.0, 1.0}};
+template <>
+const Row table<Mish>[13] = {{-12, -7.3730321731865867e-05, -6.7585901746137732e-05},
+                             {-5, -0.033576237730161704, -0.026747498019901932},
+                             {-2.5, -0.19681620390653334, -0.10974357275018569},
+                             {-1, -0.30340146137410889, 0.059216755877394951},
+                             {-0.25, -0.12992696367914103, 0.43981560172180517},
+                             {-0.0009765625, -0.00058563230935930401, 0.59937495439449773},
+                             {0, 0.0, 0.59999999999999998},
+                             {0.0009765625, 0.00058624266083837301, 0.6006249540527645},
+                             {0.5, 0.37524521130489513, 0.88642437535772722},
+                             {1, 0.86509838826731034, 1.0490362200997922},
+                             {3, 2.9865350049679575, 1.0211069109294437},
+                             {8, 7.9999982006448427, 1.0000033725836881},
+                             {20, 20.0, 1.0000000000000002}};
+template <>
+const Row table<HardSwish>[13] = {{-12, 0.0, 0.0},
+                                  {-5, 0.0, 0.0},
+                                  {-2.5, -0.20833333333333334, -0.33333333333333331},
+                                  {-1, -0.33333333333333331, 0.16666666666666666},
+                                  {-0.25, -0.11458333333333333, 0.41666666666666669},
+                                  {-0.0009765625, -0.00048812230428059894, 0.49967447916666669},
+                                  {0, 0.0, 0.5},
+                                  {0.0009765625, 0.00048844019571940101, 0.50032552083333337},
+                                  {0.5, 0.29166666666666669, 0.66666666666666663},
+                                  {1, 0.66666666666666663, 0.83333333333333337},
+                                  {3, 3.0, 1.0},
+                                  {8, 8.0, 1.0},
+                                  {20, 20.0, 1.0}};
+template <>
+const Row table<Softsign>[13] = {{-12, -0.92307692307692313, 0.0059171597633136093},
+                                 {-5, -0.83333333333333337, 0.027777777777777776},
+                                 {-2.5, -0.7142857142857143, 0.081632653061224483},
+                                 {-1, -0.5, 0.25},
+                                 {-0.25, -0.20000000000000001, 0.64000000000000001},
+                                 {-0.0009765625, -0.00097560975609756097, 0.99804973230220106},
+                                 {0, 0.0, 1.0},
+                                 {0.0009765625, 0.00097560975609756097, 0.99804973230220106},
+                                 {0.5, 0.33333333333333331, 0.44444444444444442},
+                                 {1, 0.5, 0.25},
+                                 {3, 0.75, 0.0625},
+                                 {8, 0.88888888888888884, 0.012345679012345678},
+                                 {20, 0.95238095238095233, 0.0022675736961451248}};
 template <>
 const Row table<Silu>[13] = {{-12, -7.3730095226576614e-5, -6.7585467613783386e-5},
                              {-5, -0.033464254621424278, -0.026547432429665919},
@@ -164,12 +215,14 @@ void check_pack() {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("smooth activations and their slopes against 40 digits", Spec, Gelu, Silu, Softplus, Sine) {
+TEST_CASE_TEMPLATE("smooth activations and their slopes against 40 digits", Spec, Gelu, Silu, Softplus, Sine, GeluTanh,
+                   Mish, HardSwish, Softsign) {
   SUBCASE("float") { check_table<Spec, float>(); }
   SUBCASE("double") { check_table<Spec, double>(); }
 }
 
-TEST_CASE_TEMPLATE("slopes against central differences", Spec, Gelu, Silu, Softplus, Sine, Tanh, Elu, LeakyRelu) {
+TEST_CASE_TEMPLATE("slopes against central differences", Spec, Gelu, Silu, Softplus, Sine, Tanh, Elu, LeakyRelu,
+                   GeluTanh, Mish, HardSwish, Softsign) {
   using Layer = Bound<Spec, double>;
   constexpr double step = 1e-5, tolerance = 1e-9;  // step^2 and rounding / step
   for (double v = -12; v <= 12; v += 0.37) {
@@ -189,6 +242,10 @@ TEST_CASE_TEMPLATE("packs give what scalars give, NaN and the largest numbers to
   check_pack<Relu, Pack>();
   check_pack<Elu, Pack>();
   check_pack<LeakyRelu, Pack>();
+  check_pack<GeluTanh, Pack>();
+  check_pack<Mish, Pack>();
+  check_pack<HardSwish, Pack>();
+  check_pack<Softsign, Pack>();
 }
 
 TEST_CASE_TEMPLATE("NaN goes through, in value and slope; nothing overflows", Scalar, float, double) {
@@ -209,6 +266,10 @@ TEST_CASE_TEMPLATE("NaN goes through, in value and slope; nothing overflows", Sc
   check(Sine{});
   check(Tanh{});
   check(Elu{});
+  check(GeluTanh{});
+  check(Mish{});
+  check(HardSwish{});
+  check(Softsign{});
   // far out they are the line they approach: 0 on the left, v on the right
   const Scalar far = std::numeric_limits<Scalar>::max() / 2, infinity = std::numeric_limits<Scalar>::infinity();
   const auto approaches_relu = [far](auto spec) {
@@ -221,6 +282,9 @@ TEST_CASE_TEMPLATE("NaN goes through, in value and slope; nothing overflows", Sc
   approaches_relu(Gelu{});
   approaches_relu(Silu{});
   approaches_relu(Softplus{});
+  approaches_relu(GeluTanh{});
+  approaches_relu(Mish{});
+  approaches_relu(HardSwish{});
   CHECK(Bound<Softplus, Scalar>::activate(-infinity) == Scalar(0));
   CHECK(Bound<Softplus, Scalar>::activate(infinity) == infinity);
   CHECK(std::isnan(Bound<Sine, Scalar>::activate(infinity)));

@@ -11,6 +11,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -31,6 +32,9 @@ def pytest_addoption(parser):
     group.addoption("--werror", default="-Werror", help="-Werror, or nothing where warnings are no errors")
     group.addoption("--reference", default=SOURCE.parent / "shared/reference", type=Path,
                     help="logs that others recorded")
+
+
+os.environ.setdefault("PINNQUAD_PYTHON", sys.executable)  # by which `pinnquad convert` reads networks
 
 
 def pytest_sessionfinish(session, exitstatus):

@@ -9,7 +9,6 @@
 #include <tuple>
 #include <type_traits>
 
-#include "convert/folded_network.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/exported/run_time_features.hpp"
 #include "pinnquad/exported/run_time_network.hpp"
@@ -124,47 +123,6 @@ FeatureScaler<Scalar> scaler_of(const ForeignFeature& feature) {
   return scaler;
 }
 
-/// Reads the widths of a chain against the file's. Throws InputError.
-void require_widths(const ForeignNetwork& network, const ForeignMeaning& meaning) {
-  if (network.inputs != meaning.features.size()) {
-    throw InputError(
-        meaning.path, 0, 0,
-        "a feature for each of the " + std::to_string(network.inputs) + " numbers that " + network.source + " reads",
-        std::to_string(meaning.features.size()) + " features");
-  }
-  if (network.outputs != meaning.outputs.size()) {
-    throw InputError(
-        meaning.path, 0, 0,
-        "an output for each of the " + std::to_string(network.outputs) + " numbers that " + network.source + " makes",
-        std::to_string(meaning.outputs.size()) + " outputs" + (meaning.outputs.size() == 4 ? " ([output] names)" : ""));
-  }
-}
-
-/// The chain between the library's standardised features and its outputs.
-std::vector<FoldedLayer> layers_of(const ForeignNetwork& network, const ForeignMeaning& meaning,
-                                   const std::vector<std::size_t>& of_file, const std::vector<Line>& to_network,
-                                   const std::vector<std::size_t>& outputs_of_file) {
-  Folder folder(network.inputs);
-  ForeignDense first{network.inputs, Numbers(network.inputs * network.inputs, 0), Numbers(network.inputs, 0)};
-  for (std::size_t own = 0; own < network.inputs; ++own) {
-    first.weights[of_file[own] * network.inputs + own] = to_network[own].scale;
-    first.bias[of_file[own]] = to_network[own].shift;
-  }
-  folder.add(dense_step(std::move(first)));
-  for (const ForeignStep& step : network.steps) folder.add(step);
-  ForeignDense last{network.outputs, Numbers(network.outputs * network.outputs, 0), Numbers(network.outputs, 0)};
-  bool is_identity = true;
-  for (std::size_t own = 0; own < network.outputs; ++own) {
-    const std::size_t place = outputs_of_file[own];
-    last.weights[own * network.outputs + place] = meaning.output_scale[place];
-    last.bias[own] = meaning.output_mean[place];
-    is_identity = is_identity && place == own && !(std::abs(last.bias[own]) > 0) &&
-                  !(std::abs(meaning.output_scale[place] - 1) > 0);
-  }
-  if (!is_identity) folder.add(dense_step(std::move(last)));
-  return std::move(folder).layers();
-}
-
 /// The schema of the file: `use(schema)`.
 template <class Use>
 void with_schema(const ForeignMeaning& meaning, const Use& use) {
@@ -191,24 +149,87 @@ Scalar narrowed(double number, const ForeignNetwork& network) {
   return static_cast<Scalar>(number);
 }
 
+/// The layers between the library's standardised features and its outputs: the first is shown what the network was
+/// trained on, the last makes the outputs in the schema's order.
+std::vector<ForeignLayer> layers_of(const ForeignNetwork& network, const ForeignMeaning& meaning,
+                                    const std::vector<std::size_t>& of_file, const std::vector<Line>& to_network,
+                                    const std::vector<std::size_t>& outputs_of_file) {
+  std::vector<ForeignLayer> layers = network.layers;
+  ForeignLayer& first = layers.front();
+  const Numbers weights = first.weights;
+  for (std::size_t row = 0; row < first.outputs(); ++row) {
+    for (std::size_t own = 0; own < network.inputs; ++own) {
+      const double weight = weights[row * network.inputs + of_file[own]];
+      first.weights[row * network.inputs + own] = weight * to_network[own].scale;
+      first.bias[row] += weight * to_network[own].shift;
+    }
+  }
+  ForeignLayer& last = layers.back();
+  const ForeignLayer made = last;
+  for (std::size_t own = 0; own < network.outputs; ++own) {
+    const std::size_t place = outputs_of_file[own], width = made.inputs();
+    for (std::size_t k = 0; k < width; ++k) {
+      last.weights[own * width + k] = made.weights[place * width + k] * meaning.output_scale[place];
+    }
+    last.bias[own] = made.bias[place] * meaning.output_scale[place] + meaning.output_mean[place];
+  }
+  return layers;
+}
+
 /// The names of the layers, in a block's description ("Inputs") or as a header's type ("InputSize").
 template <class Scalar>
-std::string network_text(const char* inputs_word, std::size_t inputs, const std::vector<FoldedLayer>& layers) {
+std::string network_text(const char* inputs_word, std::size_t inputs, const std::vector<ForeignLayer>& layers) {
   std::string text =
       "pinnquad::Network<" + type_name<Scalar>() + ", pinnquad::" + inputs_word + "<" + std::to_string(inputs) + ">";
-  for (const FoldedLayer& layer : layers) {
-    text += ", " + (layer.dense.outputs() > 0 ? "pinnquad::Dense<" + std::to_string(layer.dense.outputs()) + ">"
-                                              : layer_text(layer.activation));
+  for (const ForeignLayer& layer : layers) {
+    text += ", " + (layer.activation.empty() ? "pinnquad::Dense<" + std::to_string(layer.outputs()) + ">"
+                                             : activation_layer(layer.activation));
   }
   return text + ">";
 }
 
+/// The source's commands for a row, of its answer.
+Commands<double> commands_of(const Numbers& answer, const Numbers& features, const ForeignMeaning& meaning,
+                             const std::vector<std::size_t>& outputs_of_file) {
+  RunTimeOutputs<double> schema;
+  schema.find(meaning.schema);
+  schema.prepare(meaning.airframe.value);
+  Numbers outputs;
+  for (const std::size_t place : outputs_of_file) {
+    outputs.push_back(answer[place] * meaning.output_scale[place] + meaning.output_mean[place]);
+  }
+  Commands<double> u{};
+  schema.commands(features.data(), outputs.data(), u.data());
+  return u;
+}
+
+constexpr std::size_t golden_rows = 8, compared_rows = 1000;
+
 }  // namespace
 
 template <class Scalar>
+AskedRows asked_rows(const ForeignMeaning& meaning) {
+  AskedRows rows;
+  std::mt19937_64 engine(1);
+  const std::vector<std::size_t> of_file = feature_order(meaning, "").of_file;
+  for (std::size_t i = 0; i < golden_rows + compared_rows; ++i) {
+    Numbers& own = rows.features.emplace_back();
+    Numbers& shown = rows.of_network.emplace_back(of_file.size());
+    for (const std::size_t place : of_file) {
+      const ForeignFeature& feature = meaning.features[place];
+      const double lower = feature.lower / feature.unit_factor, upper = feature.upper / feature.unit_factor;
+      const double drawn = i == 0 ? (lower + upper) / 2 : uniform(engine, lower, upper);
+      const auto value = std::clamp(static_cast<Scalar>(drawn), static_cast<Scalar>(lower), static_cast<Scalar>(upper));
+      own.push_back(static_cast<double>(value));
+      shown[place] = (feature.unit_factor * own.back() - feature.mean) / feature.scale;
+    }
+  }
+  return rows;
+}
+
+template <class Scalar>
 pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& network, const ForeignMeaning& meaning,
-                                                       const std::string& name) {
-  require_widths(network, meaning);
+                                                       const AskedRows& rows, const std::string& name) {
   const FeatureOrder order = feature_order(meaning, name);
   pinnquad::detail::WrittenModel<Scalar> model;
   std::vector<Line> to_network;
@@ -226,21 +247,20 @@ pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& net
     model.column_names.push_back(feature.name);
     model.column_units.push_back(feature.unit);
   }
-  const std::vector<FoldedLayer> layers = layers_of(network, meaning, order.of_file, to_network, output_order(meaning));
-  for (const FoldedLayer& layer : layers) {
-    for (const Numbers* numbers : {&layer.dense.weights, &layer.dense.bias}) {
+  const std::vector<std::size_t> outputs_of_file = output_order(meaning);
+  const std::vector<ForeignLayer> layers = layers_of(network, meaning, order.of_file, to_network, outputs_of_file);
+  for (const ForeignLayer& layer : layers) {
+    for (const Numbers* numbers : {&layer.weights, &layer.bias}) {
       for (const double number : *numbers) model.parameters.push_back(narrowed<Scalar>(number, network));
     }
   }
   model.output_mean.assign(network.outputs, Scalar(0));
   model.output_deviation.assign(network.outputs, Scalar(1));
-  const Source source(network, meaning);
-  for (const Numbers& x : vectors_inside(meaning, 8, 1)) {
+  for (std::size_t row = 0; row < golden_rows; ++row) {
+    const Numbers& x = rows.features[row];
     auto& golden = model.golden_features.emplace_back();
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      golden.push_back(std::clamp(static_cast<Scalar>(x[i]), model.envelope_lower[i], model.envelope_upper[i]));
-    }
-    const Commands<double> u = source.commands(Numbers(golden.begin(), golden.end()));
+    for (const double value : x) golden.push_back(static_cast<Scalar>(value));
+    const Commands<double> u = commands_of(network.answers[row], x, meaning, outputs_of_file);
     auto& commands = model.golden_commands.emplace_back();
     for (std::size_t i = 0; i < u.size(); ++i) commands[i] = narrowed<Scalar>(u[i], network);
   }
@@ -272,50 +292,31 @@ pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& net
   return model;
 }
 
+template AskedRows asked_rows<float>(const ForeignMeaning&);
+template AskedRows asked_rows<double>(const ForeignMeaning&);
 template pinnquad::detail::WrittenModel<float> converted_model(const ForeignNetwork&, const ForeignMeaning&,
-                                                               const std::string&);
+                                                               const AskedRows&, const std::string&);
 template pinnquad::detail::WrittenModel<double> converted_model(const ForeignNetwork&, const ForeignMeaning&,
-                                                                const std::string&);
+                                                                const AskedRows&, const std::string&);
 
-Source::Source(const ForeignNetwork& network, const ForeignMeaning& meaning)
-    : network_(network),
-      meaning_(meaning),
-      features_of_file_(feature_order(meaning, "").of_file),
-      outputs_of_file_(output_order(meaning)) {
-  schema_.find(meaning.schema);
-  schema_.prepare(meaning.airframe.value);
-}
-
-Commands<double> Source::commands(const Numbers& features) const {
-  Numbers x(features.size());
-  for (std::size_t own = 0; own < features.size(); ++own) {
-    const std::size_t place = features_of_file_[own];
-    const ForeignFeature& feature = meaning_.features[place];
-    x[place] = (feature.unit_factor * features[own] - feature.mean) / feature.scale;
-  }
-  const Numbers made = network_.evaluate(x);
-  Numbers outputs;
-  for (const std::size_t place : outputs_of_file_) {
-    outputs.push_back(made[place] * meaning_.output_scale[place] + meaning_.output_mean[place]);
-  }
-  Commands<double> u{};
-  schema_.commands(features.data(), outputs.data(), u.data());
-  return u;
-}
-
-std::vector<Numbers> vectors_inside(const ForeignMeaning& meaning, std::size_t count, std::uint64_t seed) {
-  std::vector<Numbers> vectors;
-  std::mt19937_64 engine(seed);
-  const std::vector<std::size_t> of_file = feature_order(meaning, "").of_file;
-  for (std::size_t i = 0; i < count; ++i) {
-    auto& x = vectors.emplace_back();
-    for (const std::size_t place : of_file) {
-      const ForeignFeature& feature = meaning.features[place];
-      const double lower = feature.lower / feature.unit_factor, upper = feature.upper / feature.unit_factor;
-      x.push_back(i == 0 ? (lower + upper) / 2 : uniform(engine, lower, upper));
+double largest_difference(const BlockModel& model, const ForeignNetwork& network, const ForeignMeaning& meaning,
+                          const AskedRows& rows) {
+  Commands<double> most{}, scale{1, 1, 1, 1};
+  const std::vector<std::size_t> outputs_of_file = output_order(meaning);
+  for (std::size_t row = 0; row < rows.features.size(); ++row) {
+    const Commands<double> own = model.commands(rows.features[row]),
+                           said = commands_of(network.answers[row], rows.features[row], meaning, outputs_of_file);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const double difference = std::abs(own[i] - said[i]);
+      if (!(difference <= most[i])) most[i] = difference;  // NaN stays
+      scale[i] = std::max(scale[i], std::abs(said[i]));
     }
   }
-  return vectors;
+  double largest = 0;
+  for (std::size_t i = 0; i < most.size(); ++i) {
+    if (!(most[i] / scale[i] <= largest)) largest = most[i] / scale[i];
+  }
+  return largest;
 }
 
 }  // namespace programs

@@ -8,6 +8,7 @@
 #include "command_line/listed.hpp"
 #include "logs/toml_table.hpp"
 #include "pinnquad/deploy/provenance.hpp"
+#include "pinnquad/exported/run_time_activation.hpp"
 #include "pinnquad/exported/run_time_features.hpp"
 #include "pinnquad/exported/run_time_outputs.hpp"
 #include "pinnquad/io/decimal.hpp"
@@ -164,18 +165,18 @@ void take_outputs(const std::string& path, TomlTable& root, ForeignMeaning& mean
 }
 
 void take_activations(TomlTable& root, ForeignMeaning& meaning) {
-  std::string expected = "one of";
-  for (const char* word : foreign_activations) expected += std::string(" \"") + word + "\",";
-  expected += " \"identity\", or a list of them";
+  // those that networks.py makes of the library's, and nothing at all
+  std::vector<std::string> words = {"sigmoid", "relu6", "hardtanh", "identity"};
+  for (const auto& one : pinnquad::detail::run_time_activations<float>)
+    words.push_back(activation_word(one.description));
+  const std::string expected =
+      "one of " + listed(words, [](const std::string& word) { return "\"" + word + "\""; }) + ", or a list of them";
   const toml::node* node = root.optional("activations");
   if (!node) return;
   const auto take = [&](const toml::node& one) {
-    const std::string word = root.as_text(one, expected);
-    const auto* known = std::find(foreign_activations.begin(), foreign_activations.end(), word);
-    if (known == foreign_activations.end() && word != "identity") root.refuse(one, expected, logs::described(one));
-    meaning.activations.emplace_back();
-    if (known != foreign_activations.end()) {
-      meaning.activations.back() = static_cast<ForeignActivation>(known - foreign_activations.begin());
+    meaning.activations.push_back(root.as_text(one, expected));
+    if (std::find(words.begin(), words.end(), meaning.activations.back()) == words.end()) {
+      root.refuse(one, expected, logs::described(one));
     }
   };
   if (const toml::array* list = node->as_array()) {
@@ -239,6 +240,9 @@ ForeignMeaning meaning_of(const toml::table& content, const std::string& path) {
   }
   take_outputs(path, root, meaning);
   take_activations(root, meaning);
+  if (const toml::node* layers = root.optional("layers")) {
+    meaning.layers = texts_of(root, *layers, "the names of the layers in their order, [\"fc1\", \"fc2\"]");
+  }
   if (root.optional("commands_are")) {
     constexpr std::array<const char*, command_meaning_count> words = [] {
       std::array<const char*, command_meaning_count> all{};
@@ -255,6 +259,23 @@ ForeignMeaning meaning_of(const toml::table& content, const std::string& path) {
 }
 
 }  // namespace
+
+std::string activation_word(std::string_view layer) {
+  std::string word;
+  for (const char letter : layer.substr(layer.rfind(':') + 1)) {
+    const bool is_capital = letter >= 'A' && letter <= 'Z';
+    if (is_capital && !word.empty()) word += '_';
+    word += static_cast<char>(is_capital ? letter - 'A' + 'a' : letter);
+  }
+  return word;
+}
+
+std::string activation_layer(const std::string& word) {
+  for (const auto& one : pinnquad::detail::run_time_activations<float>) {
+    if (activation_word(one.description) == word) return std::string(one.description);
+  }
+  return {};
+}
 
 ForeignMeaning read_features_file(const std::string& path) {
   return meaning_of(logs::read_toml_file(path, "a features file"), path);

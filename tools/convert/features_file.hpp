@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "convert/foreign_network.hpp"
@@ -11,6 +12,11 @@
 #include "pinnquad/dynamics/actuator.hpp"
 
 namespace programs {
+
+/// An activation of the library as a features file names it: "leaky_relu" of "pinnquad::LeakyRelu".
+std::string activation_word(std::string_view layer);
+/// The layer that is called so; empty: none.
+std::string activation_layer(const std::string& word);
 
 /// A number that the network reads: (value in that unit - mean) / scale.
 struct ForeignFeature {
@@ -30,9 +36,9 @@ struct ForeignMeaning {
   std::vector<std::string> outputs;      ///< in the network's order, by the schema's names
   Numbers output_mean, output_scale;     ///< output = network's * scale + mean
   std::string schema;                    ///< description of the output schema
-  /// Of a safetensors file, in order; none: identity.
-  std::vector<std::optional<ForeignActivation>> activations;
-  bool one_activation = false;  ///< a text in place of a list: that one everywhere between
+  std::vector<std::string> activations;  ///< of tensors by name, which say none; in order
+  bool one_activation = false;           ///< a text in place of a list: that one everywhere between
+  std::vector<std::string> layers;       ///< of tensors by name, whose names say no order
   std::optional<pinnquad::CommandMeaning> command_meaning;
   double sample_period_s = 0;
   pinnquad::logs::NamedAirframe airframe;

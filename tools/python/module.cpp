@@ -115,5 +115,6 @@ PYBIND11_MODULE(_core, module) {
   python::bind_vehicles(module);
   python::bind_models(module);
   python::bind_training(module);
+  python::bind_conversion(module);
   python::bind_identification(module);
 }

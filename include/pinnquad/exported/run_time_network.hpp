@@ -77,6 +77,14 @@ class DescriptionReader {
     rest_.remove_prefix(text.size());
     return true;
   }
+  /// The same of a name, where it ends there: Gelu is no GeluTanh.
+  constexpr bool take_name(std::string_view name) noexcept {
+    const DescriptionReader before = *this;
+    if (!take(name)) return false;
+    const char next = rest_.empty() ? ' ' : rest_.front();
+    if ((next >= 'a' && next <= 'z') || (next >= 'A' && next <= 'Z') || (next >= '0' && next <= '9')) *this = before;
+    return rest_.size() != before.rest_.size();
+  }
   /// A number from 0 to `most`, or -1.
   constexpr int number(int most) noexcept {
     skip_spaces();
@@ -217,7 +225,7 @@ class RunTimeNetwork {
   static bool take_activation(detail::DescriptionReader& reader, RunTimeLayer& layer) noexcept {
     int place = 0;
     for (const auto& known : detail::run_time_activations<float>) {
-      if (reader.take(known.description)) {
+      if (reader.take_name(known.description)) {
         layer.activation = place;
         return true;
       }

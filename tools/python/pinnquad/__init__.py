@@ -6,10 +6,11 @@ Rotors: front right, rear left, front left, rear right; a command is 0 to 1. doc
 from ._core import (Airframe, Dataset, Error, Flight, FlightEnded, Identification, Model, Rotor, Simulator, Spin, Status,
                     Training, Vehicles, __version__, airframe_names, certify, evaluate, ground_effects, identify,
                     instruction_set, train)
+from .conversion import convert, save_network
 from .effects import Effects
 from .environment import HoverEnv, VectorHoverEnv
 from .flights import fly
 
 __all__ = ["Airframe", "Dataset", "Effects", "Error", "Flight", "FlightEnded", "HoverEnv", "Identification", "Model",
            "Rotor", "Simulator", "Spin", "Status", "Training", "VectorHoverEnv", "Vehicles", "airframe_names", "certify",
-           "evaluate", "fly", "ground_effects", "identify", "instruction_set", "train"]
+           "convert", "evaluate", "fly", "ground_effects", "identify", "instruction_set", "save_network", "train"]
