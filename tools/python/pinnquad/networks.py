@@ -521,7 +521,7 @@ class Lowering:
 # Sources: chains of tensors by name
 
 
-TORCH_ACTIVATIONS = {
+ACTIVATIONS = {
     "relu": relu, "tanh": lambda v: np.tanh(v), "sigmoid": sigmoid, "gelu": gelu, "silu": lambda v: v * sigmoid(v),
     "softplus": softplus, "sine": lambda v: np.sin(v), "clip": lambda v: np.clip(v, -CLIP_BOUND, CLIP_BOUND),
     "elu": lambda v: np.where(v > 0, v, np.expm1(np.minimum(v, 0))), "leaky_relu": lambda v: np.where(v > 0, v, LEAKY * v),
@@ -586,18 +586,18 @@ def chain_of_tensors(tensors, asked):
     for index, name in enumerate(names):
         number = int(name.rpartition(".")[2]) if numbered else place
         while place < number:
-            graph.add(f"module {place}", TORCH_ACTIVATIONS[behind.pop(0)])
+            graph.add(f"module {place}", ACTIVATIONS[behind.pop(0)])
             place += 1
         width = add_module(graph, f"'{prefix}{name}", modules[name], width)
         place += 1
         if not numbered and "running_mean" not in modules[name] and name is not dense[-1] and behind:
             later = names[index + 1] if index + 1 < len(names) else None
             if later is None or "running_mean" not in modules[later]:
-                graph.add(f"behind {name}", TORCH_ACTIVATIONS[behind.pop(0)])
+                graph.add(f"behind {name}", ACTIVATIONS[behind.pop(0)])
         elif not numbered and "running_mean" in modules[name] and behind and name is not names[-1]:
-            graph.add(f"behind {name}", TORCH_ACTIVATIONS[behind.pop(0)])
+            graph.add(f"behind {name}", ACTIVATIONS[behind.pop(0)])
     for last in behind:
-        graph.add("the last activation", TORCH_ACTIVATIONS[last])
+        graph.add("the last activation", ACTIVATIONS[last])
     return Graph(graph.width, graph.nodes)
 
 
@@ -666,8 +666,8 @@ def finite(name, array):
     return array
 
 
-def half_brain(bits):
-    """bfloat16: the upper half of a float."""
+def from_bfloat16(bits):
+    """The upper half of a float."""
     return (bits.astype("u4") << 16).view("f4").astype("f8")
 
 
@@ -732,7 +732,7 @@ def read_safetensors(data):
             raise Refused(what + f"{count * number.itemsize} bytes for its shape", str(offsets))
         places.append((begin, end, name))
         array = np.frombuffer(body, number, count, begin).reshape(shape)
-        tensors[name] = finite(name, half_brain(array) if kind == "BF16" else array.astype(number.kind + "8"))
+        tensors[name] = finite(name, from_bfloat16(array) if kind == "BF16" else array.astype(number.kind + "8"))
     at = 0
     for begin, end, name in sorted(places):
         if begin != at:
@@ -795,8 +795,8 @@ def split(x, number, axis, count, sizes):
     return np.array_split(x, count, axis)[number]
 
 
-def operators(a, optional):
-    """Operators of ONNX by name, made of a node's attributes `a(name, default)`; `optional(place)` is an input or None."""
+def operators(a):
+    """Operators of ONNX by name, made of a node's attributes `a(name, default)`."""
     axes = lambda given: given if given is not None else a("axes", None)
     return {
         "Add": np.add, "Sub": np.subtract, "Mul": np.multiply, "Div": np.divide, "Neg": np.negative, "Abs": np.abs,
@@ -813,7 +813,8 @@ def operators(a, optional):
         "Gelu": lambda x: gelu_tanh(x) if a("approximate", b"none") in ("tanh", b"tanh") else gelu(x),
         "Clip": lambda x, low=None, high=None: np.clip(x, a("min", -np.inf) if low is None else low,
                                                        a("max", np.inf) if high is None else high),
-        "Min": lambda *x: np.minimum.reduce(np.broadcast_arrays(*x)), "Max": lambda *x: np.maximum.reduce(np.broadcast_arrays(*x)),
+        "Min": lambda *x: np.minimum.reduce(np.broadcast_arrays(*x)),
+        "Max": lambda *x: np.maximum.reduce(np.broadcast_arrays(*x)),
         "Sum": lambda *x: sum(x), "Where": np.where, "Greater": np.greater, "Less": np.less, "Equal": np.equal,
         "GreaterOrEqual": np.greater_equal, "LessOrEqual": np.less_equal, "Not": np.logical_not, "And": np.logical_and,
         "Or": np.logical_or, "MatMul": np.matmul,
@@ -946,7 +947,7 @@ class OnnxReader:
                                                sizes if sizes is not None else given.get("split"))
         if given.get("training_mode"):
             raise Refused(f"{what}: a network that no longer trains", "training_mode 1")
-        table = operators(attribute, None)
+        table = operators(attribute)
         if node.op_type not in table:
             raise Refused(f"{what}: an affine map or an activation of each number (docs/convert.md)", node.op_type)
         return table[node.op_type]
@@ -976,7 +977,7 @@ class OnnxReader:
             if len(listed) != count:
                 raise Refused(f"{what}: {count} numbers for its shape {list(tensor.dims)}", str(len(listed)))
             array = np.array(listed, "u2").view(stored) if kind in (10, 16) else np.array(listed).astype(stored)
-        array = half_brain(array) if kind == 16 else array.astype("f8") if kind in FLOATS else array
+        array = from_bfloat16(array) if kind == 16 else array.astype("f8") if kind in FLOATS else array
         return finite(what.removeprefix("tensor '").rstrip("'"), array.reshape(list(tensor.dims)))
 
     def beside(self, tensor, what):
@@ -1119,7 +1120,7 @@ def graph_in_memory(source, width, asked):
         for number, (weights, bias) in enumerate(zip(source.coefs_, source.intercepts_)):
             graph.add(f"layer {number}", lambda v, w=np.asarray(weights, "f8"), b=np.asarray(bias, "f8"): v @ w + b)
             if number + 1 < len(source.coefs_):
-                graph.add(f"activation {number}", TORCH_ACTIVATIONS[word])
+                graph.add(f"activation {number}", ACTIVATIONS[word])
         return Graph(source.coefs_[0].shape[0], graph.nodes)
     if hasattr(source, "items"):
         tensors = flattened_names(source)
@@ -1193,7 +1194,7 @@ class Model:
         for part in self.parts:
             v = z[:, part["shown"]] if part["shown"] else z
             for step in part["steps"]:
-                v = TORCH_ACTIVATIONS[step](v) if isinstance(step, str) else v @ np.array(step["weights"]).T + step["bias"]
+                v = ACTIVATIONS[step](v) if isinstance(step, str) else v @ np.array(step["weights"]).T + step["bias"]
             y += np.clip(v, part["lower"], part["upper"]) if part["lower"] else v
         u = (y * self.output_deviation + self.output_mean) @ self.weights.T + self.bias
         return u if self.of_features is None else u + features @ self.of_features.T
@@ -1290,7 +1291,7 @@ def safetensors_of(model):
     if part["shown"]:
         graph.add("shown", lambda v: v[:, part["shown"]])
     for step in part["steps"]:
-        graph.add("step", TORCH_ACTIVATIONS[step] if isinstance(step, str)
+        graph.add("step", ACTIVATIONS[step] if isinstance(step, str)
                   else lambda v, w=np.array(step["weights"]), b=np.array(step["bias"]): v @ w.T + b)
     graph.add("commands", lambda v: (v * model.output_deviation + model.output_mean) @ model.weights.T + model.bias)
     layers = Lowering(Graph(len(model.mean), graph.nodes)).layers()
