@@ -197,8 +197,9 @@ TEST_CASE(
 
 TEST_CASE(
     "on the ground the biases are forgotten, where a tick freezes they stay, out of flight the first answers again") {
-  BiasLearner<double, 2> learner(airframe(), narrow(0.4), FlownMotion<double>{});
-  FlownTick tick;
+  using Learner = BiasLearner<double, 2>;
+  Learner learner(airframe(), narrow(0.4), FlownMotion<double>{});
+  Learner::Tick tick;
   tick.now_us = 1'000'000;
   const auto fly = [&](double command, double duration_s) {
     const auto said_by = [](double answer) {

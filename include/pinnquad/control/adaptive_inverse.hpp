@@ -119,7 +119,7 @@ class AdaptiveInverse {
   void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
     learner_.motion().velocity(now_us, state.velocity_m_s);
     learner_.motion().body_rates(now_us, state.body_rates_rad_s);
-    FlownTick tick;
+    typename Learner::Tick tick;
     tick.now_us = now_us;
     tick.known = known;
     const auto observed_by = [&](auto& inverse) noexcept {

@@ -15,15 +15,6 @@
 
 namespace pinnquad {
 
-/// A tick, as a BiasLearner sees it.
-struct FlownTick {
-  std::uint64_t now_us{0};
-  bool known{false};      ///< the commands since the tick before drove the motors, in flight, and the state is fresh
-  bool in_flight{true};   ///< and the vehicle is not in other hands
-  bool freezes{false};    ///< the commands were not all of an answer, or the ground may bear the vehicle
-  bool on_ground{false};  ///< its thrust has gone
-};
-
 /// `inverses`: 1, or 2 with one in reserve. `Motion`: FlownMotion or FilteredMotion. `Trust`: FlownTrust's; its motion
 /// is a FlownMotion of float.
 template <class Scalar, std::size_t inverses, class Motion = FlownMotion<Scalar>, class Trust = void>
@@ -31,6 +22,14 @@ class BiasLearner {
   static_assert(inverses == 1 || inverses == 2);
 
  public:
+  struct Tick {
+    std::uint64_t now_us{0};
+    bool known{false};      ///< the commands since the tick before drove the motors, in flight, and the state is fresh
+    bool in_flight{true};   ///< and the vehicle is not in other hands
+    bool freezes{false};    ///< the commands were not all of an answer, or the ground may bear the vehicle
+    bool on_ground{false};  ///< its thrust has gone
+  };
+
   /// The reserve answers once the bias of the first inverse has been at the bound of a sum for so long while the
   /// reserve's has not, time within the bound taking off a ninth of itself; until it has been below half of its bound
   /// for clear_s, time beyond that taken off. Forces across the thrust are no inverse's fault, and do not count.
@@ -85,7 +84,7 @@ class BiasLearner {
   ///   Status inverse(const MotionInputs<Scalar>&, Commands<Scalar>& said, Vector3<Scalar>& known) noexcept
   /// its own answer to a motion, and the acceleration across the thrust that it knows of, NED, 0 before the call.
   template <class... Inverse>
-  void learn(const FlownTick& tick, const State<Scalar>& state, const Commands<Scalar>& commands,
+  void learn(const Tick& tick, const State<Scalar>& state, const Commands<Scalar>& commands,
              const Inverse&... inverse) noexcept {
     static_assert(sizeof...(Inverse) == inverses);
     const Scalar step_s = clock_.step_s(tick.now_us);

@@ -261,8 +261,7 @@ class NeuralController {
 
   void resume_biases(const CoreRecord& logged) noexcept {
     const auto sums = [](const float(&b)[4]) noexcept { return SignedSums<float>{b[0], b[1], b[2], b[3]}; };
-    const float(&d)[3] = logged.bias_across_m_s2;
-    const Vector3<float> across(d[0], d[1], d[2]);
+    const Vector3<float> across(logged.bias_across_m_s2);
     learner_.own().resume(sums(logged.bias_sums), across, logged.bias_waited_s,
                           static_cast<Status>(logged.bias_status));
     learner_.last().resume(sums(logged.analytic_bias_sums), across, logged.analytic_bias_waited_s,
@@ -275,7 +274,7 @@ class NeuralController {
 
   /// A tick for the biases. Out of line, as target() is.
   PINNQUAD_NOINLINE void learn(std::uint64_t now_us, Reaction reaction, const Inverse* inverse) noexcept {
-    FlownTick tick;
+    typename Learner::Tick tick;
     tick.now_us = now_us;
     tick.in_flight = situation_.in_flight();
     tick.known = tick.in_flight && answered_ && reaction <= Reaction::holds_position;
