@@ -22,6 +22,7 @@ class BiasLearner {
   static_assert(inverses == 1 || inverses == 2);
 
  public:
+  /// A tick of a loop: what is known of the commands that were in force until it.
   struct Tick {
     std::uint64_t now_us{0};
     bool known{false};      ///< the commands since the tick before drove the motors, in flight, and the state is fresh
