@@ -88,6 +88,15 @@ TEST_CASE("the settings of a model: its own time constants, else the usual ones;
   CHECK(bias_settings<double>(facts).time_constants_s == SignedSums<double>{2, 2, 2, 2});
 }
 
+TEST_CASE("where lag and delay are told no time constant is above 25 ms; a sum without a bias has none") {
+  BiasSettings<double> settings;
+  settings.time_constants_s = {0.2, infinity, 0.01, 0};
+  const BiasSettings<double> quick = quick_where_told(settings);
+  CHECK(quick.time_constants_s == SignedSums<double>{0.025, infinity, 0.01, 0});
+  CHECK(quick.across_time_constant_s == 0.025);
+  CHECK(quick.most == settings.most);
+}
+
 TEST_CASE("the most that it changes a command: of an X a quarter of the bounds' sum") {
   for (const double most : largest_bias(airframe)) CHECK(most == doctest::Approx(0.25 * (0.8 + 3 * 0.4)));
   BiasSettings<double> bounded;

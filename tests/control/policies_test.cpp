@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Policies around an inverse: the integral of the feedback, two of which one takes over; and the commands that rotors
-// follow.
+// Policies around an inverse: the integral of the feedback, one with a reserve; and the commands that rotors follow.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -31,7 +30,16 @@ struct Scripted {
     return status;
   }
 };
-using Learning = AdaptiveInverse<double, Scripted>;
+using Both = AdaptiveInverse<double, Scripted, FlownMotion<double>, Scripted>;
+
+Both of(const Scripted& first, const Scripted& second, const BiasSettings<double>& settings = {}) {
+  return {first, airframe(), settings, FlownMotion<double>{}, second};
+}
+BiasSettings<double> narrow(double most) {
+  BiasSettings<double> settings;
+  settings.most = {most, most, most, most};
+  return settings;
+}
 
 /// Ticks of 2 ms in hover under one command.
 template <class Policy>
@@ -43,7 +51,7 @@ void hover(Policy& policy, double command, double duration_s, std::uint64_t& now
   }
 }
 
-double answer_of(InverseWithReserve<double, Learning, Learning>& both, std::uint64_t now_us, Status& status) {
+double answer_of(Both& both, std::uint64_t now_us, Status& status) {
   Commands<double> commands{};
   status = both(State<double>{}, Accelerations<double>{}, now_us, commands);
   return commands[0];
@@ -84,10 +92,11 @@ TEST_CASE("the integral takes a steady error away, is bounded, and stands still 
   const IntegralSettings<double> settings;
   const Accelerations<double> error{{2, 0, -1}, {0, 5, 0}};
   std::uint64_t now_us = 1'000'000;
-  const auto ticks = [&](int count, bool known) {
+  const auto ticks = [&](int count, bool known) {  // commands off their ends
     for (int i = 0; i < count; ++i) {
       now_us += 2000;
-      policy.learn(now_us, known, State<double>{}, {});
+      const double command = known ? 0.5 : 1.0;
+      policy.learn(now_us, true, State<double>{}, {command, 0.5, 0.5, 0.5});
       policy.integrate(error);
     }
   };
@@ -100,39 +109,42 @@ TEST_CASE("the integral takes a steady error away, is bounded, and stands still 
   CHECK(policy.across_m_s2({}) == before);
   ticks(10'000, true);
   CHECK(policy.across_m_s2({})[0] == doctest::Approx(-settings.most_m_s2));
-  policy.learn(now_us + 2000, true, State<double>{}, {});
+  policy.learn(now_us + 2000, true, State<double>{}, {0.5, 0.5, 0.5, 0.5});
   policy.integrate({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {0, 0, 0}});
   CHECK(policy.across_m_s2({})[0] == doctest::Approx(-settings.most_m_s2));
 }
 
-TEST_CASE("a bias beyond its bound hands over to the second with its own, and comes back") {
-  BiasSettings<double> narrow;
-  narrow.most = {0.1, 0.1, 0.1, 0.1};
-  const Learning first(Scripted{0.5}, airframe(), narrow), second(Scripted{0.6}, airframe());
-  InverseWithReserve<double, Learning, Learning> both(first, second);
+TEST_CASE("a bias beyond its bound hands over to the reserve with its own, and comes back below half of it") {
+  Both both = of({0.5}, {0.6}, narrow(0.4));
+  const auto handed_over = [&both] { return both.learner().handed_over(); };
   std::uint64_t now_us = 1'000'000;
   Status status = Status::ok;
   hover(both, 0.51, 3, now_us);  // 0.04 of the sum: within its bound
   CHECK(answer_of(both, now_us, status) == doctest::Approx(0.51));
-  CHECK((status == Status::ok && !both.handed_over()));
-  hover(both, 0.65, 0.3, now_us);
-  CHECK(!both.handed_over());
+  CHECK((status == Status::ok && !handed_over()));
+  hover(both, 0.65, 0.5, now_us);
+  CHECK(!handed_over());
   hover(both, 0.65, 3, now_us);
-  CHECK(both.handed_over());
+  CHECK(handed_over());
   CHECK(answer_of(both, now_us, status) == doctest::Approx(0.65));
   CHECK(status == Status::fell_back);
-  hover(both, 0.51, 3, now_us);
-  CHECK(!both.handed_over());
-  CHECK(answer_of(both, now_us, status) == doctest::Approx(0.51));
+  hover(both, 0.57, 6, now_us);  // 0.7 of its bound
+  CHECK(handed_over());
+  hover(both, 0.51, 1.8, now_us);
+  CHECK(handed_over());
+  hover(both, 0.65, 0.5, now_us);  // taken off
+  hover(both, 0.51, 0.4, now_us);
+  CHECK(handed_over());
+  hover(both, 0.51, 1, now_us);
+  CHECK(!handed_over());
+  CHECK(answer_of(both, now_us, status) == doctest::Approx(0.51).epsilon(1e-3));
   CHECK(status == Status::ok);
 }
 
 TEST_CASE("a bias that is beyond its bound now and then hands over too") {
-  BiasSettings<double> narrow;
-  narrow.most = {0.1, 0.1, 0.1, 0.1};
-  narrow.time_constants_s = {0, 0, 0, 0};
-  const Learning first(Scripted{0.5}, airframe(), narrow), second(Scripted{0.6}, airframe());
-  InverseWithReserve<double, Learning, Learning> both(first, second);
+  BiasSettings<double> at_once = narrow(0.4);
+  at_once.time_constants_s = {0, 0, 0, 0};
+  Both both = of({0.5}, {0.6}, at_once);
   std::uint64_t now_us = 1'000'000;
   const auto swing = [&](double within_s) {
     for (int i = 0; i < 40; ++i) {
@@ -141,35 +153,85 @@ TEST_CASE("a bias that is beyond its bound now and then hands over too") {
     }
   };
   swing(1.9);  // a twentieth of the time: it stays
-  CHECK(!both.handed_over());
+  CHECK(!both.learner().handed_over());
   swing(0.1);
-  CHECK(both.handed_over());
-  CHECK(both.at_bound() == both.second().at_bound());
+  CHECK(both.learner().handed_over());
+  CHECK(!both.at_bound());
   hover(both, 0.51, 3, now_us);
-  CHECK(!both.handed_over());
+  CHECK(!both.learner().handed_over());
 }
 
-TEST_CASE("where both stand at their bounds, as with a payload that none carries, the first stays") {
-  BiasSettings<double> narrow;
-  narrow.most = {0.1, 0.1, 0.1, 0.1};
-  InverseWithReserve<double, Learning, Learning> both(Learning(Scripted{0.5}, airframe(), narrow),
-                                                      Learning(Scripted{0.5}, airframe(), narrow));
+TEST_CASE("where both stand at their bounds, as with a payload that none carries, the first stays; a gap is no time") {
+  Both both = of({0.5}, {0.5}, narrow(0.1));
   std::uint64_t now_us = 1'000'000;
   hover(both, 0.65, 5, now_us);
-  CHECK(both.second().bias().status() == Status::limited);
-  CHECK(!both.handed_over());
+  CHECK(both.at_bound());
+  CHECK(!both.learner().handed_over());
+  Both gaps = of({0.5}, {0.6}, narrow(0.4));
+  hover(gaps, 0.65, 0.6, now_us);
+  CHECK(gaps.at_bound());
+  for (int i = 0; i < 20; ++i) {
+    now_us += 150'000;
+    hover(gaps, 0.65, 0.002, now_us);
+  }
+  CHECK(!gaps.learner().handed_over());
 }
 
-TEST_CASE("where the first declines the second answers; where both do, its Status and nothing") {
-  InverseWithReserve<double, Learning, Learning> one(Learning(Scripted{0.5, Status::outside_envelope}, airframe()),
-                                                     Learning(Scripted{0.6}, airframe()));
+TEST_CASE(
+    "where the first declines the reserve answers, and its bias goes along; where both do, its Status and nothing") {
+  Both one = of({0.5, Status::outside_envelope}, {0.6});
   Status status = Status::ok;
   CHECK(answer_of(one, 0, status) == 0.6);
   CHECK(status == Status::fell_back);
-  InverseWithReserve<double, Learning, Learning> none(Learning(Scripted{0.5, Status::outside_envelope}, airframe()),
-                                                      Learning(Scripted{0.6, Status::no_solution}, airframe()));
+  std::uint64_t now_us = 1'000'000;
+  hover(one, 0.65, 5, now_us);
+  CHECK(one.bias().sums()[0] == doctest::Approx(0.2));
+  CHECK(one.bias().sums() == one.learner().last().sums());
+  Both none = of({0.5, Status::outside_envelope}, {0.6, Status::no_solution});
   CHECK(answer_of(none, 0, status) == 0.0);
   CHECK(status == Status::outside_envelope);
+  hover(none, 0.65, 5, now_us);
+  CHECK(none.bias().waited_s() > 4);
+  CHECK(none.learner().last().waited_s() > 4);
+}
+
+TEST_CASE(
+    "on the ground the biases are forgotten, where a tick freezes they stay, out of flight the first answers again") {
+  using Learner = BiasLearner<double, 2>;
+  Learner learner(airframe(), narrow(0.4), FlownMotion<double>{});
+  Learner::Tick tick;
+  tick.now_us = 1'000'000;
+  const auto fly = [&](double command, double duration_s) {
+    const auto said_by = [](double answer) {
+      return [answer](const MotionInputs<double>&, Commands<double>& said, Vector3<double>&) noexcept {
+        said = {answer, answer, answer, answer};
+        return Status::ok;
+      };
+    };
+    for (int i = 0; i < static_cast<int>(std::lround(duration_s / 0.002)); ++i) {
+      tick.now_us += 2000;
+      learner.motion().velocity(tick.now_us, Vector3<double>::Zero());
+      learner.motion().body_rates(tick.now_us, Vector3<double>::Zero());
+      learner.learn(tick, {}, {command, command, command, command}, said_by(0.5), said_by(0.6));
+    }
+  };
+  tick.known = true;
+  fly(0.65, 3);
+  CHECK(learner.handed_over());
+  const SignedSums<double> own = learner.own().sums(), last = learner.last().sums();
+  tick.freezes = true;
+  fly(0.3, 3);
+  CHECK(learner.own().sums() == own);
+  CHECK(learner.last().sums() == last);
+  CHECK(learner.last().status() == Status::ok);
+  tick.in_flight = tick.known = tick.freezes = false;
+  fly(0.3, 0.002);
+  CHECK(!learner.handed_over());
+  CHECK(learner.own().sums() == own);
+  tick.on_ground = true;
+  fly(0.3, 0.002);
+  CHECK(learner.own().sums() == SignedSums<double>{});
+  CHECK(learner.last().sums() == SignedSums<double>{});
 }
 
 TEST_CASE("rotors follow: 1 - (lag / (lag + h))^n of a step, a delay later, at ticks that are not even") {

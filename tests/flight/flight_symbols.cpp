@@ -365,9 +365,11 @@ unsigned char pinnquad_flight_track_analytic(double* rmse_m) {
 
 unsigned char pinnquad_flight_track_adaptive(float* rmse_m) {
   using Inverse = pinnquad::NetworkInverse<Guarded>;
-  const pinnquad::AdaptiveInverse<float, Inverse> feed_forward(
+  using Reserve = pinnquad::AnalyticInverse<Everything<float>>;
+  const pinnquad::AdaptiveInverse<float, Inverse, pinnquad::FlownMotion<float>, Reserve> feed_forward(
       Inverse(guarded()), pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>(),
-      pinnquad::bias_settings<SmallModel>(), pinnquad::FlownMotion<float>({25'000, 0.005F, 0.02F}));
+      pinnquad::bias_settings<SmallModel>(), pinnquad::FlownMotion<float>({25'000, 0.005F, 0.02F}),
+      Reserve(everything<float>()));
   return fly(pinnquad::FigureEight<float>{}, feed_forward, rmse_m);
 }
 

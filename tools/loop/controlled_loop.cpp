@@ -146,8 +146,8 @@ nlohmann::json ControlledLoop::fly(const LoopFlight& flight, const LoopGains& ga
   limits.max_horizontal_speed_m_s = 12;
   limits.max_climb_m_s = 5;
   limits.max_descent_m_s = 3;
-  auto bias = setting_.model.with([](const auto& model) { return bias_settings<double>(model.records()); });
-  bias.across_time_constant_s = 0.1;  // the delay is told
+  auto bias =
+      setting_.model.with([](const auto& model) { return quick_where_told(bias_settings<double>(model.records())); });
   bias.most_across_m_s2 = 6;
   const double speed_m_s =
       std::min({limits.max_horizontal_speed_m_s, range_.speed_m_s(0).value_or(limits.max_horizontal_speed_m_s),

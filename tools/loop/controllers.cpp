@@ -30,19 +30,15 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge& known, const
   }
   if (name == "formula") return AnyPolicy(parts.formula);
   if (name == "formula_adaptive") return AnyPolicy(parts.adaptive(parts.formula));
-  if (name == "indi") return AnyPolicy(parts.incremental(parts.rigid_body, parts.at_once));
+  if (name == "indi") return AnyPolicy(parts.incremental(parts.at_once, parts.rigid_body));
   if (name == "structured") {
     return parts.of_model(parts.falls_back(), [](const auto& network) { return AnyPolicy(network); });
   }
-  if (name == "adaptive") {
+  const bool at_once = name == "structured_indi";
+  if (at_once || name == "adaptive") {
     return parts.of_model(TrainingGuard{}, [&](const auto& network) {
-      return parts.handing_over(parts.adaptive(network), parts.adaptive(parts.formula));
-    });
-  }
-  if (name == "structured_indi") {
-    return parts.of_model(TrainingGuard{}, [&](const auto& network) {
-      return parts.handing_over(parts.incremental(network, parts.at_once),
-                                parts.incremental(parts.formula, parts.at_once));
+      return at_once ? AnyPolicy(parts.incremental(parts.at_once, network, parts.formula))
+                     : AnyPolicy(parts.adaptive(network, parts.formula));
     });
   }
   throw std::out_of_range(name);

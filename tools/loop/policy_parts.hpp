@@ -37,19 +37,17 @@ struct PolicyParts {
     slower.across_time_constant_s = 0.05 / gains.learning;
   }
 
-  template <class Inverse>
-  auto adaptive(const Inverse& inverse) const {
-    return pinnquad::AdaptiveInverse<double, Inverse>(inverse, known.vehicle.airframe(), bias,
-                                                      pinnquad::FlownMotion<double>({25'000, lag_s, known.delay_s}));
+  template <class Inverse, class... Reserve>
+  auto adaptive(const Inverse& inverse, const Reserve&... reserve) const {
+    using Motion = pinnquad::FlownMotion<double>;
+    return pinnquad::AdaptiveInverse<double, Inverse, Motion, Reserve...>(
+        inverse, known.vehicle.airframe(), bias, Motion({25'000, lag_s, known.delay_s}), reserve...);
   }
-  template <class Inverse>
-  auto incremental(const Inverse& inverse, const pinnquad::BiasSettings<double>& settings) const {
-    return pinnquad::AdaptiveInverse<double, Inverse, pinnquad::FilteredMotion<double>>(
-        inverse, known.vehicle.airframe(), settings, filtered_);
-  }
-  template <class First, class Second>
-  static AnyPolicy handing_over(const First& first, const Second& second) {
-    return AnyPolicy(pinnquad::InverseWithReserve<double, First, Second>(first, second));
+  template <class Inverse, class... Reserve>
+  auto incremental(const pinnquad::BiasSettings<double>& settings, const Inverse& inverse,
+                   const Reserve&... reserve) const {
+    return pinnquad::AdaptiveInverse<double, Inverse, pinnquad::FilteredMotion<double>, Reserve...>(
+        inverse, known.vehicle.airframe(), settings, filtered_, reserve...);
   }
   template <class Guard, class Compose>
   AnyPolicy of_model(const Guard& guard, const Compose& compose) const {

@@ -146,9 +146,10 @@ class CoreReplayOf : public CoreReplay {
     if (from_the_start) return;
     holding_unknown_ = answer_unknown_ = true;
     past_unknown_ = has_past_;
-    bias_known_us_ = record.timestamp + Controller::Biases::motion_settles_us(vehicle_.airframe(), options_.settings);
-    window_known_us_ = bias_known_us_ + 2 * Controller::Biases::residual_window_us;
-    alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * Controller::Biases::alarm_clear_s);
+    const typename Controller::Learner& learner = controller_->learner();
+    bias_known_us_ = record.timestamp + learner.motion().settles_us();
+    window_known_us_ = bias_known_us_ + 2 * learner.trust().window_us(learner.motion().settings().period_us);
+    alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * Controller::Learner::clear_s);
     controller_->resume(record);
     take_inputs(record, static_cast<std::uint8_t>(~record.came & 31));
     for (int i = 0; i < 5; ++i) {  // what was refused hides the good one before it

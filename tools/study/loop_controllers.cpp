@@ -123,7 +123,7 @@ AnyPolicy studied_policy(const std::string& name, const LoopKnowledge& known, co
     return KnownDrag<std::decay_t<decltype(inverse)>, SwitchedQuadrotor>(inverse, known.vehicle);
   };
   if (name == "geometric") return AnyPolicy(leaning(parts.formula));
-  if (name == "observer") return AnyPolicy(parts.incremental(leaning(parts.formula), parts.slower));
+  if (name == "observer") return AnyPolicy(parts.incremental(parts.slower, leaning(parts.formula)));
   const Airframe<double>& airframe = known.vehicle.airframe();
   const Site<double> site = known.vehicle.site();
   if (name == "mppi") return AnyPolicy(MppiPolicy(airframe, site, *known.path, known.speed_m_s, gains));
@@ -145,14 +145,14 @@ AnyPolicy studied_policy(const std::string& name, const LoopKnowledge& known, co
     for (double* walk : {&walks.wind_walk_m_s, &walks.thrust_walk, &walks.force_walk_m_s2}) *walk *= gains.learning;
     const FlownMotion<double> often({10'000, parts.lag_s, known.delay_s});
     const WindInverse<double, std::decay_t<decltype(residual)>> wind(with_wrench(residual), walks, often);
-    return AnyPolicy(parts.incremental(wind, parts.at_once));
+    return AnyPolicy(parts.incremental(parts.at_once, wind));
   };
   if (name == "full_nominal") return full(NominalWrench<SwitchedQuadrotor>(known.vehicle));
   if (name == "full_bias") return full(NominalWrench<SwitchedQuadrotor>(parts.body));
   if (wrench != nullptr) {
     const BlockWrench learnt = wrench_of(*wrench);
     if (name == "wrench") return AnyPolicy(with_wrench(learnt));
-    if (name == "wrench_indi") return AnyPolicy(parts.incremental(with_wrench(learnt), parts.at_once));
+    if (name == "wrench_indi") return AnyPolicy(parts.incremental(parts.at_once, with_wrench(learnt)));
     if (name == "full") return full(learnt);
   }
   if (name == "structured_drag") {
@@ -160,8 +160,7 @@ AnyPolicy studied_policy(const std::string& name, const LoopKnowledge& known, co
   }
   if (name == "structured_observer") {
     return parts.of_model(TrainingGuard{}, [&](const auto& network) {
-      return parts.handing_over(parts.incremental(leaning(network), parts.slower),
-                                parts.incremental(leaning(parts.formula), parts.slower));
+      return AnyPolicy(parts.incremental(parts.slower, leaning(network), leaning(parts.formula)));
     });
   }
   return loop_policy(name, known, gains);

@@ -216,6 +216,8 @@ class WindInverse {
   void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
     inverse_.learn(now_us, known, state, commands);
     waited_s_ += clock_.step_s(now_us);
+    motion_.velocity(now_us, state.velocity_m_s);
+    motion_.body_rates(now_us, state.body_rates_rad_s);
     if (motion_.tick(now_us, known, state, commands)) {
       const Scalar period_s = motion_.period_s(Scalar(0));
       status_ = filter_.update(inverse_.residual(), motion_.motion(), motion_.flown(),
@@ -226,8 +228,6 @@ class WindInverse {
       filter_.wait(waited_s_);
       waited_s_ = Scalar(0);
     }
-    motion_.velocity(now_us, state.velocity_m_s);
-    motion_.body_rates(now_us, state.body_rates_rad_s);
   }
   Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& wanted, std::uint64_t time_us,
                     Commands<Scalar>& commands) noexcept {

@@ -81,6 +81,8 @@ class FilteredMotion {
   static Scalar period_s(Scalar tick_s) noexcept { return tick_s; }
   const MotionInputs<Scalar>& motion() const noexcept { return motion_; }
   const Commands<Scalar>& flown() const noexcept { return flown_; }
+  /// The motion's, NED.
+  Vector3<Scalar> velocity_m_s() const noexcept { return {at_[0], at_[1], at_[2]}; }
 
  private:
   static constexpr std::size_t channels = 10 + rotor_count;

@@ -79,6 +79,14 @@ class FlownMotion {
   Scalar period_s(Scalar /*tick_s*/) const noexcept { return period_s_; }
   const MotionInputs<Scalar>& motion() const noexcept { return motion_; }
   const Commands<Scalar>& flown() const noexcept { return flown_; }
+  /// The motion's, NED.
+  const Vector3<Scalar>& velocity_m_s() const noexcept { return mean_velocity_m_s_; }
+  /// After this time a motion does not depend on commands and samples before: three periods, the delay, and the rotors'
+  /// lag until a float does not tell.
+  std::uint64_t settles_us() const noexcept {
+    const Scalar settles_s = settings_.delay_s + Scalar(20) * settings_.rotor_lag_s;
+    return 3 * std::uint64_t{settings_.period_us} + static_cast<std::uint64_t>(Scalar(1e6) * settles_s);
+  }
 
  private:
   std::uint64_t longest_tick_us() const noexcept {
@@ -149,6 +157,7 @@ class FlownMotion {
     if (!(all_finite(mean) && all_finite(measured.linear_m_s2) && all_finite(measured.angular_rad_s2))) return false;
     if (!all_finite(flown)) return false;
     motion_ = motion_inputs(mean, measured);
+    mean_velocity_m_s_ = mean.velocity_m_s;
     flown_ = flown;
     return true;
   }
@@ -161,6 +170,7 @@ class FlownMotion {
   RotorFollower<Scalar> rotors_;
   Vector3<Scalar> velocity_m_s_ = Vector3<Scalar>::Zero(), rates_rad_s_ = Vector3<Scalar>::Zero();  ///< came last
   MotionInputs<Scalar> motion_{};
+  Vector3<Scalar> mean_velocity_m_s_ = Vector3<Scalar>::Zero();
   Commands<Scalar> flown_{};
 };
 

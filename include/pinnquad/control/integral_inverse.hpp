@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "pinnquad/control/adaptive_inverse.hpp"
+#include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 
 namespace pinnquad {
@@ -38,8 +39,8 @@ class IntegralInverse {
       : inverse_(inverse), settings_(settings) {}
 
   /// Tells the time, and whether the commands of the tick before were off their ends.
-  void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>&) noexcept {
-    const bool follows = known && now_us > before_us_ && now_us - before_us_ <= 100'000;
+  void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
+    const bool follows = known && !saturated(commands) && now_us > before_us_ && now_us - before_us_ <= 100'000;
     step_s_ = follows ? Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_) : Scalar(0);
     before_us_ = now_us;
     attitude_ = state.attitude;

@@ -61,6 +61,18 @@ constexpr BiasSettings<Scalar> bias_settings(const ModelFacts& facts) noexcept {
   return facts.has_bias ? detail::bias_settings_of<Scalar>(facts.bias_time_constants_s) : BiasSettings<Scalar>{};
 }
 
+/// For a loop that is told the rotors' lag and the delay of its states: no time constant above 25 ms, a period of
+/// FlownMotion. Told neither, such a bias follows its own answer (docs/adaptive.md).
+template <class Scalar>
+constexpr BiasSettings<Scalar> quick_where_told(BiasSettings<Scalar> settings) noexcept {
+  constexpr Scalar most_s = Scalar(0.025);
+  for (Scalar& time_s : settings.time_constants_s) {
+    if (time_s > most_s && time_s <= std::numeric_limits<Scalar>::max()) time_s = most_s;
+  }
+  if (settings.across_time_constant_s > most_s) settings.across_time_constant_s = most_s;
+  return settings;
+}
+
 /// Most that the bias changes each command, either way: |A| most, A the inverse of the signs. The bound of a
 /// certificate (docs/certificate.md) widens by it.
 template <class Scalar>

@@ -46,7 +46,7 @@ class TrackingController {
                     Commands<Scalar>& commands) noexcept {
     TrajectoryPoint<Scalar> asked = point;
     if constexpr (learns_in_flight<FeedForward, Scalar>) {
-      feed_forward_.learn(time_us, flew_ && !saturated(last_), state, last_);
+      feed_forward_.learn(time_us, flew_, state, last_);
       flew_ = false;
     }
     lean(state, asked);

@@ -150,14 +150,14 @@ struct CoreSettings {
   float descent_m_s{3};
   float take_off_s{1};  ///< time that thrust takes to come at take-off
   // BiasSettings, of the network's bias and the analytic inverse's; and the delay of FlownMotionSettings
-  float bias_time_constants_s[4]{};  ///< 0: what the model's block says, or the usual one
+  float bias_time_constants_s[4]{};  ///< 0: what the model's block says, or the usual one; see state_delay_s
   float most_bias[4]{BiasSettings<float>{}.most[0], BiasSettings<float>{}.most[1], BiasSettings<float>{}.most[2],
                      BiasSettings<float>{}.most[3]};
   float across_time_constant_s{BiasSettings<float>{}.across_time_constant_s};
   float most_across_m_s2{BiasSettings<float>{}.most_across_m_s2};
   float bias_hold_s{BiasSettings<float>{}.hold_s};
   float bias_fade_s{BiasSettings<float>{}.fade_s};
-  float state_delay_s{0};  ///< by which a state comes late beside the commands
+  float state_delay_s{0};  ///< by which a state comes late beside the commands; told (above 0), the biases are quick
   // effects of the analytic inverse's vehicle
   std::uint32_t effects{0};
   float drag_n_s_m{0};          ///< of LinearDamping

@@ -24,10 +24,11 @@ inline FlightController<float> outer_loop(const CoreSettings& settings, const Ai
   return FlightController<float>(gains, limits, gravity_m_s2);
 }
 
-/// The time constants of both biases: those of the settings, and where they say 0 the model's own.
+/// The time constants of both biases: those of the settings, and where they say 0 the model's own, quick ones where the
+/// settings tell the delay of the states.
 inline SignedSums<float> bias_time_constants_s(const CoreSettings& settings,
                                                const BiasSettings<float>& own = {}) noexcept {
-  SignedSums<float> times_s = own.time_constants_s;
+  SignedSums<float> times_s = (settings.state_delay_s > 0 ? quick_where_told(own) : own).time_constants_s;
   for (std::size_t k = 0; k < times_s.size(); ++k) {
     if (settings.bias_time_constants_s[k] > 0) times_s[k] = settings.bias_time_constants_s[k];
   }

@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "pinnquad/control/autopilot/core_settings.hpp"
-#include "pinnquad/control/autopilot/flown_biases.hpp"
 #include "pinnquad/control/autopilot/inputs.hpp"
 #include "pinnquad/control/autopilot/model_inputs.hpp"
 #include "pinnquad/control/autopilot/model_slots.hpp"
 #include "pinnquad/control/autopilot/take_off.hpp"
+#include "pinnquad/control/bias_learner.hpp"
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
@@ -26,7 +26,7 @@ namespace pinnquad::autopilot {
 template <class Shape, class View = ModelView<Shape>, class VehicleType = Quadrotor<float, QuadraticDrag>,
           class Trust = void>
 class NeuralController {
-  static constexpr bool trusts = detail::FlownTrust<Trust>::known;
+  static constexpr bool trusts = pinnquad::detail::FlownTrust<Trust>::known;
   using ModelInputs = detail::ModelInputs<typename Shape::Features>;
 
  public:
@@ -39,7 +39,7 @@ class NeuralController {
       std::conditional_t<trusts, Extend<TrainingGuard, JointDistance<Trust>, RefuseCommands<detail::AbsurdCommands>>,
                          Extend<TrainingGuard, RefuseCommands<detail::AbsurdCommands>>>;
   using Inverse = InverseDynamics<View, NetworkGuard>;
-  using Biases = detail::FlownBiases<Trust>;
+  using Learner = BiasLearner<float, 2, FlownMotion<float>, Trust>;
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
   static_assert(!trusts || ModelInputs::of_motion_alone,
                 "pinnquad: limits of trust are those of a model of the present motion alone: fly one with a window or "
@@ -54,7 +54,9 @@ class NeuralController {
         analytic_(vehicle_),
         outer_loop_(detail::outer_loop(settings, vehicle_.airframe(), vehicle_.site().gravity_m_s2)),
         models_(NetworkGuard{}),
-        biases_(vehicle_.airframe(), settings),
+        learner_(vehicle_.airframe(), detail::bias_settings(settings),
+                 FlownMotion<float>({FlownMotionSettings<float>{}.period_us,
+                                     vehicle_.airframe().rise_time_constant_s(0), settings.state_delay_s})),
         take_off_(settings.take_off_s) {
     settings_.distance_limit = settings_.innovation_limit = 0;
     if constexpr (trusts) {
@@ -68,7 +70,7 @@ class NeuralController {
   /// ModelSlots::offer(), at boot, and in flight from another thread. A model of other training data than that of the
   /// limits of trust is `block_incompatible`.
   Status offer_model(const void* block, std::size_t length) noexcept {
-    const Status status = models_.offer(block, length, detail::training_data<Trust>());
+    const Status status = models_.offer(block, length, pinnquad::detail::training_data<Trust>());
     if (status == Status::ok && !ready_) ready_ = true;  // not written in flight: the control thread reads it
     return status;
   }
@@ -79,7 +81,7 @@ class NeuralController {
   /// Inputs, each `not_finite`, `out_of_range` or `not_unit_quaternion` for a sample that is refused. rad/s, FRD.
   Status body_rates(std::uint64_t time_us, const Vector3<float>& rates_rad_s) noexcept {
     const Status status = rates_.accept(time_us, rates_rad_s, detail::check_sample(rates_rad_s));
-    if (status == Status::ok) biases_.motion().body_rates(time_us, rates_rad_s);
+    if (status == Status::ok) learner_.motion().body_rates(time_us, rates_rad_s);
     return status;
   }
   /// Body -> world; normalised, where the norm is within unit_quaternion_tolerance of 1.
@@ -93,7 +95,7 @@ class NeuralController {
     Status checked = detail::check_sample(state.position_m);
     if (checked == Status::ok) checked = detail::check_sample(state.velocity_m_s);
     const Status status = local_.accept(time_us, state, checked);
-    if (status == Status::ok) biases_.motion().velocity(time_us, state.velocity_m_s);
+    if (status == Status::ok) learner_.motion().velocity(time_us, state.velocity_m_s);
     return status;
   }
   /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point.
@@ -120,25 +122,29 @@ class NeuralController {
     set_point_.replace(wanted);
     held_position_m_ += by.position_m;
     held_yaw_rad_ += yaw_rad;
-    biases_.motion().interrupt();
+    learner_.motion().interrupt();
     model_inputs_.clear();
   }
 
   /// Of the network's commands. What its network does not answer for it does not learn.
-  const MotionBias<float>& bias() const noexcept { return biases_.network(); }
+  const MotionBias<float>& bias() const noexcept { return learner_.own(); }
   /// Of the analytic inverse's commands; and the acceleration across the thrust, whoever answers.
-  const MotionBias<float>& analytic_bias() const noexcept { return biases_.analytic(); }
+  const MotionBias<float>& analytic_bias() const noexcept { return learner_.last(); }
   /// Share of the thrust that it uses, 0 to 1: below 1 at take-off and landing.
   float lift() const noexcept { return take_off_.lift(); }
   /// Mean error of the model's commands, bias included, about the flown motion; 0 without limits of trust.
-  float command_residual() const noexcept { return biases_.trust().command_residual(); }
+  float command_residual() const noexcept { return learner_.trust().command_residual(); }
   /// False while the command residual is above its limit.
-  bool trusted() const noexcept { return biases_.trust().trusted(); }
-  /// True while the network's bias has stood at its bound for too long: the analytic inverse flies, `distrusted`.
-  bool bias_alarm() const noexcept { return biases_.alarm(); }
+  bool trusted() const noexcept { return learner_.trust().trusted(); }
+  const Learner& learner() const noexcept { return learner_; }
   /// Goes on from a logged tick (replay).
   void resume(const CoreRecord& logged) noexcept {
-    biases_.resume(logged);
+    resume_biases(logged);
+    learner_.trust().resume(logged.innovation, logged.trusted != 0);
+    // where the command residual is below its limit, `distrusted` is the bias that stood at its bound
+    if (logged.trusted != 0 && logged.reaction <= static_cast<std::uint8_t>(Reaction::levels) && logged.asked != 0) {
+      learner_.hand_over(logged.cause == static_cast<std::uint8_t>(Status::distrusted));
+    }
     take_off_.resume(logged.lift);
     if (logged.asked != 0 && logged.reaction <= static_cast<std::uint8_t>(Reaction::levels)) {
       for (std::size_t i = 0; i < last_commands_.size(); ++i) last_commands_[i] = logged.commands[i];
@@ -147,7 +153,10 @@ class NeuralController {
   }
 
   /// The biases of a logged tick, before its step: it learns nothing then. For a replay that lacks the ticks before.
-  void give_biases(const CoreRecord& logged) noexcept { biases_.give(logged); }
+  void give_biases(const CoreRecord& logged) noexcept {
+    resume_biases(logged);
+    learner_.give();
+  }
 
   /// One tick: motor commands in the airframe's rotor order, within the output limits. `commands` is untouched where
   /// the reaction is gives_up. `now_us` is of the samples' clock; any time may lie between two calls.
@@ -221,17 +230,16 @@ class NeuralController {
 
   /// The last commands are of this tick.
   void answered(std::uint64_t now_us) noexcept {
-    whole_answer_ = !(take_off_.lift() < 1.0f || saturated(last_commands_, range()));
     answered_us_ = now_us;
     answered_ = true;
   }
 
   /// Not that of the last tick. A replay's first tick has the biases already.
   PINNQUAD_NOINLINE void take_model(const Inverse& inverse) noexcept {
-    if (checksum_ != 0) biases_.another_model();
+    if (checksum_ != 0) learner_.another_model();
     checksum_ = models_.checksum(&inverse);
     const BiasSettings<float> own = pinnquad::bias_settings<float>(inverse.model().facts);
-    biases_.time_constants(detail::bias_time_constants_s(settings_, own));
+    learner_.time_constants(detail::bias_time_constants_s(settings_, own));
   }
 
   Reaction judge_ages(std::uint64_t now_us, StepReport& report) noexcept {
@@ -251,22 +259,35 @@ class NeuralController {
     return report.stale(set_point_bit) ? Reaction::holds_position : Reaction::flies;
   }
 
+  void resume_biases(const CoreRecord& logged) noexcept {
+    const auto sums = [](const float(&b)[4]) noexcept { return SignedSums<float>{b[0], b[1], b[2], b[3]}; };
+    const Vector3<float> across(logged.bias_across_m_s2);
+    learner_.own().resume(sums(logged.bias_sums), across, logged.bias_waited_s,
+                          static_cast<Status>(logged.bias_status));
+    learner_.last().resume(sums(logged.analytic_bias_sums), across, logged.analytic_bias_waited_s,
+                           static_cast<Status>(logged.analytic_bias_status));
+  }
+
   State<float> state() const noexcept {
     return {local_.value().position_m, local_.value().velocity_m_s, attitude_.value(), rates_.value()};
   }
 
   /// A tick for the biases. Out of line, as target() is.
   PINNQUAD_NOINLINE void learn(std::uint64_t now_us, Reaction reaction, const Inverse* inverse) noexcept {
-    detail::FlownTick tick;
+    typename Learner::Tick tick;
     tick.now_us = now_us;
     tick.in_flight = situation_.in_flight();
     tick.known = tick.in_flight && answered_ && reaction <= Reaction::holds_position;
-    tick.freezes = tick.known && (!whole_answer_ || take_off_.may_stand());
+    tick.freezes = tick.known && (take_off_.lift() < 1.0f || take_off_.may_stand());
     tick.on_ground = !(take_off_.lift() > 0);
-    const auto network = [this, inverse](const MotionInputs<float>& motion, Commands<float>& said) noexcept {
+    const auto network = [this, inverse](const MotionInputs<float>& motion, Commands<float>& said,
+                                         Vector3<float>&) noexcept {
       return inverse->observed(model_inputs_.lasting(motion), said);
     };
-    biases_.learn(tick, state(), last_commands_, network, analytic_);
+    const auto analytic = [this](const MotionInputs<float>& motion, Commands<float>& said, Vector3<float>&) noexcept {
+      return analytic_(motion, said);
+    };
+    learner_.learn(tick, state(), last_commands_, network, analytic);
   }
 
   /// It climbs for 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise.
@@ -317,18 +338,13 @@ class NeuralController {
     const Status outer = want(reaction, wanted);
     if (outer != Status::ok) return outer;
     const typename Inverse::Inputs& inputs = model_inputs_.take(wanted);
-    report.cause = trusted() && !bias_alarm() ? ask_network(inverse, inputs, commands, report) : Status::distrusted;
+    const Status status = learner_.answer(
+        commands, report.cause,
+        [&](Commands<float>& said) noexcept { return ask_network(inverse, inputs, said, report); },
+        // not refused for its size: the demand is limited, and desaturate() brings what is left into the range
+        [&](Commands<float>& said) noexcept { return analytic_(wanted, said); });
     count_.add(report.cause);
-    if (has_output(report.cause)) {
-      bias().add_to(commands);
-      return report.cause;
-    }
-    Commands<float> replaced{};
-    // not refused for its size: the demand is limited, and desaturate() brings what is left into the range
-    if (!has_output(analytic_(wanted, replaced))) return report.cause;
-    analytic_bias().add_to(replaced);
-    commands = replaced;
-    return Status::fell_back;
+    return status;
   }
 
   PINNQUAD_NOINLINE static Status ask_network(const Inverse& inverse, const typename Inverse::Inputs& inputs,
@@ -348,7 +364,7 @@ class NeuralController {
     Accelerations<float> wanted, feedback;
     TrajectoryPoint<float> point = target(reaction, now);
     // a vehicle that levels: thrust alone, so that level stays level
-    if (reaction != Reaction::levels) point.acceleration_m_s2 -= analytic_bias().across_m_s2();
+    if (reaction != Reaction::levels) point.acceleration_m_s2 -= learner_.across_m_s2();
     const Status outer = outer_loop_(now, point, wanted, feedback);
     if (outer != Status::ok) return outer;
     expected_m_s2_ = world_acceleration<float>(now, wanted.linear_m_s2);
@@ -369,9 +385,8 @@ class NeuralController {
   float held_yaw_rad_ = 0;
   bool holding_ = false;
   Commands<float> last_commands_{};
-  Biases biases_;
+  Learner learner_;
   Vector3<float> expected_m_s2_ = Vector3<float>::Zero();  ///< of the last answer, NED
-  bool whole_answer_ = false;                              ///< the last commands: all of its thrust, off their ends
   Situation situation_{};
   detail::TakeOff take_off_;
   std::uint64_t answered_us_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The command residual of the model that an autopilot's core flies (docs/trust.md).
+// The command residual of the model that flies (docs/trust.md).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include "pinnquad/inference/command_residual.hpp"
 #include "pinnquad/inference/joint_distance.hpp"
 
-namespace pinnquad::autopilot::detail {
+namespace pinnquad::detail {
 
 /// The command residual is of two windows of so many motions, each window's mean over residuals with their signs:
 /// the noise of a motion's border cancels in the next one.
@@ -19,6 +19,11 @@ template <class Trust>
 class FlownTrust {
  public:
   static constexpr bool known = true;
+
+  /// Two windows of flown motions.
+  static constexpr std::uint64_t window_us(std::uint32_t period_us) noexcept {
+    return std::uint64_t{2 * motions_of_window} * period_us;
+  }
 
   bool trusted() const noexcept { return monitor_.trusted(); }
   float command_residual() const noexcept { return monitor_.mean(); }
@@ -67,7 +72,7 @@ class FlownTrust {
 /// Hash of the training data that the limits are of; null where they do not say.
 template <class Trust>
 const std::uint64_t* training_data() noexcept {
-  if constexpr (is_detected<pinnquad::detail::StaticTrainingDataHash, Trust>) return &Trust::training_data_hash;
+  if constexpr (is_detected<StaticTrainingDataHash, Trust>) return &Trust::training_data_hash;
   return nullptr;
 }
 
@@ -77,7 +82,9 @@ class FlownTrust<void> {
   static constexpr bool known = false;
   static constexpr bool trusted() noexcept { return true; }
   static constexpr float command_residual() noexcept { return 0; }
+  static constexpr std::uint64_t window_us(std::uint32_t) noexcept { return 0; }
+  static void resume(float, bool) noexcept {}
   static void reset() noexcept {}
 };
 
-}  // namespace pinnquad::autopilot::detail
+}  // namespace pinnquad::detail
