@@ -99,9 +99,9 @@ inline std::vector<double> usual_columns(const pinnquad::BlockModel& model, cons
   return held;
 }
 
-/// A battery as the flights tell it, for a model that asks for its voltage: of so many cells that they have 3.8 V each,
-/// of ten minutes of hover, at its start so charged that it hovers at their median voltage. The voltage at which the airframe's
-/// thrust is as it says is that of the thrust that the flights have seen.
+/// A battery as the flights tell it, for a model that asks for its voltage: so many cells that their median voltage is
+/// 3.8 V each, of ten minutes of hover, so charged that it hovers at that voltage. The airframe's thrust is as it says
+/// at the voltage at which the flights' thrust was that.
 inline std::optional<pinnquad::Battery> battery_of_flights(const pinnquad::BlockModel& model,
                                                            const pinnquad::RowSet& training,
                                                            const pinnquad::Airframe<double>& airframe) {
