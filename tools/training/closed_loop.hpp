@@ -110,15 +110,20 @@ inline std::optional<pinnquad::Battery> battery_of_flights(const pinnquad::Block
   const double* const voltage_V = voltage_among(model, columns);
   if (voltage_V == nullptr) return {};
   const Rotors<double> rotors(airframe);
-  std::vector<double> seen;  // thrust over that of the commands
-  for (std::size_t row = 0; row < training.size(); ++row) {
-    const Vector3<double> force = SpecificForce::of(sample_inputs<MotionInputs<double>>(training[row]));
-    const double commanded_N = -rotors.wrench(training[row].commands, 1).force_N[2];
-    if (commanded_N > 0) seen.push_back(-airframe.mass_kg * force[2] / commanded_N);
+  std::vector<double> rated_V;  // of a row, by the share of the thrust that it has at its voltage
+  for (const FlightRows& piece : training.pieces()) {
+    const std::vector<double>& volts = piece.flight->column(BatteryVoltage::name)->values;
+    for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
+      const Sample& sample = (*piece.flight)[row];
+      const Vector3<double> force = SpecificForce::of(sample_inputs<MotionInputs<double>>(sample));
+      const double commanded_N = -rotors.wrench(sample.commands, 1).force_N[2];
+      const double share = -airframe.mass_kg * force[2] / commanded_N;
+      if (share > 0.5 && share < 2) rated_V.push_back(volts[row] / std::sqrt(share));
+    }
   }
   Battery battery;
   battery.cells = std::max(1.0, std::round(*voltage_V / 3.8));
-  if (!seen.empty()) battery.rated_V = *voltage_V / std::sqrt(std::clamp(pinnquad::detail::median_of(seen), 0.5, 2.0));
+  if (!rated_V.empty()) battery.rated_V = pinnquad::detail::median_of(std::move(rated_V));
   const double hover_A = battery.bound(airframe).full_current_A * std::pow(airframe.thrust_to_weight(), -1.5);
   battery.capacity_Ah = std::max(hover_A / 6, 0.01);
   const double rest_V = *voltage_V / battery.cells + hover_A * battery.cell_resistance_ohm_Ah / battery.capacity_Ah;
