@@ -318,7 +318,6 @@ void add_options(CLI::App& app, FlyOptions& options) {
       "Examples:\n"
       "  pinnquad fly d1 --seed 1 --out d1.csv\n"
       "  pinnquad fly d2 --ground-effect cheeseman-bennett --out d2.csv --pictures pictures\n"
-      "  pinnquad fly d3 --statistics 20\n"
       "Exit codes: 0; 1 the flight ended early; 2 bad input or a file that can't be read or written;\n"
       "130 interrupted: nothing was written.");
   app.add_option("flight", options.flight, flights)->type_name("d1|d2|d3|harder")->capture_default_str();

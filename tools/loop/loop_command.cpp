@@ -223,10 +223,8 @@ Command loop_command(CLI::App& program) {
   line->footer(
       described("Controllers:", loop_controllers) +
       "Examples:\n"
-      "  pinnquad loop trained.block --trajectory circle --column battery_voltage=15.2\n"
       "  pinnquad loop trained.block --battery 3x2200 --battery-charge 40\n"
       "  pinnquad loop trained.block --controllers adaptive,indi --conditions calm,payload\n"
-      "The feedback is the same for all that fly. A model that is shown the altitude flies near the ground.\n"
       "Exit codes: 0; 1 the model loses the vehicle, or answers nothing; 2 bad input or a file that can't be read; "
       "130\n"
       "interrupted.");

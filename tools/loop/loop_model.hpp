@@ -32,8 +32,7 @@ struct LoopModel {
 
 inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
   add_model(line, options.model);
-  line.add_option("--column", options.columns,
-                  "a column that the model asks for is held at this, not at the middle of its training envelope")
+  line.add_option("--column", options.columns, "hold a column of the model here, not at the middle of its envelope")
       ->type_name("NAME=VALUE");
   line.add_option("--airframe", options.airframe,
                   "what flies in place of the model's own airframe, its motors as there: see airframe list")
