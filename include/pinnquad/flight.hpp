@@ -8,7 +8,7 @@
 #endif
 
 #include "pinnquad/aero/air_density.hpp"
-#include "pinnquad/aero/battery_sag.hpp"
+#include "pinnquad/aero/battery.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/dryden.hpp"
 #include "pinnquad/aero/flapping.hpp"

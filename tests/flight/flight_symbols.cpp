@@ -24,7 +24,7 @@ using pinnquad::test::SmallModel;
 template <class Scalar>
 using Everything =
     pinnquad::Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::PeriodicWind,
-                        pinnquad::BatterySag, pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::Inflow,
+                        pinnquad::Battery, pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::Inflow,
                         pinnquad::BladeFlapping, pinnquad::Wake,
                         pinnquad::RotorGroundEffect<pinnquad::CheesemanBennett>,
                         pinnquad::GroundEffect<pinnquad::Conyers>, pinnquad::GroundEffect<pinnquad::CheesemanBennett>,

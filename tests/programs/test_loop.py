@@ -73,10 +73,14 @@ def test_model_of_a_users_own(pinnquad, own_here):
     assert flown_by(pinnquad, "loop model.hpp --column battery_voltage=14.7")["model"]["rmse_m"] != model["rmse_m"]
     low, lower = (flown_by(pinnquad, f"loop model.hpp --column battery_voltage={volts}")["model"] for volts in (9, 3))
     assert low == lower and low["declined"] == model["declined"]
-    assert 14.5 < flown_by(pinnquad, "loop model.hpp")["columns"]["battery_voltage"] < 16.5
+    # the vehicle's own battery in its place
+    on_battery = flown_by(pinnquad, "loop model.hpp --battery 4x5000 --battery-charge 80")
+    assert 14 < on_battery["columns"]["battery_voltage"] < 16 and on_battery["model"]["status"] == "ok", on_battery
 
 
 @pytest.mark.parametrize("words, keyword", [
+    ("model.block", "--battery 3x2200"), ("model.block --battery 3", "CELLSxMAH"), ("model.block --battery 0x2200", "CELLSxMAH"),
+    ("model.block --column battery_voltage=15 --battery 4x5000", "--column battery_voltage"),
     ("model.block --column battery_voltage", "=NUMBER in V"),
     ("model.block --column battery_voltage=fast", "'battery_voltage=fast'"), ("model.block --column battery_voltage=nan", "=NUMBER"),
     ("model.block --column battery_voltage=15 battery_voltage=16", "twice"), ("model.block --column pack=15", "'pack'"),
@@ -169,3 +173,40 @@ def test_a_bias_at_its_bound_is_said(pinnquad):
     ("--controllers pid --guard none", "--guard")])
 def test_controllers_refused(pinnquad, words, keyword):
     pinnquad.refused(f"loop {MODELS}/structured_quadrotor.block {words}", keyword=keyword)
+
+
+def without_last_column(path, into):
+    Path(into).write_text("".join(line.rsplit(",", 1)[0] + "\n" for line in Path(path).read_text().splitlines()))
+
+
+def test_flies_on_a_battery(pinnquad, flown):
+    """From the flights of a pack that empties to a model that is shown its voltage in flight: it knows a nearly empty pack
+    better than a model without, and thrust goes with the square of the voltage, which identify finds without being told."""
+    of_pack = {charge: flown(f"--airframe light_quadrotor --battery 3x2200 --battery-charge {charge} --samples 1500 --seed {charge}")
+               for charge in (100, 70, 40, 25, 30)}
+    for charge, path in of_pack.items():
+        header, *rows = path.read_text().splitlines()
+        assert header.endswith(",battery_voltage [V]") and 10 < float(rows[-1].split(",")[-1]) < 12.5
+        Path(f"with_{charge}.csv").symlink_to(path)
+        without_last_column(path, f"without_{charge}.csv")
+    assert "battery_voltage" not in flown("--airframe light_quadrotor --samples 100 --seed 3").read_text()
+    found = json.loads(pinnquad("identify with_100.csv with_40.csv --airframe light_quadrotor --json").out)
+    assert abs(found["numbers"]["battery"]["value"] - 2) < 0.05, found
+    errors, loops = {}, {}
+    for kind in "with", "without":
+        flights = " ".join(f"{kind}_{charge}.csv" for charge in of_pack)
+        pinnquad(f"train {flights} --hold-out {kind}_30.csv --airframe light_quadrotor --models physics --seeds 1 --allow-poor --out {kind}")
+        report = json.loads(Path(kind, "report.json").read_text())
+        errors[kind] = report["verdict"]["held_out_rmse"]["exported"]
+        flying = flown_by(pinnquad, f"loop {kind}/model.block --battery 3x2200 --battery-charge 30")
+        assert flying["model"]["status"] == "ok" and flying["model"]["answered_share"] > 0.99
+        loops[kind] = flying["model"]["rmse_m"]
+        if kind == "with":
+            assert 10.5 < flying["columns"]["battery_voltage"] < 11.3
+            assert report["closed_loop"]["model"]["rmse_m"] < 0.1, report["closed_loop"]
+    assert errors["with"] < 0.85 * errors["without"], errors
+    assert loops["with"] < 0.5 * loops["without"], loops
+    pinnquad.refused("loop with/model.block", at="with/model.block", keyword="battery_voltage")
+    pinnquad.refused("loop with/model.block --controllers structured", at="with/model.block", keyword="battery_voltage")
+    row, = json.loads(pinnquad("loop with/model.block --battery 3x2200 --battery-charge 30 --controllers structured --json").out)["rows"]
+    assert not row["crashed"] and row["rmse_cm"] < 10, row

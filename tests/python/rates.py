@@ -71,7 +71,7 @@ def main():
           f"{python / cpp:.2f} times; one row a call {one:.0f} ns")
     each = pinnquad.Airframe("paper_quadrotor").randomised(1000, SPREADS)
     for name, effects in (("drag", pinnquad.Effects()),
-                          ("payload and battery", pinnquad.Effects(payload_kg=0.2, battery_endurance_s=900)),
+                          ("payload and battery", pinnquad.Effects(payload_kg=0.2, battery_cells=4)),
                           ("all effects of rotors", pinnquad.Effects(rotor_drag=True, inflow=True, flapping=True,
                                                                      wake=True))):
         print(f"1,000 vehicles, 1 ms steps, {name}: {steps(effects):,.0f} a second, "

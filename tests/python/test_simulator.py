@@ -243,9 +243,14 @@ def test_each_effect_does_what_it_says():
     assert by(payload_kg=0.15).hover_commands()[0] == pytest.approx(1.1 * hover, rel=1e-9)  # 10 % of 1.5 kg
     weak = by(fault_rotor=2, fault_share=0.8).hover_commands()
     np.testing.assert_allclose(weak * [1, 1, 0.8, 1], hover, rtol=1e-9)
-    sagging = by(battery_endurance_s=10.0)
+    sagging = by(battery_cells=4, battery_charge=0.5)
     sagging.fly(9.9)
-    assert sagging.state["thrust_scale"] == pytest.approx((1 - 0.99 / 6) ** 2, rel=1e-3)
+    volts, volts_of_full = sagging.state["battery_voltage_V"], 4 * 4.1029
+    assert 13.5 < volts < 4 * 3.804 and sagging.state["thrust_scale"] == pytest.approx((volts / volts_of_full) ** 2)
+    assert sagging.hover_commands()[0] == pytest.approx(hover * (volts_of_full / volts) ** 2)
+    recorded = sagging.recording()
+    assert recorded.columns == [("battery_voltage", "V")] and abs(recorded["battery_voltage"][-1] - volts) < 0.01
+    assert np.diff(recorded["battery_voltage"])[20:].max() < 0.01 and still.recording().columns == []
     assert by(standard_atmosphere=False).hover_commands()[0] < hover  # denser than at 157 m
     assert by(wind_m_s=(8, 0, 0), inflow=True).hover_commands()[0] < 0.97 * hover  # translational lift
     windy = by(wind_m_s=(5, 0, 0))
@@ -318,7 +323,7 @@ def test_arguments_that_make_no_sense(arguments):
 @pytest.mark.parametrize("changes, error", [
     ({"wind_m_s": (NAN, 0, 0)}, ValueError), ({"gust_m_s": (0, INF, 0)}, ValueError),
     ({"gust_period_s": 0.0}, ValueError), ({"payload_kg": -1.0}, ValueError),
-    ({"battery_full_V": NAN}, ValueError), ({"wind_m_s": 3}, TypeError),
+    ({"battery_Ah": NAN}, ValueError), ({"wind_m_s": 3}, TypeError),
     ({"drag": "yes"}, TypeError), ({"fault_rotor": -1}, TypeError), ({"turbulence_seed": 2**64}, TypeError),
     ({"wind_m_s": (1, 2)}, TypeError)])
 def test_effects_that_make_no_sense(changes, error):

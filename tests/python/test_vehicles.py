@@ -41,7 +41,7 @@ def each_turns_otherwise():
 @pytest.mark.parametrize("effects", [
     Effects(), Effects(wind_m_s=(3, 1, 0), wake=True), Effects(wind_m_s=(3, 1, 0), gust_m_s=(0, 2, 0)),
     Effects(ground_effect="conyers"), Effects(ground_effect="cheeseman_bennett"),
-    Effects(ground_effect="conyers", drag=False, payload_kg=0.2, payload_from_s=0.1, battery_endurance_s=60),
+    Effects(ground_effect="conyers", drag=False, payload_kg=0.2, payload_from_s=0.1, battery_cells=4, battery_charge=0.3),
     Effects(ground_effect="rotors", turbulence_m_s=5, rotor_drag=True, inflow=True, flapping=True, fault_share=0.9,
             fault_rotor=2, rate_damping_N_m_s=0.01, linear_drag_N_s_m=0.1, ground_contact=True)])
 def test_they_fly_as_the_simulator_does(effects, airframes):
@@ -53,8 +53,9 @@ def test_they_fly_as_the_simulator_does(effects, airframes):
     many = Vehicles(11, given, effects=effects)
     many.reset(position_m=start_m)
     random = np.random.default_rng(1)
-    np.testing.assert_array_equal(np.broadcast_to(many.hover_commands(start_m), (11, 4)),
-                                  [one.hover_commands() for one in alone])
+    if not effects.battery_cells:  # a simulator's hover is that of its battery under load
+        np.testing.assert_array_equal(np.broadcast_to(many.hover_commands(start_m), (11, 4)),
+                                      [one.hover_commands() for one in alone])
     for _ in range(50):
         commands = many.hover_commands(start_m) + random.uniform(-0.02, 0.03, (11, 4))
         for one, its in zip(alone, commands):
@@ -67,6 +68,7 @@ def test_they_fly_as_the_simulator_does(effects, airframes):
         np.testing.assert_array_equal(many.attitude[i], one.state["attitude"])
         np.testing.assert_array_equal(many.body_rates_rad_s[i], one.state["body_rates_rad_s"])
         np.testing.assert_array_equal(many.rotor_commands[i], one.state["rotor_commands"])
+        assert many.charge_used_C[i] == one.state["charge_used_C"] and (many.charge_used_C[i] > 0) == (effects.battery_cells > 0)
 
 
 def test_other_airframes_in_flight():
@@ -161,7 +163,7 @@ def test_each_has_commands_and_a_place_of_its_own():
 
 def test_arrays_are_the_state():
     vehicles = Vehicles(5)
-    assert np.shares_memory(vehicles.state, vehicles.attitude) and vehicles.state.shape == (5, 18)
+    assert np.shares_memory(vehicles.state, vehicles.attitude) and vehicles.state.shape == (5, 19)
     state = vehicles.state
     del vehicles
     state[:] = 1  # kept alive by the array

@@ -32,7 +32,7 @@ HarderConditions worst() {
   HarderConditions conditions;
   conditions.fault = {1, 0.85, 0};
   conditions.payload = {0.15, 0};
-  conditions.battery.endurance_s = 60;
+  conditions.battery.start_charge = 0.5;
   return conditions;
 }
 
@@ -81,14 +81,16 @@ TEST_CASE("hover has a trim: near the rigid body's in calm air, more with a weak
   HarderConditions still = worst();
   still.wind_m_s = 0;
   REQUIRE(hover_trim(vehicle(still), place, hard) == Status::ok);
-  const double load = 1.15;
+  const double load = 1.15 / std::pow(pinnquad::Battery::cell_at_rest_V(0.5) / pinnquad::Battery::full_cell_V, 2);
   CHECK(hard[0] / rigid[0] == doctest::Approx(load).epsilon(0.01));
   CHECK(hard[1] / rigid[1] == doctest::Approx(load / 0.85).epsilon(0.01));
-  State<double> there;
-  there.position_m = place;
-  Commands<double> late{};  // its battery is empty after a minute
-  REQUIRE(inverse_commands(vehicle(still), there, {}, 60.0, late) == Status::ok);
-  CHECK(late[0] / hard[0] == doctest::Approx(12.6 * 12.6 / (10.5 * 10.5)).epsilon(1e-6));
+  pinnquad::VehicleState<double> late;  // all but a tenth of its charge is used
+  late.body.position_m = place;
+  late.charge_used_C = 0.4 * 3600 * still.battery.capacity_Ah;
+  Commands<double> more{};
+  REQUIRE(inverse_commands(vehicle(still), late, {}, more) == Status::ok);
+  const double lower = pinnquad::Battery::cell_at_rest_V(0.1) / pinnquad::Battery::cell_at_rest_V(0.5);
+  CHECK(more[0] / hard[0] == doctest::Approx(1 / (lower * lower)).epsilon(1e-6));
 }
 
 TEST_CASE("its airframe: a kilogram, rotors that lag 20 ms, three times the thrust that it needs") {
@@ -126,7 +128,7 @@ TEST_CASE("the effects show: the commands of its flight are not those of a rigid
   int rows = 0;
   fly(quadrotor, pilot, plan, [&](const auto& simulator) {
     const auto& state = simulator.vehicle();
-    const auto motion = quadrotor.evaluate(state.body, state.rotors, state.time_s).motion;
+    const auto motion = quadrotor.evaluate(state).motion;
     Commands<double> u{};
     REQUIRE(inverse_commands(plain, state.body, motion, state.time_s, u) == Status::ok);
     const double distance = pinnquad::test::distance(u, state.rotors);

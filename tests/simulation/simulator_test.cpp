@@ -5,9 +5,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "pinnquad/aero/air_density.hpp"
@@ -313,4 +315,31 @@ TEST_CASE("a recorder of columns: the same rows, a value per row and column; one
   }
   CHECK(simulator.status() == Status::output_not_finite);
   CHECK(simulator.time_s() == doctest::Approx(2.0));
+}
+
+TEST_CASE("a flight on a battery has its voltage as a column; one whose battery is off is the flight without one") {
+  FlightPlan plan;
+  plan.samples = 200;
+  const Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
+  const auto flown = [&](const std::optional<Battery>& battery) {
+    return fly(flight_vehicle<AgileFlight>(airframe, GroundEffectModel::none, battery), pilot(3), plan);
+  };
+  const RecordedFlight without = flown({}), named = fly(vehicle(), pilot(3), plan);
+  CHECK(content_hash(without.flight) == content_hash(named.flight));
+  CHECK(without.flight.columns().empty());
+  CHECK(without.report.last.charge_used_C == 0);
+
+  const RecordedFlight on_battery = flown(Battery{4, 1.0, 0.6});
+  REQUIRE(on_battery.report.end == FlightEnd::completed);
+  REQUIRE(on_battery.flight.columns().size() == 1);
+  const ExtraColumn& voltage = on_battery.flight.columns().front();
+  CHECK(voltage.name == "battery_voltage");
+  CHECK(voltage.unit == "V");
+  double most = 0, least = 100;
+  for (const double volts : voltage.values) most = std::max(most, volts), least = std::min(least, volts);
+  CHECK(most < 4 * Battery::cell_at_rest_V(0.6));
+  CHECK(least > 0.7 * 4 * Battery::full_cell_V);
+  CHECK(least < most - 0.1);
+  const double used_Ah = on_battery.report.last.charge_used_C / 3600;
+  CHECK(used_Ah == doctest::Approx(10 * 11.0 / 3600).epsilon(0.5));  // ten seconds of some 11 A
 }

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "pinnquad/aero/air_density.hpp"
-#include "pinnquad/aero/battery_sag.hpp"
+#include "pinnquad/aero/battery.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/core/random.hpp"
@@ -180,10 +180,12 @@ TEST_CASE("a wind of 4 m/s and a battery at 88 % are found on a figure-eight, no
       found_on_eight(Windy(airframe(), paper_site<double>(), {}, ConstantWind{{wind[0], wind[1], wind[2]}}, {}), 1);
   CHECK((windy.wind_m_s - wind).head<2>().norm() <= 1.0);
   CHECK(std::abs(windy.thrust_scale - 1) <= 0.02);
-  using Empty = Quadrotor<double, StandardAtmosphere, BatterySag, QuadraticDrag>;
-  const double volts = 12.6 * std::sqrt(0.88);
-  const WindAndThrust<double> empty =
-      found_on_eight(Empty(airframe(), paper_site<double>(), {}, BatterySag{12.6, volts, 1e-3}, {}), 2);
+  using Empty = Quadrotor<double, StandardAtmosphere, Battery, QuadraticDrag>;
+  Battery weak;
+  weak.cell_resistance_ohm_Ah = 0;
+  weak.capacity_Ah = 1e6;
+  weak.rated_V = weak.cells * Battery::full_cell_V / std::sqrt(0.88);
+  const WindAndThrust<double> empty = found_on_eight(Empty(airframe(), paper_site<double>(), {}, weak, {}), 2);
   CHECK(empty.thrust_scale == doctest::Approx(0.88).epsilon(0.01));
   CHECK(empty.wind_m_s.norm() <= 1.0);
 }

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "pinnquad/aero/air_density.hpp"
-#include "pinnquad/aero/battery_sag.hpp"
+#include "pinnquad/aero/battery.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/flapping.hpp"
 #include "pinnquad/aero/ground_contact.hpp"
@@ -269,12 +269,12 @@ TEST_CASE_TEMPLATE("rotor drag tilts what ground effect sees: the two together s
 
 TEST_CASE_TEMPLATE("commands -> motion -> commands: rotors that feel the air and each other, a weak one, legs, a load",
                    Scalar, float, double) {
-  using Vehicle = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::BatterySag, pinnquad::QuadraticDrag,
+  using Vehicle = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::Battery, pinnquad::QuadraticDrag,
                             pinnquad::RotorDrag, pinnquad::Inflow, pinnquad::BladeFlapping, pinnquad::Wake,
                             pinnquad::RotorFault, pinnquad::GroundContact, pinnquad::Payload>;
   RandomStates random(109);
-  const Vehicle vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), {}, {}, {}, {}, {},
-                        {}, {}, {3, 0.8, 0.0}, {}, {0.3, 0.0});
+  const Vehicle vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), {},
+                        pinnquad::Battery{4, 5.0, 0.3}, {}, {}, {}, {}, {}, {3, 0.8, 0.0}, {}, {0.3, 0.0});
   REQUIRE(vehicle.status() == Status::ok);
   for (int draw = 0; draw < draws; ++draw) {
     State<Scalar> state = random.state<Scalar>();

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "pinnquad/aero/air_density.hpp"
-#include "pinnquad/aero/battery_sag.hpp"
+#include "pinnquad/aero/battery.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/dryden.hpp"
 #include "pinnquad/aero/flapping.hpp"
@@ -143,8 +143,8 @@ TEST_CASE_TEMPLATE("each lane of a step has the bits of the vehicle alone: air, 
 TEST_CASE_TEMPLATE("each lane of a step has the bits of the vehicle alone: all other effects", Wide, OneRegister,
                    Floats) {
   std::mt19937_64 engine(3);
-  check_lanes<Wide>(DrydenTurbulence<>(engine, DrydenParameters::low_altitude(2.0, 30.0), 3.0),
-                    BatterySag{12.6, 10.5, 8.0}, LinearDamping{}, RotorDrag{}, Inflow{}, BladeFlapping{}, Wake{},
+  check_lanes<Wide>(DrydenTurbulence<>(engine, DrydenParameters::low_altitude(2.0, 30.0), 3.0), Battery{4, 0.01, 0.9},
+                    LinearDamping{}, RotorDrag{}, Inflow{}, BladeFlapping{}, Wake{},
                     RotorGroundEffect<CheesemanBennett>{}, GroundEffect<CheesemanBennett>{}, RotorFault{1, 0.7, 5.0},
                     GroundContact{}, Payload{0.3, 4.0});
 }

@@ -63,21 +63,21 @@ class InputHistory<programs::FlightFeatures, Scalar, MostSamples, void> {
 
 namespace programs {
 
-/// Measured beside the motion: the height above the ground, exactly; columns that stand still.
+/// Measured beside the motion: the height above the ground, exactly; the columns as they stand where they were given.
 template <class Scalar>
-struct HeldColumns {
+struct MeasuredColumns {
   double ground_z_m = 0;  ///< NED
-  std::array<Scalar, std::size_t(pinnquad::RunTimeFeatures::most_columns)> columns{};
+  const std::vector<double>* columns = nullptr;
 
   void operator()(const pinnquad::State<double>& state, std::uint64_t /*time_us*/,
                   pinnquad::RunTimeInputs<Scalar>& present) const noexcept {
     present.altitude_m = static_cast<Scalar>(ground_z_m - state.position_m[2]);
-    present.columns = columns;
+    for (std::size_t i = 0; i < columns->size(); ++i) present.columns[i] = static_cast<Scalar>((*columns)[i]);
   }
 };
 
 /// Calls `fly` with the feed-forward of a model, which must stay where it is. `columns`: the value of each that it asks
-/// for, in their order. A window that looks ahead is never complete.
+/// for, in their order; read at each tick, where they stand. A window that looks ahead is never complete.
 template <class Guard, class Fly>
 decltype(auto) with_feed_forward(const pinnquad::BlockModel& model, const Guard& guard, double ground_z_m,
                                  const std::vector<double>& columns, const Fly& fly) {
@@ -85,11 +85,9 @@ decltype(auto) with_feed_forward(const pinnquad::BlockModel& model, const Guard&
     using Scalar = std::decay_t<decltype(*own.parameters())>;
     using Inverse = pinnquad::InverseDynamics<RunTimeView<FlightFeatures, Scalar>, Guard>;
     using History = pinnquad::InputHistory<FlightFeatures, Scalar>;
-    HeldColumns<Scalar> held;
-    held.ground_z_m = ground_z_m;
-    for (std::size_t i = 0; i < columns.size(); ++i) held.columns[i] = static_cast<Scalar>(columns[i]);
     const Inverse inverse(RunTimeView<FlightFeatures, Scalar>(own), guard);
-    return fly(pinnquad::NetworkInverse<Inverse, HeldColumns<Scalar>>(inverse, held, History(own.features())));
+    return fly(pinnquad::NetworkInverse<Inverse, MeasuredColumns<Scalar>>(inverse, {ground_z_m, &columns},
+                                                                          History(own.features())));
   });
 }
 

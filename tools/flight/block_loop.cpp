@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "flight/battery_choice.hpp"
 #include "flight/block_feed_forward.hpp"
 #include "flight/loop_trajectories.hpp"
 #include "pinnquad/aero/air_density.hpp"
@@ -63,15 +64,19 @@ ModelRange range_of(const BlockModel& model) {
 
 LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   const bool near_ground = model.features().asks_for_altitude();
-  const SwitchedQuadrotor vehicle = flight_vehicle<AgileFlight>(
-      plan.airframe, near_ground ? NearGroundFlight::ground_effect_of(plan.airframe) : GroundEffectModel::none);
+  const GroundEffectModel ground_effect =
+      near_ground ? NearGroundFlight::ground_effect_of(plan.airframe) : GroundEffectModel::none;
+  const SwitchedQuadrotor vehicle = flight_vehicle<AgileFlight>(plan.airframe, ground_effect);
+  const SwitchedQuadrotor flown = flight_vehicle<AgileFlight>(plan.airframe, ground_effect, plan.battery);
+  std::vector<double> columns = plan.columns;
+  BatteryWorld<SwitchedQuadrotor> world{{flown}, plan.battery ? voltage_among(model, columns) : nullptr};
   const double ground_z_m = vehicle.site().ground_z_m;
   LoopFlights flights;
   flights.near_ground = near_ground;
   const ModelRange range = plan.keeps_envelope ? range_of(model) : range_of(model).of_altitude();
   const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, range, flights);
   Commands<double> trim{};
-  Status status = vehicle.status();
+  Status status = flown.status();
   if (status == Status::ok) status = hover_trim(vehicle, trajectory.sample(0).position_m, trim);
   if (status != Status::ok) {
     throw std::invalid_argument(std::string("this airframe can't be flown ") +
@@ -80,14 +85,16 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   const FlightController<double> controller(
       {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
   const AnalyticInverse<SwitchedQuadrotor> analytic(vehicle);
-  const auto fly = [&](const auto& feed_forward) { return track(vehicle, trajectory, controller, feed_forward); };
-  using FallsBack = Fallback<AnalyticInverse<SwitchedQuadrotor>>;
-  const auto fly_model = [&](const auto& guard) {
-    return with_feed_forward(model, guard, ground_z_m, plan.columns, fly);
+  const auto fly = [&](const auto& feed_forward) {
+    return track(vehicle, world, trajectory, controller, feed_forward, TrackingPlan<double>{},
+                 [](const auto&...) noexcept {});
   };
+  using FallsBack = Fallback<AnalyticInverse<SwitchedQuadrotor>>;
+  const auto fly_model = [&](const auto& guard) { return with_feed_forward(model, guard, ground_z_m, columns, fly); };
   flights.model = plan.keeps_envelope ? fly_model(Extend<TrainingGuard, FallsBack>(analytic))
                                       : fly_model(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic));
-  flights.analytic_inverse = fly(analytic);
+  if (world.voltage_V != nullptr) flights.last_voltage_V = *world.voltage_V;
+  flights.analytic_inverse = track(vehicle, trajectory, controller, analytic);
   flights.without_jerk = track(vehicle, WithoutJerk{trajectory}, controller, analytic);
   return flights;
 }

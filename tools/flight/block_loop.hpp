@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "flight/model_range.hpp"
+#include "pinnquad/aero/battery.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 
@@ -20,12 +22,14 @@ struct LoopPlan {
   pinnquad::Airframe<double> airframe{};  ///< what flies, in calm air
   bool keeps_envelope = true;             ///< the model declines outside its training envelope, as TrainingGuard does
   std::vector<double> columns;            ///< of the model, in their order
+  std::optional<pinnquad::Battery> battery{};  ///< that the model flies on; the others have none
 };
 
 struct LoopFlights {
   double half_length_m = 0, period_s = 0;
   double lowest_m = 0, highest_m = 0;  ///< altitude of the trajectory
   bool near_ground = false;            ///< in ground effect: the model is shown the altitude
+  double last_voltage_V = 0;           ///< of a battery that the model reads
   pinnquad::TrackingResult<double> model, analytic_inverse, without_jerk;
 };
 

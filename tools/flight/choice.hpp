@@ -29,7 +29,8 @@ struct NamedFlight {
   /// The flight's own for an airframe.
   pinnquad::GroundEffectModel (*ground_effect_of)(const pinnquad::Airframe<double>& airframe);
   pinnquad::SwitchedQuadrotor (*vehicle)(const pinnquad::Airframe<double>& airframe,
-                                         pinnquad::GroundEffectModel ground_effect);
+                                         pinnquad::GroundEffectModel ground_effect,
+                                         const std::optional<pinnquad::Battery>& battery);
   AnyPilot (*pilot)(const pinnquad::SwitchedQuadrotor& vehicle, std::uint64_t seed,
                     std::optional<double> max_speed_m_s);
 };

@@ -19,6 +19,7 @@
 #include "command_line/interrupt.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
+#include "flight/battery_choice.hpp"
 #include "flight/choice.hpp"
 #include "flight/pictures.hpp"
 #include "flight/statistics.hpp"
@@ -50,6 +51,7 @@ struct FlyOptions {
   std::size_t statistics = 0;
   std::string pictures;
   std::string watch;
+  programs::BatteryOptions battery;
   bool list_airframes = false;
 };
 
@@ -88,8 +90,9 @@ class ChosenFlight {
         flight_(flight),
         name_(airframe.name),
         ground_effect_(ground_effect),
-        vehicle_(flight.vehicle(airframe.value, ground_effect)),
-        without_(flight.vehicle(airframe.value, GroundEffectModel::none)),
+        battery_(programs::battery_of(options.battery)),
+        vehicle_(flight.vehicle(airframe.value, ground_effect, battery_)),
+        without_(flight.vehicle(airframe.value, GroundEffectModel::none, battery_)),
         airframe_(airframe.value),
         plan_(flight.plan) {
     if (options.interval_ms) {
@@ -245,6 +248,10 @@ class ChosenFlight {
     std::printf("altitude    %.*f to %.*f m above ground\n", report.max_altitude_m < 5 ? 2 : 1, report.min_altitude_m,
                 report.max_altitude_m < 5 ? 2 : 1, report.max_altitude_m);
     std::printf("saturation  a rotor at its limit in %.2f %% of the rows\n", 100 * report.saturated_share);
+    if (battery_) {
+      const std::vector<double>& volts = recorded.flight.columns().back().values;
+      std::printf("battery     %s, %.2f to %.2f V\n", options_.battery.pack.c_str(), volts.front(), volts.back());
+    }
     if (options_.ground_effect.empty() && ground_effect_ != flight_.ground_effect) {
       std::printf("note        the flight's own ground effect, %s, has no fit for a frame and propellers so large\n",
                   programs::name_of(flight_.ground_effect));
@@ -263,6 +270,7 @@ class ChosenFlight {
   const programs::NamedFlight& flight_;
   std::string name_;  ///< the airframe's
   GroundEffectModel ground_effect_;
+  std::optional<Battery> battery_;
   SwitchedQuadrotor vehicle_, without_;  ///< and the same without ground effect
   Airframe<double> airframe_;
   FlightPlan plan_;
@@ -310,7 +318,6 @@ void add_options(CLI::App& app, FlyOptions& options) {
       "Examples:\n"
       "  pinnquad fly d1 --seed 1 --out d1.csv\n"
       "  pinnquad fly d2 --ground-effect cheeseman-bennett --out d2.csv --pictures pictures\n"
-      "  pinnquad fly d3 --statistics 20\n"
       "Exit codes: 0; 1 the flight ended early; 2 bad input or a file that can't be read or written;\n"
       "130 interrupted: nothing was written.");
   app.add_option("flight", options.flight, flights)->type_name("d1|d2|d3|harder")->capture_default_str();
@@ -329,6 +336,7 @@ void add_options(CLI::App& app, FlyOptions& options) {
   app.add_option("--ground-effect", options.ground_effect,
                  "none, cheeseman-bennett or conyers (default: the flight's own)")
       ->type_name("MODEL");
+  programs::add_battery(app, options.battery);
   add_number(app, "--gyro-noise", options.gyro_noise_rad_s, 0.0, 10.0, "of the recording, standard deviation, rad/s");
   add_number(app, "--latency", options.latency_ms, 0.0, 1000.0, "of the recorded commands, ms");
   add_number(app, "--jitter", options.jitter_ms, 0.0, 1000.0, "and up to this much more, row by row, ms");

@@ -34,7 +34,7 @@ TraceRow trace_row(const Vehicle& vehicle, const Vehicle& without, const pinnqua
   using namespace pinnquad;
   const State<double>& body = state.body;
   const auto forces = [&](const Vehicle& quadrotor) {
-    const auto e = quadrotor.evaluate(body, state.rotors, state.time_s);
+    const auto e = quadrotor.evaluate(state);
     Surroundings<double> still = e.surroundings;
     still.wind_m_s = Vector3<double>::Zero();
     return detail::TraceForces{
@@ -47,7 +47,7 @@ TraceRow trace_row(const Vehicle& vehicle, const Vehicle& without, const pinnqua
   row.position_m = body.position_m;
   row.speed_m_s = body.velocity_m_s.norm();
   row.height_m = vehicle.site().ground_z_m - body.position_m[2];
-  row.wind_m_s = vehicle.surroundings(body, state.time_s).wind_m_s[0];
+  row.wind_m_s = vehicle.surroundings(state).wind_m_s[0];
   row.drag_N = out_of.still;
   row.wind_N = out_of.all - out_of.still;
   row.ground_effect_N = out_of.all[2] - with.all[2];

@@ -19,9 +19,6 @@
 #include "pinnquad/logs/read_log.hpp"
 
 namespace pinnquad::logs {
-namespace {
-
-/// The extra columns that all the files have.
 std::vector<ColumnName> shared_columns(const std::vector<std::string>& paths) {
   std::vector<ColumnName> shared = extra_columns_in(paths.front());
   for (const std::string& path : paths) {
@@ -35,6 +32,8 @@ std::vector<ColumnName> shared_columns(const std::vector<std::string>& paths) {
   }
   return shared;
 }
+
+namespace {
 
 /// Body rates and commands tell a flight from others, whatever its clock begins with.
 std::array<double, 3 + rotor_count> signature(const Sample& sample) {

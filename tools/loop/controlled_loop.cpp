@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flight/battery_choice.hpp"
 #include "flight/block_loop.hpp"
 #include "flight/loop_figures.hpp"
 #include "loop/world.hpp"
@@ -77,7 +78,7 @@ const LoopCondition& condition_of(const std::string& name) {
 }
 
 /// The vehicle of "harder", of which controllers know nothing.
-using HarderInLoop = Quadrotor<double, StandardAtmosphere, BatterySag, QuadraticDrag, RotorDrag, Inflow, BladeFlapping,
+using HarderInLoop = Quadrotor<double, StandardAtmosphere, Battery, QuadraticDrag, RotorDrag, Inflow, BladeFlapping,
                                Wake, RotorGroundEffect<CheesemanBennett>, GroundContact>;
 
 GroundEffectModel ground_effect_of(const LoopSetting& setting) {
@@ -103,6 +104,7 @@ ControlledLoop::ControlledLoop(const LoopSetting& setting)
       flown_(setting.harder ? switched_effects<HarderInLoop>() : switched_effects<AgileFlight::Vehicle>()),
       range_(range_of(setting.model)) {
   if (!setting.harder) set_ground_effect(flown_, ground_effect_of(setting));
+  if (setting.battery) switch_effect(flown_, *setting.battery);
   const double ground_z_m = told_.site().ground_z_m;
   const auto eight = eight_for(setting.airframe, ground_z_m, range_);
   at_once_["eight"] = required(any(eight));
@@ -139,7 +141,9 @@ nlohmann::json ControlledLoop::fly(const LoopFlight& flight, const LoopGains& ga
   const double half_s = 0.5 * how.duration_s;
   const double period_s = how.physics_step_s * how.steps_per_control;
   const Site<double> site = told_.site();
-  LoopWorld world(setting_.airframe, flown_, site, condition, setting_.sensors, period_s, half_s, seed);
+  std::vector<double> columns = setting_.columns;
+  LoopWorld world(setting_.airframe, flown_, site, condition, setting_.sensors, period_s, half_s, seed,
+                  setting_.battery ? voltage_among(setting_.model, columns) : nullptr);
   const FlightGains<double> feedback = flight_gains(gains);
   FlightLimits<double> limits =
       flight_limits(setting_.airframe, told_.rotor_scale(told_.surroundings({}, 0)), feedback);
@@ -152,7 +156,7 @@ nlohmann::json ControlledLoop::fly(const LoopFlight& flight, const LoopGains& ga
   const double speed_m_s =
       std::min({limits.max_horizontal_speed_m_s, range_.speed_m_s(0).value_or(limits.max_horizontal_speed_m_s),
                 range_.speed_m_s(1).value_or(limits.max_horizontal_speed_m_s)});
-  const LoopKnowledge known{setting_.model, setting_.columns, told_, bias, setting_.sensors.delay_s, &path, speed_m_s};
+  const LoopKnowledge known{setting_.model, columns, told_, bias, setting_.sensors.delay_s, &path, speed_m_s};
   const AnyPolicy policy = make(flight.controller, known, gains);
   Errors errors;
   errors.period_s = period_s;

@@ -21,8 +21,9 @@ namespace programs {
 /// A model, the airframe that it flies, and for how long.
 struct LoopSetting {
   const pinnquad::BlockModel& model;
-  std::vector<double> columns;            ///< of the model, in their order
-  pinnquad::Airframe<double> airframe{};  ///< that the controllers are told
+  std::vector<double> columns;                 ///< of the model, in their order
+  pinnquad::Airframe<double> airframe{};       ///< that the controllers are told
+  std::optional<pinnquad::Battery> battery{};  ///< of the vehicle; its voltage is all that a model knows of it
   /// The vehicle has the effects of simulation/harder_quadrotor.hpp, of which the controllers know the drag alone.
   bool harder = false;
   LoopSensors sensors{};

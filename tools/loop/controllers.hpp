@@ -43,7 +43,7 @@ pinnquad::FlightGains<double> flight_gains(const LoopGains& factors);
 /// All that the controllers are told.
 struct LoopKnowledge {
   const pinnquad::BlockModel& model;
-  const std::vector<double>& columns;  ///< of the model, in their order
+  const std::vector<double>& columns;  ///< of the model, in their order, as they stand at each tick
   const pinnquad::SwitchedQuadrotor& vehicle;
   pinnquad::BiasSettings<double> bias{};
   double delay_s = 0;                   ///< by which states come late

@@ -64,6 +64,7 @@ nlohmann::json report_of(const LoopOptions& options, const BlockModel& model, co
                            {"analytic_inverse", programs::loop_figures(flights.analytic_inverse)},
                            {"without_jerk", programs::loop_figures(flights.without_jerk)}};
   for (std::size_t i = 0; i < columns.size(); ++i) report["columns"][model.columns()[i].name] = columns[i];
+  if (flights.last_voltage_V > 0) report["columns"][BatteryVoltage::name] = flights.last_voltage_V;
   report["model"]["asked"] = flights.model.fallback.asked;
   report["model"]["answered_share"] = programs::answered_share(flights.model.fallback);
   report["model"]["declined"] = declined(flights.model.fallback);
@@ -85,7 +86,13 @@ void print_table(const LoopOptions& options, const BlockModel& model, const std:
   std::printf("model       %s, for %s\n", printable(model.path()).c_str(), model.airframe_name().c_str());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const ColumnName column = model.columns()[i];
+    if (flights.last_voltage_V > 0 && column.name == BatteryVoltage::name) continue;
     std::printf("column      %s %g %s\n", printable(column.name).c_str(), columns[i], printable(column.unit).c_str());
+  }
+  if (!options.battery.pack.empty()) {
+    std::printf("battery     %s, %g %% at the start", options.battery.pack.c_str(), options.battery.charge_percent);
+    if (flights.last_voltage_V > 0) std::printf(", %.2f V at the end", flights.last_voltage_V);
+    std::printf("\n");
   }
   std::printf("trajectory  %s, period %.1f s, %.2f to %.2f m above the ground%s, flown by %s for %.0f s\n",
               options.trajectory.c_str(), flights.period_s, flights.lowest_m, flights.highest_m,
@@ -129,7 +136,7 @@ void print_errors(const LoopOptions& options, const std::vector<std::string>& co
 
 /// Controllers side by side, each under each condition.
 int fly_controllers(const LoopOptions& options, const programs::LoopModel& given) {
-  const programs::LoopSetting setting{given.model, given.columns, given.airframe.value};
+  const programs::LoopSetting setting{given.model, given.columns, given.airframe.value, given.battery};
   const programs::ControlledLoop loop(setting);
   const auto conditions = programs::names_or(options.conditions, {"calm"});
   std::vector<programs::LoopFlight> flights;
@@ -168,8 +175,8 @@ int loop(const LoopOptions& options) {
   const programs::LoopModel given = programs::read_loop_model(options);
   const BlockModel& model = given.model;
   if (!options.controllers.empty() || !options.conditions.empty()) return fly_controllers(options, given);
-  const programs::LoopFlights flights =
-      programs::fly_loop(model, {options.trajectory, given.airframe.value, options.guard == "envelope", given.columns});
+  const programs::LoopFlights flights = programs::fly_loop(
+      model, {options.trajectory, given.airframe.value, options.guard == "envelope", given.columns, given.battery});
   programs::stop_if_interrupted();
   const nlohmann::json report = report_of(options, model, given.airframe.name, given.columns, flights);
   if (options.json) {
@@ -216,9 +223,8 @@ Command loop_command(CLI::App& program) {
   line->footer(
       described("Controllers:", loop_controllers) +
       "Examples:\n"
-      "  pinnquad loop trained.block --trajectory circle --column battery_voltage=15.2\n"
+      "  pinnquad loop trained.block --battery 3x2200 --battery-charge 40\n"
       "  pinnquad loop trained.block --controllers adaptive,indi --conditions calm,payload\n"
-      "The feedback is the same for all that fly. A model that is shown the altitude flies near the ground.\n"
       "Exit codes: 0; 1 the model loses the vehicle, or answers nothing; 2 bad input or a file that can't be read; "
       "130\n"
       "interrupted.");

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "airframe/choice.hpp"
 #include "command_line/held_columns.hpp"
+#include "flight/battery_choice.hpp"
 #include "flight/block_loop.hpp"
 #include "model/given_model.hpp"
 
@@ -18,22 +20,24 @@ struct LoopModelOptions {
   std::string model;
   std::string airframe;
   std::vector<std::string> columns;
+  BatteryOptions battery;
 };
 
 struct LoopModel {
   pinnquad::BlockModel model;
   std::vector<double> columns{};  ///< in the model's order
+  std::optional<pinnquad::Battery> battery{};
   NamedAirframe airframe{};
 };
 
 inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
   add_model(line, options.model);
-  line.add_option("--column", options.columns,
-                  "a column that the model asks for is held at this, not at the middle of its training envelope")
+  line.add_option("--column", options.columns, "hold a column of the model here, not at the middle of its envelope")
       ->type_name("NAME=VALUE");
   line.add_option("--airframe", options.airframe,
                   "what flies in place of the model's own airframe, its motors as there: see airframe list")
       ->type_name("NAME|FILE.toml");
+  add_battery(line, options.battery);
 }
 
 /// Throws InputError and std::invalid_argument, one line, for what can't fly.
@@ -44,6 +48,17 @@ inline LoopModel read_loop_model(const LoopModelOptions& options) {
     throw std::invalid_argument(model.path() + ": its window looks ahead of the present, which no loop can");
   }
   result.columns = held_columns(range_of(model).columns(), options.columns);
+  result.battery = battery_of(options.battery);
+  const std::string held = std::string(pinnquad::BatteryVoltage::name) + "=";
+  const bool is_held = std::any_of(options.columns.begin(), options.columns.end(),
+                                   [&held](const std::string& column) { return column.rfind(held, 0) == 0; });
+  if (is_held && result.battery)
+    throw std::invalid_argument("--column " + held + ": the vehicle's --battery has a voltage");
+  if (!is_held && !result.battery && voltage_among(model, result.columns) != nullptr) {
+    throw std::invalid_argument(model.path() +
+                                ": asks for battery_voltage, which the vehicle does not have: give it one " +
+                                "(--battery 3x2200), or hold the column (--column battery_voltage=11.5)");
+  }
   if (options.airframe.empty()) {
     result.airframe = {model.airframe_name(), model.airframe()};
     return result;

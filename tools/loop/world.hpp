@@ -22,11 +22,11 @@ class LoopWorld {
   using Engine = std::mt19937_64;
 
  public:
-  /// `still`: the vehicle's effects but for the wind.
+  /// `still`: the vehicle's effects but for the wind. `voltage_V`: where a model reads the battery's, or null.
   LoopWorld(const pinnquad::Airframe<double>& told, const pinnquad::SwitchedEffects& still,
             const pinnquad::Site<double>& site, const LoopCondition& condition, const LoopSensors& sensors,
-            double control_period_s, double half_s, std::uint64_t seed)
-      : LoopWorld(Draw(told, still, condition, seed), site, condition, sensors, control_period_s, half_s) {}
+            double control_period_s, double half_s, std::uint64_t seed, double* voltage_V)
+      : LoopWorld(Draw(told, still, condition, seed), site, condition, sensors, control_period_s, half_s, voltage_V) {}
 
   pinnquad::Status step(pinnquad::VehicleState<double>& state, const Commands& commands, double step_s) noexcept {
     const bool changed = !at_half_ || state.time_s >= half_s_;
@@ -37,6 +37,7 @@ class LoopWorld {
   }
 
   pinnquad::State<double> sense(const pinnquad::VehicleState<double>& state) noexcept {
+    if (voltage_V_ != nullptr) *voltage_V_ = before_.surroundings(state).battery.voltage_V;
     pinnquad::State<double> seen = state.body;
     if (!late_.empty()) {
       seen = ticks_ < late_.size() ? (ticks_ == 0 ? state.body : late_.front()) : late_[ticks_ % late_.size()];
@@ -87,7 +88,7 @@ class LoopWorld {
   };
 
   LoopWorld(const Draw& draw, const pinnquad::Site<double>& site, const LoopCondition& condition,
-            const LoopSensors& sensors, double control_period_s, double half_s)
+            const LoopSensors& sensors, double control_period_s, double half_s, double* voltage_V)
       : before_(quadrotor_with(draw.effects, draw.told, site)),
         after_(quadrotor_with(draw.effects, draw.flown, site)),
         strength_(draw.strength),
@@ -95,6 +96,7 @@ class LoopWorld {
         half_s_(half_s),
         sensors_(sensors),
         engine_(draw.engine),
+        voltage_V_(voltage_V),
         late_(static_cast<std::size_t>(std::lround(sensors.delay_s / control_period_s))) {}
 
   pinnquad::SwitchedQuadrotor before_, after_;
@@ -103,6 +105,7 @@ class LoopWorld {
   double half_s_;
   LoopSensors sensors_;
   Engine engine_;
+  double* voltage_V_;
   std::vector<pinnquad::State<double>> late_;
   std::size_t ticks_ = 0;
 };

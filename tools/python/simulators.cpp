@@ -140,12 +140,15 @@ class PythonSimulator {
     d["altitude_m"] = running_.altitude_m();
     d["commands"] = array_of(running_.commands());
     d["rotor_commands"] = array_of(vehicle.rotors);
-    const auto loads = running_.quadrotor().evaluate(body, vehicle.rotors, vehicle.time_s);
+    const auto loads = running_.quadrotor().evaluate(vehicle);
     d["rotor_thrust_N"] = -loads.rotors.force_N[2];
     d["aerodynamic_force_N"] = array_of(loads.aerodynamic.force_N);
     d["wind_m_s"] = array_of(loads.surroundings.wind_m_s);
     d["air_density_kg_m3"] = loads.surroundings.air_density_kg_m3;
     d["thrust_scale"] = loads.surroundings.thrust_scale;
+    d["battery_voltage_V"] = loads.surroundings.battery.voltage_V;
+    d["battery_current_A"] = loads.surroundings.battery.current_A;
+    d["charge_used_C"] = vehicle.charge_used_C;
     return d;
   }
 
@@ -341,7 +344,11 @@ SwitchedEffects effects_of(py::handle given) {
     refuse_name("ground effect", ground_effect, ground_effects);
   }
   const LinearDamping damping{number("linear_drag_N_s_m", 0), number("rate_damping_N_m_s", 0)};
-  const double endurance_s = number("battery_endurance_s", 0);
+  Battery battery;
+  battery.cells = number("battery_cells", 0);
+  battery.capacity_Ah = number("battery_Ah", 0);
+  battery.start_charge = number("battery_charge", 0);
+  battery.cell_resistance_ohm_Ah = number("battery_resistance_ohm_Ah", 0);
   RotorFault fault;
   take(given, "fault_rotor", fault.rotor);
   fault.share = number("fault_share", 0);
@@ -362,8 +369,7 @@ SwitchedEffects effects_of(py::handle given) {
     switch_effect(effects, DrydenTurbulence<>(engine, DrydenParameters::low_altitude(turbulence_m_s, height_m),
                                               along_m_s, direction));
   }
-  switch_effect(effects, BatterySag{number("battery_full_V", 0), number("battery_empty_V", 0), endurance_s},
-                endurance_s > 0);
+  switch_effect(effects, battery, battery.cells > 0);
   switch_effect(effects, QuadraticDrag{}, is_on("drag"));
   switch_effect(effects, damping, damping.drag_N_s_m > 0 || damping.rate_damping_N_m_s > 0);
   switch_effect(effects, RotorDrag{}, is_on("rotor_drag"));
@@ -445,7 +451,8 @@ void bind_simulators(py::module_& module) {
           "euler_rad (roll, pitch, yaw), body_rates_rad_s, altitude_m above ground, commands (last told to the "
           "motors,\n"
           "not clipped), rotor_commands (behind the rotors' lag), rotor_thrust_N (along body -z), aerodynamic_force_N\n"
-          "(body), wind_m_s (NED), air_density_kg_m3, thrust_scale (of a sagging battery).")
+          "(body), wind_m_s (NED), air_density_kg_m3, thrust_scale (of a sagging battery),\n"
+          "battery_voltage_V, battery_current_A (0 without one), charge_used_C.")
       .def("hover_commands", &PythonSimulator::hover_commands,
            "The four commands of a hover at the present place and time, through all effects; not clipped.")
       .def("recording", &PythonSimulator::recording, "The rows so far, as a Flight of their own.")

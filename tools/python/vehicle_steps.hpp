@@ -11,7 +11,7 @@
 namespace python {
 
 /// Numbers of a vehicle's state, as they lie in a VehicleState<double>.
-inline constexpr std::size_t state_numbers = 18;
+inline constexpr std::size_t state_numbers = 19;
 
 /// Vehicles that are ready to be stepped in lanes: in groups, each with airframes of its own, or one airframe for all.
 class VehicleSteps {

@@ -21,17 +21,18 @@ using namespace pinnquad;
 using OneState = VehicleState<double>;
 
 static_assert(sizeof(OneState) == state_numbers * sizeof(double),
-              "pinnquad: vehicles are shown to Python as rows of 18 numbers");
+              "pinnquad: vehicles are shown to Python as rows of 19 numbers");
 
 /// Parts of a state.
-constexpr std::array<RowPart, 7> parts = {
-    {{"state", 0, state_numbers, "All numbers, vehicles x 18: those below in this order. To be written to, too."},
+constexpr std::array<RowPart, 8> parts = {
+    {{"state", 0, state_numbers, "All numbers, vehicles x 19: those below in this order. To be written to, too."},
      {"position_m", 0, 3, "NED, m; the ground is at z = 0.877 m."},
      {"velocity_m_s", 3, 3, "NED, m/s."},
      {"attitude", 6, 4, "Unit quaternions w, x, y, z, body to world."},
      {"body_rates_rad_s", 10, 3, "p, q, r, FRD, rad/s."},
      {"rotor_commands", 13, 4, "Commands at which the present thrusts would be settled, behind the lag."},
-     {"time_s", 17, 1, "Of each vehicle, s: for gusts, battery, faults."}}};
+     {"time_s", 17, 1, "Of each vehicle, s: for gusts and faults."},
+     {"charge_used_C", 18, 1, "Of each vehicle's battery, since the start."}}};
 
 /// An airframe for all, or one for each of `count`.
 std::vector<NamedAirframe> airframes_of(const py::object& given, std::size_t count) {
@@ -165,7 +166,7 @@ class Vehicles {
   static std::unique_ptr<Vehicles> of_pickle(const py::tuple& pickle) {
     const auto state = pickle[3].cast<py::array_t<double, py::array::c_style>>();
     if (state.ndim() != 2 || static_cast<std::size_t>(state.shape(1)) != state_numbers) {
-      throw py::value_error("pickled vehicles have 18 numbers each");
+      throw py::value_error("pickled vehicles have 19 numbers each");
     }
     const auto count = static_cast<std::size_t>(state.shape(0));
     auto vehicles = std::make_unique<Vehicles>(count, airframes_of(pickle[0], count), pickle[1].cast<py::object>(),

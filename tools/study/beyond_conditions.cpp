@@ -179,7 +179,7 @@ Flight fly_for_beyond(const programs::StudyFlight& id) {
   if (ends_with(id.name, "_payload", base)) airframe = with_payload();
   if (base == id.name) return flown(id);
   const programs::NamedFlight& flight = programs::flight_named(base);
-  const auto vehicle = flight.vehicle(airframe, flight.ground_effect);
+  const auto vehicle = flight.vehicle(airframe, flight.ground_effect, {});
   // the noise is drawn from a stream of its own: the flight is that of the same seed
   constexpr std::uint64_t noise_stream = 0x9e3779b97f4a7c15u;
   const pinnquad::NoisyRecorder<std::mt19937_64> recorder(std::mt19937_64(id.seed ^ noise_stream), errors);

@@ -16,7 +16,7 @@
 
 pinnquad::Flight study::flown(const programs::StudyFlight& id) {
   const programs::NamedFlight& flight = programs::flight_named(id.name);
-  const auto vehicle = flight.vehicle(pinnquad::airframe_value<Airframe, double>(), flight.ground_effect);
+  const auto vehicle = flight.vehicle(pinnquad::airframe_value<Airframe, double>(), flight.ground_effect, {});
   pinnquad::RecordedFlight recorded = pinnquad::fly(vehicle, flight.pilot(vehicle, id.seed, {}), flight.plan);
   if (recorded.report.end != pinnquad::FlightEnd::completed) {
     throw std::invalid_argument("flight " + id.name + " of seed " + std::to_string(id.seed) + " ended after " +
@@ -32,8 +32,8 @@ void study::draw_flights(const std::string& folder, std::uint64_t seed) {
   double done = 0;
   for (const programs::NamedFlight& flight : programs::flights()) {
     if (flight.name == std::string(HarderFlight::name)) continue;  // none of the paper's
-    const SwitchedQuadrotor vehicle = flight.vehicle(airframe, flight.ground_effect);
-    const SwitchedQuadrotor without = flight.vehicle(airframe, GroundEffectModel::none);
+    const SwitchedQuadrotor vehicle = flight.vehicle(airframe, flight.ground_effect, {});
+    const SwitchedQuadrotor without = flight.vehicle(airframe, GroundEffectModel::none, {});
     std::vector<programs::TraceRow> trace;
     const RecordedFlight recorded = fly(vehicle, flight.pilot(vehicle, seed, {}), flight.plan, [&](const auto& flies) {
       trace.push_back(programs::trace_row(vehicle, without, flies.vehicle()));

@@ -173,6 +173,10 @@ nlohmann::json plan_of(const LoopCampaign& plan) {
                            {"attitude_rad", sensors.attitude_rad},
                            {"body_rates_rad_s", sensors.body_rates_rad_s}}},
                          {"delay_s", sensors.delay_s}};
+  if (setting.battery) {
+    const Battery& battery = *setting.battery;
+    said["battery"] = {battery.cells, battery.capacity_Ah, battery.start_charge};
+  }
   if (plan.wrench != nullptr) said["wrench"] = hexadecimal(plan.wrench->contents_hash());
   return said;
 }

@@ -56,7 +56,7 @@ int loop(const LoopOptions& options) {
   }
   if (options.out.empty()) throw std::invalid_argument("--out: the folder of the comparison is missing");
   using programs::names_or;
-  LoopCampaign plan{{given.model, given.columns, given.airframe.value}, given.airframe.name};
+  LoopCampaign plan{{given.model, given.columns, given.airframe.value, given.battery}, given.airframe.name};
   plan.controllers = names_or(options.controllers, {"pid", "formula", "indi", "structured", "adaptive"});
   plan.conditions = names_or(options.conditions, {"calm", "wind_8", "gusts", "payload", "weak_rotor", "battery"});
   plan.trajectories = names_or(options.trajectories, {});

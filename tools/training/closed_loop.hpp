@@ -17,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "airframe/choice.hpp"
+#include "flight/battery_choice.hpp"
 #include "flight/block_feed_forward.hpp"
 #include "flight/block_loop.hpp"
 #include "flight/loop_figures.hpp"
@@ -71,6 +72,9 @@ struct IdentifiedAir {
 
 using IdentifiedQuadrotor = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, IdentifiedAir>;
 
+/// The same on a battery.
+using IdentifiedOnBattery = pinnquad::Quadrotor<double, pinnquad::Battery, pinnquad::QuadraticDrag, IdentifiedAir>;
+
 /// As it was identified. Drag along an axis is linear and quadratic where the flights tell the linear part, else all
 /// quadratic, as the airframe has it.
 inline IdentifiedQuadrotor identified_quadrotor(const IdentifiedVehicle& vehicle) {
@@ -93,6 +97,42 @@ inline std::vector<double> usual_columns(const pinnquad::BlockModel& model, cons
     held.push_back(pinnquad::detail::median_of(flight.column(column.name)->values));
   }
   return held;
+}
+
+/// A battery as the flights tell it, for a model that asks for its voltage: so many cells that their median voltage is
+/// 3.8 V each, of ten minutes of hover, so charged that it hovers at that voltage. The airframe's thrust is as it says
+/// at the voltage at which the flights' thrust was that.
+inline std::optional<pinnquad::Battery> battery_of_flights(const pinnquad::BlockModel& model,
+                                                           const pinnquad::RowSet& training,
+                                                           const pinnquad::Airframe<double>& airframe) {
+  using namespace pinnquad;
+  std::vector<double> columns = usual_columns(model, training);
+  const double* const voltage_V = voltage_among(model, columns);
+  if (voltage_V == nullptr) return {};
+  const Rotors<double> rotors(airframe);
+  std::vector<double> rated_V;  // of a row, by the share of the thrust that it has at its voltage
+  for (const FlightRows& piece : training.pieces()) {
+    const std::vector<double>& volts = piece.flight->column(BatteryVoltage::name)->values;
+    for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
+      const Sample& sample = (*piece.flight)[row];
+      const Vector3<double> force = SpecificForce::of(sample_inputs<MotionInputs<double>>(sample));
+      const double commanded_N = -rotors.wrench(sample.commands, 1).force_N[2];
+      const double share = -airframe.mass_kg * force[2] / commanded_N;
+      if (share > 0.5 && share < 2) rated_V.push_back(volts[row] / std::sqrt(share));
+    }
+  }
+  Battery battery;
+  battery.cells = std::max(1.0, std::round(*voltage_V / 3.8));
+  if (!rated_V.empty()) battery.rated_V = pinnquad::detail::median_of(std::move(rated_V));
+  const double hover_A = battery.bound(airframe).full_current_A * std::pow(airframe.thrust_to_weight(), -1.5);
+  battery.capacity_Ah = std::max(hover_A / 6, 0.01);
+  const double rest_V = *voltage_V / battery.cells + hover_A * battery.cell_resistance_ohm_Ah / battery.capacity_Ah;
+  double least = 0, most = 1;
+  for (int i = 0; i < 30; ++i) {
+    battery.start_charge = (least + most) / 2;
+    (Battery::cell_at_rest_V(battery.start_charge) < rest_V ? least : most) = battery.start_charge;
+  }
+  return battery;
 }
 
 /// Limits that flights have reached in all but their last hundredths; of body axes each its own. A range of motions
@@ -197,7 +237,8 @@ inline nlohmann::json fly_given(const pinnquad::BlockModel& model, const pinnqua
                                 const pinnquad::Airframe<double>& airframe) {
   try {
     const LoopFlights flown =
-        fly_loop(model, {loop_trajectories.front(), airframe, true, usual_columns(model, training)});
+        fly_loop(model, {loop_trajectories.front(), airframe, true, usual_columns(model, training),
+                         battery_of_flights(model, training, airframe)});
     nlohmann::json result = {{"trajectory", "figure-eight"},
                              {"half_length_m", flown.half_length_m},
                              {"period_s", flown.period_s},
@@ -246,10 +287,16 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
   }
   using Guard = pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::Fallback<Analytic>>;
   ComparedCommands compared;
-  const auto by_model =
-      with_feed_forward(model, Guard(analytic), 0, usual_columns(model, training), [&](const auto& feed_forward) {
-        return fly(ComparedPolicy{feed_forward, analytic, vehicle.airframe(), &compared});
-      });
+  std::vector<double> columns = usual_columns(model, training);
+  const auto battery = battery_of_flights(model, training, vehicle.airframe());
+  const auto by_model = with_feed_forward(model, Guard(analytic), 0, columns, [&](const auto& feed_forward) {
+    const ComparedPolicy policy{feed_forward, analytic, vehicle.airframe(), &compared};
+    if (!battery) return fly(policy);
+    const auto& effects = vehicle.effects();
+    const IdentifiedOnBattery flown(vehicle.airframe(), {}, *battery, std::get<0>(effects), std::get<1>(effects));
+    BatteryWorld<IdentifiedOnBattery> world{{flown}, voltage_among(model, columns)};
+    return pinnquad::track(vehicle, world, *eight, controller, policy, plan, [](const auto&...) noexcept {});
+  });
   result["model"] = loop_figures(by_model);
   result["against_formula"] = comparison_json(compared);
   result["model"]["answered_share"] = answered_share(by_model.fallback);

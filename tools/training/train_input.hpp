@@ -141,7 +141,8 @@ inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options,
   const auto on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
   if (!options.flights.empty()) {
     pinnquad::logs::ImportedDataset dataset;
-    dataset.flights = pinnquad::logs::read_flights(options.flights, fewest_flight_rows, {}, on_progress);
+    dataset.flights = pinnquad::logs::read_flights(options.flights, fewest_flight_rows,
+                                                   pinnquad::logs::shared_columns(options.flights), on_progress);
     dataset.sources = options.flights;
     dataset.sample_period_s = pinnquad::sample_period_s(pinnquad::all_rows(dataset.flights.flights()));
     remove_latency(dataset, airframe, options.lag_s);

@@ -10,7 +10,8 @@
 // which is its wrench as if the condition lay on that branch.
 // Optional:
 //   static constexpr VariesWith varies_with    less than place_and_time lets an inverse go without them
-//   auto bound(const Airframe<Scalar>&)        the effect that a vehicle keeps in its place, of the airframe
+//   auto bound(const Airframe<Scalar>&)        the effect that a vehicle keeps in its place, of the airframe: it alone
+//                                              may have the functions above
 //   Status status(const Airframe<Scalar>&)     whether its values make sense and its model holds for the airframe: a
 //                                              vehicle whose effect is not ok neither steps nor inverts. An
 //                                              Outcome<Scalar> where lanes (core/lanes.hpp) can differ in it
@@ -26,6 +27,7 @@
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/select.hpp"
 #include "pinnquad/core/status.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/dynamics/state.hpp"
 
@@ -35,6 +37,15 @@ namespace pinnquad {
 /// rotor thrust scales.
 template <class Scalar>
 inline constexpr Scalar standard_air_density_kg_m3 = Scalar(101325.0 / (287.053 * 288.15));
+
+/// A battery of a vehicle: charge and load are given, a Battery (aero/battery.hpp) sets the rest.
+template <class Scalar>
+struct BatteryUse {
+  Scalar charge_used_C{0};         ///< since the start
+  ThrustFractions<Scalar> load{};  ///< of the rotors as they turn; at rest where they are not known
+  Scalar voltage_V{0};             ///< at its terminals; 0 without a battery
+  Scalar current_A{0};
+};
 
 /// The air around the vehicle, and the battery in it. Time, position and altitude are given; effects set the rest. An
 /// effect without an answer for a place or time sets `status`: a step or an inverse in this air is refused with it.
@@ -46,6 +57,7 @@ struct Surroundings {
   Vector3<Scalar> wind_m_s = Vector3<Scalar>::Zero();    ///< NED, the air's velocity over ground
   Scalar air_density_kg_m3{standard_air_density_kg_m3<Scalar>};
   Scalar thrust_scale{1};  ///< of all rotors, above 0: below 1 what a sagging battery leaves of thrust and torque
+  BatteryUse<Scalar> battery{};
   Outcome<Scalar> status{Status::ok};
 };
 
@@ -183,7 +195,8 @@ inline constexpr bool makes_wrench = is_detected<detail::WrenchCall, detail::Uns
 
 /// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Effect>
-inline constexpr bool is_effect = changes_surroundings<Effect> || makes_wrench<Effect>;
+inline constexpr bool is_effect = changes_surroundings<Effect> || makes_wrench<Effect> ||
+                                  is_detected<detail::BoundCall, detail::UnswitchedEffect<Effect>, double>;
 
 /// True for an effect with `wrench_on`.
 template <class Effect>

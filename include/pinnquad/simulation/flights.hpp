@@ -5,6 +5,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
@@ -185,11 +186,13 @@ typename PaperFlight::Vehicle flight_vehicle(const Airframe<double>& airframe) {
   return typename PaperFlight::Vehicle(airframe, paper_site<double>());
 }
 
-/// The same with a ground effect of one's choice, as one type for all flights.
+/// The same with a ground effect of one's choice, and a battery where one is given, as one type for all flights.
 template <class PaperFlight>
-SwitchedQuadrotor flight_vehicle(const Airframe<double>& airframe, GroundEffectModel model) {
+SwitchedQuadrotor flight_vehicle(const Airframe<double>& airframe, GroundEffectModel model,
+                                 const std::optional<Battery>& battery = {}) {
   SwitchedEffects effects = switched_effects<typename PaperFlight::Vehicle>();
   set_ground_effect(effects, model);
+  if (battery) switch_effect(effects, *battery);
   return quadrotor_with(effects, airframe, paper_site<double>());
 }
 

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "pinnquad/aero/air_density.hpp"
-#include "pinnquad/aero/battery_sag.hpp"
+#include "pinnquad/aero/battery.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/dryden.hpp"
 #include "pinnquad/aero/flapping.hpp"
@@ -24,16 +24,16 @@ namespace pinnquad {
 
 /// In the order of the contract: the air first, then forces, the payload last, as it scales those before it.
 using HarderQuadrotor =
-    Quadrotor<double, StandardAtmosphere, ConstantWind, DrydenTurbulence<>, BatterySag, QuadraticDrag, RotorDrag,
-              Inflow, BladeFlapping, Wake, RotorGroundEffect<CheesemanBennett>, RotorFault, GroundContact, Payload>;
+    Quadrotor<double, StandardAtmosphere, ConstantWind, DrydenTurbulence<>, Battery, QuadraticDrag, RotorDrag, Inflow,
+              BladeFlapping, Wake, RotorGroundEffect<CheesemanBennett>, RotorFault, GroundContact, Payload>;
 
-/// The conditions of one flight; by default a breeze with its gusts, a full battery that sags, nothing broken or picked
+/// The conditions of one flight; by default a breeze with its gusts, a full battery, nothing broken or picked
 /// up.
 struct HarderConditions {
   double wind_m_s{4};                         ///< mean, at the flight's height
   std::array<double, 2> direction{1.0, 0.0};  ///< where it blows to: NED, horizontal, unit length
   double gust_height_m{35};                   ///< above ground, for the gusts' length and strength: FlightPlan's start
-  BatterySag battery{};
+  Battery battery{};
   RotorFault fault{};
   Payload payload{};
 };

@@ -6,6 +6,7 @@
 //   template <class... Effects> Sample operator()(const Quadrotor<double, Effects...>&, const VehicleState<double>&,
 //                                                 const Commands<double>& commands);
 //     the row of the present instant; `commands` are those held up to it.
+// A vehicle's battery_voltage [V] is recorded beside it, of a vehicle that has a battery.
 // Optional: `Status status() const noexcept`, asked before the flight: whether its settings make sense;
 //   std::vector<ColumnName> columns() const, and for each row, behind it, a value per column:
 //   template <class... Effects>
@@ -66,7 +67,7 @@ struct ExactRecorder {
   Sample operator()(const Quadrotor<double, Effects...>& quadrotor, const VehicleState<double>& vehicle,
                     const Commands<double>& commands) const noexcept {
     const State<double>& body = vehicle.body;
-    const Accelerations<double> motion = quadrotor.evaluate(body, vehicle.rotors, vehicle.time_s).motion;
+    const Accelerations<double> motion = quadrotor.evaluate(vehicle).motion;
     const EulerAngles<double> euler = to_euler(body.attitude);
     Sample sample;
     sample.time_s = vehicle.time_s;

@@ -13,6 +13,7 @@
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
 #include "pinnquad/data/dataset.hpp"
+#include "pinnquad/features/extra_columns.hpp"
 #include "pinnquad/simulation/pilot.hpp"
 #include "pinnquad/simulation/recorder.hpp"
 
@@ -107,14 +108,17 @@ class Simulator {
   const VehicleState<double>& vehicle() const noexcept { return vehicle_; }
   double time_s() const noexcept { return vehicle_.time_s; }
   double altitude_m() const { return quadrotor_.site().ground_z_m - vehicle_.body.position_m[2]; }  ///< above ground
+  /// At the battery's terminals; 0 without one.
+  double battery_voltage_V() const noexcept { return quadrotor_.surroundings(vehicle_).battery.voltage_V; }
   /// The last motor commands, not clipped.
   const Commands<double>& commands() const noexcept { return commands_; }
   /// Motor commands for a hover at the present place and time in level attitude, not clipped; through the
   /// vehicle's effects. The inverse's Status (vehicle/inverse.hpp); `commands` is untouched unless it is ok.
   Status hover_commands(Commands<double>& commands) const {
-    State<double> hover;
-    hover.position_m = vehicle_.body.position_m;
-    return inverse_commands(quadrotor_, hover, Accelerations<double>{}, vehicle_.time_s, commands);
+    VehicleState<double> hover = vehicle_;
+    hover.body = {};
+    hover.body.position_m = vehicle_.body.position_m;
+    return inverse_commands(quadrotor_, hover, Accelerations<double>{}, commands);
   }
 
   const Vehicle& quadrotor() const noexcept { return quadrotor_; }
@@ -144,7 +148,7 @@ class Simulator {
     if (status == Status::ok) status = hover_trim(quadrotor_, settings_.start_m, hover);
     if (status != Status::ok) return status;
     vehicle_.rotors = commands_ = hover;
-    const double rotor_scale = quadrotor_.rotor_scale(quadrotor_.surroundings(vehicle_.body, 0.0));
+    const double rotor_scale = quadrotor_.rotor_scale(quadrotor_.surroundings(vehicle_));
     controller_ =
         FlightController<double>(settings_.gains, flight_limits(quadrotor_.airframe(), rotor_scale, settings_.gains),
                                  quadrotor_.site().gravity_m_s2);
@@ -169,7 +173,7 @@ class Simulator {
   Status ask_pilot() {
     Accelerations<double> demand;
     Status status = controller_(vehicle_.body, pilot_(vehicle_.body, vehicle_.time_s), demand);
-    if (status == Status::ok) status = inverse_commands(quadrotor_, vehicle_.body, demand, vehicle_.time_s, commands_);
+    if (status == Status::ok) status = inverse_commands(quadrotor_, vehicle_, demand, commands_);
     if (status == Status::ok) commands_ = desaturate(quadrotor_.rotors(), commands_);
     return status;
   }
@@ -194,6 +198,7 @@ class Simulator {
     }
     const Sample sample = recorder_(quadrotor_, vehicle_, commands_);
     if constexpr (detail::has_columns<Recorder>) recorder_.measure(quadrotor_, vehicle_, extra_.data());
+    if (has_battery_) extra_.back() = battery_voltage_V();
     if (!all_finite(to_values(sample)) || !all_finite(extra_)) {
       decline(Status::output_not_finite);
       return;
@@ -205,6 +210,8 @@ class Simulator {
     if constexpr (detail::has_columns<Recorder>) {
       for (const ColumnName& column : recorder_.columns()) recording_.add_column({column, {}});
     }
+    has_battery_ = battery_voltage_V() > 0;
+    if (has_battery_) recording_.add_column({{BatteryVoltage::name, BatteryVoltage::unit}, {}});
     extra_.resize(recording_.columns().size());
   }
 
@@ -223,6 +230,7 @@ class Simulator {
   Commands<double> commands_{};
   std::size_t ticks_{0};
   Flight recording_;
+  bool has_battery_ = false;   ///< when the recording began
   std::vector<double> extra_;  ///< of a row, before it is recorded
   FlightEnd end_{FlightEnd::completed};
   Status status_{Status::ok};

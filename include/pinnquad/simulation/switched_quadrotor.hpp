@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "pinnquad/aero/air_density.hpp"
-#include "pinnquad/aero/battery_sag.hpp"
+#include "pinnquad/aero/battery.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/dryden.hpp"
 #include "pinnquad/aero/flapping.hpp"
@@ -27,7 +27,7 @@ namespace pinnquad {
 /// before it.
 using SwitchedEffects =
     std::tuple<Switched<StandardAtmosphere, Usually::on>, Switched<ConstantWind>, Switched<PeriodicWind>,
-               Switched<DrydenTurbulence<>, Usually::off>, Switched<BatterySag, Usually::off>,
+               Switched<DrydenTurbulence<>, Usually::off>, Switched<Battery, Usually::off>,
                Switched<QuadraticDrag, Usually::on>, Switched<LinearDamping, Usually::off>,
                Switched<RotorDrag, Usually::off>, Switched<Inflow, Usually::off>, Switched<BladeFlapping, Usually::off>,
                Switched<Wake, Usually::off>, Switched<RotorGroundEffect<CheesemanBennett>, Usually::off>,

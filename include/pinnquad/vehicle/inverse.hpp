@@ -132,6 +132,27 @@ Status commands_for_wrench(const Quadrotor<Scalar, Effects...>& quadrotor, const
   return Status::ok;
 }
 
+namespace detail {
+template <class Scalar, class... Effects>
+Status inverse_commands(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
+                        const Accelerations<Scalar>& motion, const Surroundings<Scalar>& air,
+                        Commands<Scalar>& commands) noexcept {
+  if (quadrotor.status() != Status::ok) return quadrotor.status();
+  if (!(all_finite(state) && all_finite(motion.linear_m_s2) && all_finite(motion.angular_rad_s2) &&
+        is_finite(air.time_s))) {
+    return Status::not_finite;
+  }
+  if (!is_unit(state.attitude)) return Status::not_unit_quaternion;
+  const Wrench<Scalar> required = required_wrench(quadrotor.airframe(), state, motion, quadrotor.site().gravity_m_s2);
+  Commands<Scalar> result{};
+  const Status status = commands_for_wrench(quadrotor, state, air, required, result);
+  if (status != Status::ok) return status;
+  if (!all_finite(result)) return Status::output_not_finite;
+  commands = result;
+  return Status::ok;
+}
+}  // namespace detail
+
 /// Commands (not clipped) that make the motion in this state at this time.
 /// The wrench of Eq. (1) less the aerodynamic one, through the inverted Eq. (2); where an effect depends on the rotors
 /// (ground effect), both are solved together (commands_for_wrench()). The rotors can't make lateral force: what the
@@ -141,20 +162,14 @@ Status commands_for_wrench(const Quadrotor<Scalar, Effects...>& quadrotor, const
 template <class Scalar, class... Effects>
 Status inverse_commands(const Quadrotor<Scalar, Effects...>& quadrotor, const State<Scalar>& state,
                         const Accelerations<Scalar>& motion, Scalar time_s, Commands<Scalar>& commands) noexcept {
-  if (quadrotor.status() != Status::ok) return quadrotor.status();
-  if (!(all_finite(state) && all_finite(motion.linear_m_s2) && all_finite(motion.angular_rad_s2) &&
-        is_finite(time_s))) {
-    return Status::not_finite;
-  }
-  if (!is_unit(state.attitude)) return Status::not_unit_quaternion;
-  const Surroundings<Scalar> air = quadrotor.surroundings(state, time_s);
-  const Wrench<Scalar> required = required_wrench(quadrotor.airframe(), state, motion, quadrotor.site().gravity_m_s2);
-  Commands<Scalar> result{};
-  const Status status = commands_for_wrench(quadrotor, state, air, required, result);
-  if (status != Status::ok) return status;
-  if (!all_finite(result)) return Status::output_not_finite;
-  commands = result;
-  return Status::ok;
+  return detail::inverse_commands(quadrotor, state, motion, quadrotor.surroundings(state, time_s), commands);
+}
+
+/// The same in the state of a vehicle, at the voltage that its battery has under the rotors as they turn.
+template <class Scalar, class... Effects>
+Status inverse_commands(const Quadrotor<Scalar, Effects...>& quadrotor, const VehicleState<Scalar>& vehicle,
+                        const Accelerations<Scalar>& motion, Commands<Scalar>& commands) noexcept {
+  return detail::inverse_commands(quadrotor, vehicle.body, motion, quadrotor.surroundings(vehicle), commands);
 }
 
 }  // namespace pinnquad

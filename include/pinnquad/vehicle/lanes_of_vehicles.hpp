@@ -25,8 +25,9 @@ PINNQUAD_ALWAYS_INLINE void each_state_number(StateType& state, const Visit& vis
   for (int i = 0; i < 3; ++i) visit(state.body.body_rates_rad_s[i]);
   for (auto& command : state.rotors) visit(command);
   visit(state.time_s);
+  visit(state.charge_used_C);
 }
-inline constexpr std::size_t state_number_count = 18;
+inline constexpr std::size_t state_number_count = 19;
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 

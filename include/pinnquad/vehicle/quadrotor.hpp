@@ -15,16 +15,9 @@
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/vehicle/axes.hpp"
 #include "pinnquad/vehicle/site.hpp"
+#include "pinnquad/vehicle/vehicle_state.hpp"
 
 namespace pinnquad {
-
-/// Everything that step() advances.
-template <class Scalar>
-struct VehicleState {
-  State<Scalar> body{};
-  Commands<Scalar> rotors{};  ///< behind the lag: the commands at which the present thrusts would be settled
-  Wide<Scalar> time_s{0.0};   ///< double also for a float vehicle
-};
 
 /// Eqs. (1) and (2) with effects, in their order (aero/effect.hpp). World NED, body FRD, SI units.
 template <class Scalar, class... Effects>
@@ -101,17 +94,23 @@ class Quadrotor {
   bool has_rotor_effect() const noexcept { return rotor_effect_; }
   bool has_branched_effect() const noexcept { return branched_effect_; }
 
-  /// The air at a place and time: density, wind, thrust scale and status as the effects set them.
+  /// The air at a place and time, as the effects set it; of a battery at the start and at rest unless its use is given.
   template <bool usual = false>
-  PINNQUAD_ALWAYS_INLINE Surroundings<Scalar> surroundings(const State<Scalar>& state, Scalar time_s) const noexcept {
+  PINNQUAD_ALWAYS_INLINE Surroundings<Scalar> surroundings(const State<Scalar>& state, Scalar time_s,
+                                                           const BatteryUse<Scalar>& use = {}) const noexcept {
     Surroundings<Scalar> air;
     air.time_s = time_s;
     air.position_m = state.position_m;
     air.altitude_m = site_.elevation_m - state.position_m[2];
+    air.battery = use;
     each_effect<usual>([&air](const auto& effect) PINNQUAD_INLINE_LAMBDA {
       if constexpr (changes_surroundings<std::decay_t<decltype(effect)>>) effect.surroundings(air);
     });
     return air;
+  }
+  /// The same with the battery as the flight has left it, under the rotors as they turn.
+  Surroundings<Scalar> surroundings(const VehicleState<Scalar>& vehicle) const noexcept {
+    return surroundings(vehicle.body, Scalar(vehicle.time_s), detail::battery_use(vehicle, rotors_));
   }
 
   /// Body wrench of all effects at thrust fractions of the rotors (not clipped), in which an effect should be affine.
@@ -141,11 +140,14 @@ class Quadrotor {
 
   /// Wrenches and accelerations of settled rotors: `rotor_commands` are clipped to 0..1, without lag. Unchecked: valid
   /// where status() and the surroundings' status are ok.
-  Evaluation evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands,
-                      Scalar time_s) const noexcept {
-    Evaluation result = loads(state, rotors_.fractions(rotor_commands), time_s);
+  Evaluation evaluate(const State<Scalar>& state, const Commands<Scalar>& rotor_commands, Scalar time_s,
+                      const BatteryUse<Scalar>& use = {}) const noexcept {
+    Evaluation result = loads(state, rotors_.fractions(rotor_commands), time_s, use);
     result.motion = accelerations(airframe_, state, total(result), site_.gravity_m_s2);
     return result;
+  }
+  Evaluation evaluate(const VehicleState<Scalar>& vehicle) const noexcept {
+    return evaluate(vehicle.body, vehicle.rotors, Scalar(vehicle.time_s), detail::battery_use(vehicle, rotors_));
   }
 
   /// The length of a step, and what the rotors' lag leaves over half of it: worked out once where steps are alike.
@@ -165,11 +167,11 @@ class Quadrotor {
     return result;
   }
 
-  /// Advances by one RK4 step under commands held over the step; the rotor lag is integrated exactly. Errors: status();
-  /// `not_finite` for a bad input; `out_of_range` for a step backwards, more than half a turn of the body in one step,
-  /// a clock so late that the step doesn't move it, air that has no answer (Surroundings) or a battery that is less
-  /// than empty; `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is untouched unless the
-  /// Status is ok.
+  /// Advances by one RK4 step under commands held over the step. The rotor lag is integrated exactly; a battery gives
+  /// the current at the step's end, under the load at its start. Errors: status(); `not_finite` for a bad input;
+  /// `out_of_range` for a step backwards, more than half a turn of the body in one step, a clock so late that the step
+  /// doesn't move it, air that has no answer (Surroundings) or a battery that is less than empty;
+  /// `not_unit_quaternion`; `output_not_finite` for a diverged result. The state is untouched unless the Status is ok.
   Outcome<Scalar> step(VehicleState<Scalar>& state, const Commands<Scalar>& commands,
                        const TimeStep& step) const noexcept {
     const Outcome<Scalar> input = check_input(state, commands, step.step_s);
@@ -221,22 +223,26 @@ class Quadrotor {
     const ThrustFractions<Scalar> end = lagged(middle, wanted, half_factor);
     const ThrustFractions<Scalar> start = at_start(before, end, time_constant_s);
     Outcome<Scalar> status = input;
+    BatteryUse<Scalar> use{Scalar(state.charge_used_C), before};
     int calls = 0;
     const auto rate = [&](const State<Scalar>& body, Scalar offset_s) noexcept {
       const ThrustFractions<Scalar>& now = calls == 0 ? start : (calls < 3 ? middle : end);
       ++calls;
       const auto time_s = Scalar(state.time_s + Wide<Scalar>(offset_s));
-      if constexpr (is_switched) return asked_rate_of_change<plain, usual>(body, now, time_s, status);
-      return rate_of_change<plain, usual>(body, now, time_s, status);
+      if constexpr (is_switched) return asked_rate_of_change<plain, usual>(body, now, time_s, use, status);
+      return rate_of_change<plain, usual>(body, now, time_s, use, status);
     };
     const State<Scalar> next = detail::rk4_step(state.body, step_s, rate);
     status = detail::refused_where(!(all_finite(next) && is_unit(next.attitude)), Status::output_not_finite, status);
-    status = detail::refused_where(!can_follow(next, step_s), Status::out_of_range, status);
+    status = detail::refused_where(!detail::can_follow(next, step_s), Status::out_of_range, status);
     const Mask<Scalar> good = status == Status::ok;
     if (!any_of(good)) return status;
     state.body = select(good, next, state.body);
     state.rotors = select(good, rotors_.template commands_of<plain>(end), state.rotors);
-    state.time_s = select(Mask<Wide<Scalar>>(good), Wide<Scalar>(state.time_s + Wide<Scalar>(step_s)), state.time_s);
+    const Mask<Wide<Scalar>> done(good);
+    state.time_s = select(done, Wide<Scalar>(state.time_s + Wide<Scalar>(step_s)), state.time_s);
+    state.charge_used_C =
+        select(done, Wide<Scalar>(state.charge_used_C + Wide<Scalar>(use.current_A * step_s)), state.charge_used_C);
     return status;
   }
 
@@ -253,26 +259,19 @@ class Quadrotor {
     }
   }
 
-  /// Beyond half a turn in one step an attitude is no longer followed but guessed.
-  static PINNQUAD_ALWAYS_INLINE Mask<Scalar> can_follow(const State<Scalar>& body, Scalar step_s) noexcept {
-    constexpr Scalar half_turn_rad = Scalar(pi);
-    const Scalar x = body.body_rates_rad_s[0] * step_s, y = body.body_rates_rad_s[1] * step_s,
-                 z = body.body_rates_rad_s[2] * step_s;
-    return x * x + y * y + z * z <= half_turn_rad * half_turn_rad;
-  }
-
   /// Out of line: the integers of its bit tests would cost the step a tenth of its time.
   PINNQUAD_NOINLINE Outcome<Scalar> check_input(const VehicleState<Scalar>& state, const Commands<Scalar>& commands,
                                                 Scalar step_s) const noexcept {
     const Mask<Scalar> finite = all_finite(state.body) && all_finite(state.rotors) &&
-                                Mask<Scalar>(is_finite(state.time_s)) && all_finite(commands) && is_finite(step_s);
+                                Mask<Scalar>(is_finite(state.time_s)) && Mask<Scalar>(is_finite(state.charge_used_C)) &&
+                                all_finite(commands) && is_finite(step_s);
     constexpr Wide<Scalar> latest_s(1e12);  // beyond, no clock in seconds tells milliseconds apart
     const Wide<Scalar> start_s = state.time_s, end_s = start_s + Wide<Scalar>(step_s);
     const Mask<Scalar> clock_moves = Mask<Scalar>(end_s > start_s) || detail::equal(step_s, Scalar(0));
     const Mask<Scalar> in_time(start_s >= -latest_s && end_s <= latest_s);
     Outcome<Scalar> status = detail::refused_where(!finite, Status::not_finite, status_);
-    status = detail::refused_where(!(clock_moves && in_time && can_follow(state.body, step_s)), Status::out_of_range,
-                                   status);
+    status = detail::refused_where(!(clock_moves && in_time && detail::can_follow(state.body, step_s)),
+                                   Status::out_of_range, status);
     return detail::refused_where(!is_unit(state.body.attitude), Status::not_unit_quaternion, status);
   }
 
@@ -333,9 +332,9 @@ class Quadrotor {
   /// An evaluation up to the wrenches.
   template <bool plain = false, bool usual = false>
   PINNQUAD_ALWAYS_INLINE Evaluation loads(const State<Scalar>& state, const ThrustFractions<Scalar>& thrusts,
-                                          Scalar time_s) const noexcept {
+                                          Scalar time_s, const BatteryUse<Scalar>& use) const noexcept {
     Evaluation result;
-    result.surroundings = surroundings<usual>(state, time_s);
+    result.surroundings = surroundings<usual>(state, time_s, use);
     const ThrustFractions<Scalar> turning = clipped(thrusts);
     result.rotors = rotors_.template wrench_of<plain>(turning, rotor_scale(result.surroundings));
     result.aerodynamic = aerodynamic<plain, usual>(state, result.surroundings, turning);
@@ -347,9 +346,10 @@ class Quadrotor {
   template <bool plain, bool usual>
   PINNQUAD_ALWAYS_INLINE detail::StateDerivative<Scalar> rate_of_change(const State<Scalar>& state,
                                                                         const ThrustFractions<Scalar>& thrusts,
-                                                                        Scalar time_s,
+                                                                        Scalar time_s, BatteryUse<Scalar>& use,
                                                                         Outcome<Scalar>& status) const noexcept {
-    const Evaluation e = loads<plain, usual>(state, thrusts, time_s);
+    const Evaluation e = loads<plain, usual>(state, thrusts, time_s, use);
+    use.current_A = e.surroundings.battery.current_A;
     status = select(status == Status::ok, e.surroundings.status, status);
     // a battery can't reverse thrust
     status = detail::refused_where(!(e.surroundings.thrust_scale >= Scalar(0)), Status::out_of_range, status);
@@ -372,9 +372,9 @@ class Quadrotor {
   /// Out of line: a step would hold four copies of all effects, more than an instruction cache does.
   template <bool plain, bool usual>
   PINNQUAD_NOINLINE PINNQUAD_FLATTEN detail::StateDerivative<Scalar> asked_rate_of_change(
-      const State<Scalar>& state, const ThrustFractions<Scalar>& thrusts, Scalar time_s,
+      const State<Scalar>& state, const ThrustFractions<Scalar>& thrusts, Scalar time_s, BatteryUse<Scalar>& use,
       Outcome<Scalar>& status) const noexcept {
-    return rate_of_change<plain, usual>(state, thrusts, time_s, status);
+    return rate_of_change<plain, usual>(state, thrusts, time_s, use, status);
   }
 
   template <bool usual, class Function>

@@ -11,7 +11,7 @@ namespace {
 
 using namespace pinnquad;
 
-struct Battery {
+struct HeldVoltage {
   template <class Inputs>
   void operator()(const State<double>&, std::uint64_t, Inputs& present) const noexcept {
     present.template column<BatteryVoltage>() = Own::Scalar(15.2);
@@ -28,7 +28,7 @@ int main() {
       {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
   FigureEight<double> eight;  // as it is, the paper's quadrotor can fly it
   eight.center_m = {0, 0, -20};
-  const NetworkInverse<Inverse, Battery> policy(Inverse(AnalyticInverse<Vehicle>(vehicle)), Battery{});
+  const NetworkInverse<Inverse, HeldVoltage> policy(Inverse(AnalyticInverse<Vehicle>(vehicle)), HeldVoltage{});
   const auto flown = track(vehicle, eight, controller, policy);
   std::printf("%.9f %.9f %u %u\n", flown.rmse_m, flown.max_error_m, flown.fallback.asked - flown.fallback.fallbacks(),
               flown.fallback.asked);

@@ -26,9 +26,10 @@ class Effects:
     inflow: bool = False  #: thrust in climb, descent and sideways flight
     flapping: bool = False
     wake: bool = False
-    battery_endurance_s: float = 0.0  #: from full to empty, s
-    battery_full_V: float = 12.6
-    battery_empty_V: float = 10.5
+    battery_cells: int = 0  #: of a lithium pack in series, whose voltage a flight records as battery_voltage
+    battery_Ah: float = 2.2
+    battery_charge: float = 1.0  #: at the start: 1 full, 0 empty
+    battery_resistance_ohm_Ah: float = 0.02  #: of a cell, times its capacity
     fault_rotor: int = 0  #: 0 to 3: front right, rear left, front left, rear right
     fault_share: float = 1.0  #: of its thrust that this rotor gives
     fault_from_s: float = 0.0

@@ -80,6 +80,9 @@ std::string mapping_names();
 Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_rows,
                      const std::vector<ColumnName>& extra = {}, const OnProgress& on_progress = {});
 
+/// The extra columns that all of these CSV files have. Throws InputError.
+std::vector<ColumnName> shared_columns(const std::vector<std::string>& paths);
+
 /// Told apart by content: a dataset is a folder with a dataset.json, a flight is a CSV table with most of the columns
 /// of every flight, and the rest are logs. Throws InputError where nothing can be read.
 enum class SourceKind { flights, dataset, logs };
