@@ -2,7 +2,8 @@
 // The slopes of a monotone base (closed_form.hpp) with standard errors, and by smoothed rows where the noise of gyro
 // and accelerometer bends those of the rows. The base is linear in its features, so it is the same of means over a
 // window; the angular acceleration of a window is the difference of its rates, whose noise falls with the window's
-// length to the power of 1.5.
+// length to the power of 1.5, and the specific force along z that of its velocities, where they were
+// measured.
 #pragma once
 
 #include <algorithm>
@@ -14,6 +15,8 @@
 #include <vector>
 
 #include "pinnquad/core/body.hpp"
+#include "pinnquad/data/flight_features.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/regression/block_regression.hpp"
 #include "pinnquad/regression/smoothed_flights.hpp"
 #include "pinnquad/training/structured/closed_form.hpp"
@@ -33,7 +36,9 @@ struct MeasuredSlopes {
   SlopesOfSums of;
   std::vector<int> noisy;          ///< MonotoneShape::noisy, or a window's MonotoneShape::thrusts
   std::vector<Denoised> denoised;  ///< of the slopes by smoothed rows
-  bool smoothed() const { return !denoised.empty(); }
+  bool smoothed() const {
+    return std::any_of(of.begin(), of.end(), [](const MeasuredSlope& slope) { return slope.smoothed(); });
+  }
 };
 
 namespace detail {
@@ -54,9 +59,9 @@ void each_with_neighbours(const FitContext& context, const FlightRows& piece, co
 AffineMap by_neighbours(const MonotoneShape& shape, const std::vector<int>& noisy, const RegressionSums& all, int place,
                         std::vector<bool> told);
 
-/// Sums of standardised features and outputs in blocks of consecutive rows: fifty, of two seconds at least; a row of
-/// the last ones may be nowhere. Of means over `window_s`, weighted as in smoothed_flights.hpp, the present's angular
-/// acceleration from the body rates; 0: of the rows as they are.
+/// Sums of standardised features and outputs in blocks of consecutive rows: fifty, of two seconds at least; the last
+/// may be empty. Of means over `window_s`, weighted as in smoothed_flights.hpp, the present's accelerations of body
+/// rates and velocity; 0: of the rows as they are.
 std::vector<RegressionSums> row_blocks(const FitContext& context, const RowSet& rows, double window_s);
 
 /// A slope of least squares, in units of features and outputs: of all blocks, and without each in turn.

@@ -81,8 +81,8 @@ class StructuredFitter {
     return fit_residual(context_, kind_, training, split_.validation, map, settings_.residual, engine, goes_on);
   }
 
-  /// The base with its measured slopes. A sum that has them by smoothed rows has no residual: what a network is shown, it
-  /// would use to take them back.
+  /// The base with its measured slopes. A sum that has them by smoothed rows has no residual: what a network is shown,
+  /// it would use to take them back.
   std::vector<float> with_measured_slopes(std::vector<float> parameters) const {
     if (!slopes_.smoothed()) return parameters;
     const std::vector<float> base = base_parameters(context_.features.accelerations, measured_);

@@ -55,38 +55,56 @@ PINNQUAD_BODY AffineMap by_neighbours(const MonotoneShape& shape, const std::vec
   return fit_ridge(all.of_input(place), usual_penalties().front(), told);
 }
 
-/// Each tap of a bent slope as its neighbours tell it: those that have neighbour_lag_s off this tap.
-PINNQUAD_BODY void add_denoised(const FitContext& context, const MonotoneShape& shape, const RegressionSums& all,
-                                int output, MeasuredSlopes& slopes) {
+/// Each tap of the bent slopes as its neighbours tell it: those that have neighbour_lag_s off this tap.
+PINNQUAD_BODY void add_denoised(const FitContext& context, const MonotoneShape& shape, const RowSet& rows,
+                                MeasuredSlopes& slopes) {
+  const std::size_t count = slopes.noisy.size();
+  RegressionSums all(shape.inputs + 2 * static_cast<int>(count), 0);
+  for (const FlightRows& piece : rows.pieces()) {
+    each_with_neighbours(context, piece, [&](std::size_t, const double* x, const double* before, const double* after) {
+      all.add(with_neighbours(context, slopes.noisy, x, before, after).data(), nullptr);
+    });
+  }
+  if (!(all.rows() > 0)) return;
   const RunTimeWindow& window = context.features.window;
   const auto time_s = [&window](std::size_t tap) {
     return tap == 0 ? 0.0 : window.offset_s(static_cast<int>(tap) - 1);
   };
-  const std::size_t count = slopes.noisy.size();
-  const std::vector<std::pair<int, double>> taps = slope_terms(shape, output);
-  for (std::size_t tap = 0; tap < taps.size(); ++tap) {
-    std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
-    for (std::size_t i = 0; i < 2 * count && taps.size() > 1; ++i) {
-      const double lag_s = i < count ? -neighbour_lag_s : neighbour_lag_s;
-      told[static_cast<std::size_t>(shape.inputs) + i] =
-          std::abs(time_s(i % count) + lag_s - time_s(tap)) > neighbour_lag_s - window.tolerance_s;
+  for (int output = 0; output < AxisCommandOutputs::size; ++output) {
+    if (!slopes.of[static_cast<std::size_t>(output)].smoothed()) continue;
+    const std::vector<std::pair<int, double>> taps = slope_terms(shape, output);
+    for (std::size_t tap = 0; tap < taps.size(); ++tap) {
+      std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
+      for (std::size_t i = 0; i < 2 * count && taps.size() > 1; ++i) {
+        const double lag_s = i < count ? -neighbour_lag_s : neighbour_lag_s;
+        told[static_cast<std::size_t>(shape.inputs) + i] =
+            std::abs(time_s(i % count) + lag_s - time_s(tap)) > neighbour_lag_s - window.tolerance_s;
+      }
+      slopes.denoised.push_back({taps[tap].first, by_neighbours(shape, slopes.noisy, all, taps[tap].first, told)});
     }
-    slopes.denoised.push_back({taps[tap].first, by_neighbours(shape, slopes.noisy, all, taps[tap].first, told)});
   }
 }
 
-/// Standardised features and outputs of consecutive rows, column by column, and the body rates.
+/// Standardised features and outputs of consecutive rows, column by column, and what their accelerations are of.
 struct ConsecutiveRows {
   std::vector<std::vector<double>> columns;
-  std::array<std::vector<double>, 3> rates;
+  /// Body rates and velocity along z, and what is to be added to their derivatives: nothing, omega x v - R^T g.
+  std::array<std::vector<double>, 4> integrals, added;
+  bool has_velocity = false;
 
   explicit ConsecutiveRows(std::size_t count) : columns(count) {}
-  std::size_t size() const { return rates[0].size(); }
-  void clear() { *this = ConsecutiveRows(columns.size()); }
+  std::size_t size() const { return integrals[0].size(); }
 
-  void add(const double* x, std::size_t inputs, const double* y, const Vector3<double>& rates_rad_s) {
+  void add(const double* x, std::size_t inputs, const double* y, const Sample& sample) {
     for (std::size_t i = 0; i < columns.size(); ++i) columns[i].push_back(i < inputs ? x[i] : y[i - inputs]);
-    for (int axis = 0; axis < 3; ++axis) rates[static_cast<std::size_t>(axis)].push_back(rates_rad_s[axis]);
+    for (int axis = 0; axis < 3; ++axis) {
+      integrals[static_cast<std::size_t>(axis)].push_back(sample.body_rates_rad_s[axis]);
+      added[static_cast<std::size_t>(axis)].push_back(0);
+    }
+    const MotionInputs<double> motion = sample_inputs<MotionInputs<double>>(sample);
+    integrals[3].push_back(sample.velocity_m_s[2]);
+    added[3].push_back(SpecificForce::of(motion)[2] - sample.linear_acceleration_m_s2[2]);
+    has_velocity = has_velocity || sample.velocity_m_s[2] != 0;
   }
 
   /// Calls use(centre, columns) of each window of so many intervals on each side, a quarter of the window apart.
@@ -95,11 +113,14 @@ struct ConsecutiveRows {
     if (size() < 2 * half + 1) return;
     std::vector<std::vector<double>> means;
     for (const std::vector<double>& column : columns) means.push_back(means_between_rows(column));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto place = static_cast<std::size_t>(context.features.accelerations.front()) + axis;
-      for (std::size_t i = 0; i < means[place].size(); ++i) {
-        const double turned = (rates[axis][i + 1] - rates[axis][i]) / period_s;
-        means[place][i] = (turned - context.input_mean[place]) / context.input_deviation[place];
+    const std::vector<int> thrusts = context.features.thrusts();
+    for (std::size_t k = 0; k < (has_velocity && !thrusts.empty() ? 4U : 3U); ++k) {
+      const auto place = k < 3 ? static_cast<std::size_t>(context.features.accelerations.front()) + k
+                               : static_cast<std::size_t>(thrusts.front());
+      const std::vector<double> others = means_between_rows(added[k]);
+      for (std::size_t i = 0; i < others.size(); ++i) {
+        const double value = (integrals[k][i + 1] - integrals[k][i]) / period_s + others[i];
+        means[place][i] = (value - context.input_mean[place]) / context.input_deviation[place];
       }
     }
     const std::vector<double> weights = window_weights(half);
@@ -129,7 +150,7 @@ PINNQUAD_BODY std::vector<RegressionSums> row_blocks(const FitContext& context, 
   const auto finish = [&] {
     stretch.each_window(context, period_s, half_window(window_s, period_s),
                         [&](std::size_t row, const double* x) { add(counted - stretch.size() + row, x, x + inputs); });
-    stretch.clear();
+    stretch = ConsecutiveRows(inputs + outputs);
   };
   const Flight* last = nullptr;
   double last_s = 0;
@@ -137,7 +158,7 @@ PINNQUAD_BODY std::vector<RegressionSums> row_blocks(const FitContext& context, 
     if (window_s > 0) {
       const double since_s = flight[row].time_s - last_s;
       if (&flight != last || !(since_s > 0 && since_s < gap * period_s)) finish();
-      stretch.add(x, inputs, y, flight[row].body_rates_rad_s);
+      stretch.add(x, inputs, y, flight[row]);
       last = &flight;
       last_s = flight[row].time_s;
     } else {
@@ -180,6 +201,65 @@ PINNQUAD_BODY double block_error(double factor, const SlopeOfBlocks& a, const Sl
   return std::sqrt(std::max(0.0, (count - 1) / count * (squares - sum * sum / count)));
 }
 
+/// Blocks of rows as they are, window 0, and of smoothed ones: each window is twice as long as the one before it.
+class BlocksByWindow {
+ public:
+  BlocksByWindow(const FitContext& context, const RowSet& rows)
+      : context_(context), rows_(rows), blocks_{row_blocks(context, rows, 0)} {
+    const double period_s = sample_period_s(rows);
+    shortest_s_ = period_s > 0 ? 2 * period_s * static_cast<double>(half_window(0.16, period_s)) : 0;
+    while (!blocks_[0].empty() && !(blocks_[0].back().rows() > 0)) blocks_[0].pop_back();
+  }
+
+  double window_s(std::size_t window) const {
+    return window == 0 ? 0.0 : std::ldexp(shortest_s_, static_cast<int>(window) - 1);
+  }
+
+  /// Whether its blocks tell a slope; those of window + 1 are made after those of `window`.
+  bool told(std::size_t window) {
+    constexpr std::ptrdiff_t fewest = 10;
+    if (!(shortest_s_ > 0)) return false;
+    if (window == blocks_.size()) {
+      blocks_.push_back(row_blocks(context_, rows_, window_s(window)));
+      blocks_.back().resize(blocks_[0].size(), RegressionSums(context_.inputs(), context_.outputs()));
+    }
+    const auto has_rows = [](const RegressionSums& block) { return block.rows() > 0; };
+    return std::count_if(blocks_[window].begin(), blocks_[window].end(), has_rows) >= fewest;
+  }
+
+  const std::vector<RegressionSums>& operator[](std::size_t window) const { return blocks_[window]; }
+
+ private:
+  const FitContext& context_;
+  const RowSet& rows_;
+  double shortest_s_ = 0;
+  std::vector<std::vector<RegressionSums>> blocks_;
+};
+
+/// The slope of the first window that the next one finds no steeper one than, beyond chance.
+struct SteepestSlope {
+  std::size_t window = 0;
+  SlopeOfBlocks slope;
+  std::optional<SlopeOfBlocks> next;  ///< of the window twice as long, where it tells one
+  double of_rows = 0;                 ///< as they are
+
+  SteepestSlope(const MonotoneShape& shape, BlocksByWindow& blocks, int output)
+      : slope(shape, blocks[0], output), of_rows(slope.all) {
+    constexpr std::size_t last = 5;
+    constexpr double one_sided_99 = 2.326;
+    // of the rows: rotor lag, too, moves a slope by some percent; of a window: an eighth of its noise is in the next
+    constexpr double kept_by_rows = 0.95, kept_by_window = 0.99;
+    for (; window < last && blocks.told(window + 1); ++window) {
+      next.emplace(shape, blocks[window + 1], output);
+      const double factor = -1 / (window == 0 ? kept_by_rows : kept_by_window);
+      const double steeper = next->all + factor * slope.all;
+      if (!(next->all > 0) || !(steeper > one_sided_99 * block_error(factor, slope, &*next))) return;
+      slope = *next;
+    }
+    next.reset();
+  }
+};
+
 }  // namespace detail
 
 PINNQUAD_BODY void each_denoised(const FitContext& context, const MeasuredSlopes& slopes, const RowSet& rows,
@@ -203,77 +283,40 @@ PINNQUAD_BODY void each_denoised(const FitContext& context, const MeasuredSlopes
 
 PINNQUAD_BODY MeasuredSlopes measure_slopes(const FitContext& context, const RowSet& rows,
                                             const std::optional<AxisSlopes>& pinned, AffineMap& map) {
-  constexpr std::ptrdiff_t fewest = 10;
-  constexpr std::size_t most_windows = 5;
-  constexpr double shortest_s = 0.16, one_sided_99 = 2.326;
-  // of the rows: rotor lag, too, moves a slope by some percent; of a window: what noise is left is an eighth of it
-  constexpr double tolerated_of_rows = 0.05, tolerated_of_window = 0.01;
+  const bool windowed = context.is_windowed();
   MonotoneShape shape = monotone_shape(context);
   MeasuredSlopes slopes;
-  const double period_s = sample_period_s(rows);
-  const double first_s = std::max(shortest_s, 2 * period_s * static_cast<double>(detail::half_window(0, period_s)));
-  std::vector<std::vector<RegressionSums>> windows = {detail::row_blocks(context, rows, 0)};
-  while (!windows.front().empty() && !(windows.front().back().rows() > 0)) windows.front().pop_back();
-  const auto length_s = [&](std::size_t window) { return window == 0 ? 0.0 : std::ldexp(first_s, int(window) - 1); };
-  const auto told = [&](std::size_t window) {
-    if (window == windows.size()) {
-      windows.push_back(detail::row_blocks(context, rows, length_s(window)));
-      windows.back().resize(windows.front().size(), windows.front().front());
-    }
-    const auto has_rows = [](const RegressionSums& block) { return block.rows() > 0; };
-    return std::count_if(windows[window].begin(), windows[window].end(), has_rows) >= fewest;
-  };
-  if (!(period_s > 0) || !told(0)) return slopes;
-  const double half = student_t_975(static_cast<double>(windows.front().size()) - 1);
-  slopes.noisy = context.is_windowed() ? shape.thrusts : shape.noisy;
-  std::optional<RegressionSums> neighbours;
+  slopes.noisy = windowed ? shape.thrusts : shape.noisy;
+  detail::BlocksByWindow blocks(context, rows);
+  if (!blocks.told(0)) return slopes;
+  const double half = student_t_975(static_cast<double>(blocks[0].size()) - 1);
   for (int output = 0; output < map.outputs; ++output) {
-    if (output == 0 ? shape.thrusts.empty() : pinned || context.is_windowed()) continue;
-    detail::SlopeOfBlocks found(shape, windows.front(), output);
-    MeasuredSlope& slope = slopes.of[static_cast<std::size_t>(output)];
-    slope.least_squares = found.all;
-    std::size_t window = 0;
-    double left = 0;  // from the slope to the upper end of that of the next window: noise bends towards 0
-    while (window < most_windows && told(window + 1)) {
-      const detail::SlopeOfBlocks longer(shape, windows[window + 1], output);
-      const double kept = 1 - (window == 0 ? tolerated_of_rows : tolerated_of_window);
-      const double steeper = longer.all - found.all / kept;
-      if (!(longer.all > 0) || !(steeper > one_sided_99 * detail::block_error(-1 / kept, found, &longer))) {
-        left = std::max(0.0, longer.all - found.all + half * detail::block_error(1, longer));
-        break;
-      }
-      found = longer;
-      ++window;
-    }
-    slope.known = true;
-    slope.window_s = length_s(window);
-    slope.standard_error = detail::block_error(1, found);
-    const std::ptrdiff_t begin = std::ptrdiff_t{output} * map.inputs;
-    if (slope.smoothed()) {
-      if (context.is_windowed()) shape.held_thrust = slope.slope;
-      const AffineMap mended =
-          fit_monotone_base(shape, {detail::total(windows[context.is_windowed() ? 0 : window])}, pinned);
+    if (output == 0 ? shape.thrusts.empty() : pinned || windowed) continue;
+    const detail::SteepestSlope found(shape, blocks, output);
+    const auto begin = std::ptrdiff_t{output} * map.inputs;
+    if (found.window > 0) {
+      if (windowed) shape.held_thrust = found.slope.all;
+      const AffineMap mended = fit_monotone_base(shape, {detail::total(blocks[windowed ? 0 : found.window])}, pinned);
       std::copy_n(mended.weights.begin() + begin, map.inputs, map.weights.begin() + begin);
       map.intercept[static_cast<std::size_t>(output)] = mended.intercept[static_cast<std::size_t>(output)];
-      if (!neighbours) {
-        neighbours.emplace(map.inputs + 2 * static_cast<int>(slopes.noisy.size()), 0);
-        for (const FlightRows& piece : rows.pieces()) {
-          detail::each_with_neighbours(
-              context, piece, [&](std::size_t, const double* x, const double* before, const double* after) {
-                neighbours->add(detail::with_neighbours(context, slopes.noisy, x, before, after).data(), nullptr);
-              });
-        }
-      }
-      detail::add_denoised(context, shape, *neighbours, output, slopes);
     }
     double fitted = 0;
     for (const auto& [place, factor] : detail::slope_terms(shape, output)) {
       fitted += factor * map.weights[static_cast<std::size_t>(begin + place)];
     }
+    MeasuredSlope& slope = slopes.of[static_cast<std::size_t>(output)];
+    slope.known = true;
+    slope.window_s = blocks.window_s(found.window);
+    slope.least_squares = found.of_rows;
+    slope.standard_error = detail::block_error(1, found.slope);
     slope.slope = output == 0 ? -fitted : fitted;
     slope.lower = slope.slope - half * slope.standard_error;
-    slope.upper = slope.slope + std::max(half * slope.standard_error, slope.smoothed() ? left : 0.0);
+    slope.upper = slope.slope + half * slope.standard_error;
+    if (found.window > 0 && found.next) {
+      slope.upper = std::max(slope.upper, found.next->all + half * detail::block_error(1, *found.next));
+    }
   }
+  if (slopes.smoothed()) detail::add_denoised(context, shape, rows, slopes);
   return slopes;
 }
 
