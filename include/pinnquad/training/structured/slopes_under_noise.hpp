@@ -61,7 +61,7 @@ AffineMap by_neighbours(const MonotoneShape& shape, const std::vector<int>& nois
 
 /// Sums of standardised features and outputs in blocks of consecutive rows: fifty, of two seconds at least; the last
 /// may be empty. Of means over `window_s`, weighted as in smoothed_flights.hpp, the present's accelerations of body
-/// rates and velocity; 0: of the rows as they are.
+/// rates and velocity; 0: of the rows as they are. Empty for rows without a period.
 std::vector<RegressionSums> row_blocks(const FitContext& context, const RowSet& rows, double window_s);
 
 /// A slope of least squares, in units of features and outputs: of all blocks, and without each in turn.

@@ -7,12 +7,17 @@
 namespace pinnquad {
 namespace detail {
 
+/// neighbour_lag_s in rows.
+PINNQUAD_BODY std::size_t neighbour_rows(double period_s) {
+  return static_cast<std::size_t>(std::max(2.0, std::ceil(neighbour_lag_s / period_s - 0.01)));
+}
+
 PINNQUAD_BODY void each_with_neighbours(const FitContext& context, const FlightRows& piece,
                                         const NeighboursVisit& visit) {
   const RowSet one(*piece.flight, piece.rows);
   const double period_s = sample_period_s(one);
   if (!(period_s > 0)) return;
-  const auto lag = static_cast<std::size_t>(std::max(2.0, std::ceil(neighbour_lag_s / period_s - 0.01)));
+  const std::size_t lag = neighbour_rows(period_s);
   const double longest_s = 1.1 * static_cast<double>(lag) * period_s;
   const auto near = [&](std::size_t first, std::size_t last) {
     return last - first == lag && (*piece.flight)[last].time_s - (*piece.flight)[first].time_s <= longest_s;
@@ -107,10 +112,18 @@ struct ConsecutiveRows {
     has_velocity = has_velocity || sample.velocity_m_s[2] != 0;
   }
 
-  /// Calls use(centre, columns) of each window of so many intervals on each side, a quarter of the window apart.
+  /// Calls use(centre, columns) of each window, a quarter of it apart; without one, of each row. Not of what is within
+  /// neighbour_lag_s of an end, where a log's derivatives err most.
   template <class Use>
-  void each_window(const FitContext& context, double period_s, std::size_t half, const Use& use) const {
-    if (size() < 2 * half + 1) return;
+  void each_window(const FitContext& context, double period_s, double window_s, const Use& use) const {
+    const std::size_t edge = neighbour_rows(period_s);
+    std::vector<double> smooth(columns.size());
+    for (std::size_t row = edge; row + edge < size() && !(window_s > 0); ++row) {
+      for (std::size_t i = 0; i < smooth.size(); ++i) smooth[i] = columns[i][row];
+      use(row, smooth.data());
+    }
+    const std::size_t half = half_window(window_s, period_s);
+    if (!(window_s > 0) || size() < 2 * (half + edge) + 1) return;
     std::vector<std::vector<double>> means;
     for (const std::vector<double>& column : columns) means.push_back(means_between_rows(column));
     const std::vector<int> thrusts = context.features.thrusts();
@@ -124,8 +137,7 @@ struct ConsecutiveRows {
       }
     }
     const std::vector<double> weights = window_weights(half);
-    std::vector<double> smooth(columns.size());
-    for (std::size_t first = 0; first + weights.size() < size(); first += half / 2) {
+    for (std::size_t first = edge; first + weights.size() + edge < size(); first += half / 2) {
       for (std::size_t i = 0; i < smooth.size(); ++i) {
         smooth[i] = 0;
         for (std::size_t k = 0; k < weights.size(); ++k) smooth[i] += weights[k] * means[i][first + k];
@@ -139,34 +151,30 @@ PINNQUAD_BODY std::vector<RegressionSums> row_blocks(const FitContext& context, 
   constexpr double most = 50, least_s = 2, gap = 1.5;
   const auto inputs = static_cast<std::size_t>(context.inputs()), outputs = std::size_t(context.outputs());
   const double period_s = sample_period_s(rows);
-  const double length = std::max(static_cast<double>(rows.size()) / most, period_s > 0 ? least_s / period_s : 1.0);
+  if (!(period_s > 0)) return {};
+  const double length = std::max(static_cast<double>(rows.size()) / most, least_s / period_s);
   const auto count = static_cast<std::size_t>(static_cast<double>(rows.size()) / length) + 1;
   std::vector<RegressionSums> blocks(count, RegressionSums(context.inputs(), context.outputs()));
-  const auto add = [&](std::size_t row, const double* x, const double* y) {
-    blocks[static_cast<std::size_t>(static_cast<double>(row) / length)].add(x, y);
-  };
   ConsecutiveRows stretch(inputs + outputs);
   std::size_t counted = 0;
   const auto finish = [&] {
-    stretch.each_window(context, period_s, half_window(window_s, period_s),
-                        [&](std::size_t row, const double* x) { add(counted - stretch.size() + row, x, x + inputs); });
+    stretch.each_window(context, period_s, window_s, [&](std::size_t row, const double* x) {
+      const auto block = static_cast<std::size_t>(static_cast<double>(counted - stretch.size() + row) / length);
+      blocks[block].add(x, x + inputs);
+    });
     stretch = ConsecutiveRows(inputs + outputs);
   };
   const Flight* last = nullptr;
   double last_s = 0;
   context.each_standardised(rows, [&](const Flight& flight, std::size_t row, const double* x, const double* y) {
-    if (window_s > 0) {
-      const double since_s = flight[row].time_s - last_s;
-      if (&flight != last || !(since_s > 0 && since_s < gap * period_s)) finish();
-      stretch.add(x, inputs, y, flight[row]);
-      last = &flight;
-      last_s = flight[row].time_s;
-    } else {
-      add(counted, x, y);
-    }
+    const double since_s = flight[row].time_s - last_s;
+    if (&flight != last || !(since_s > 0 && since_s < gap * period_s)) finish();
+    stretch.add(x, inputs, y, flight[row]);
+    last = &flight;
+    last_s = flight[row].time_s;
     ++counted;
   });
-  if (window_s > 0) finish();
+  finish();
   return blocks;
 }
 
