@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "pinnquad/data/flight_features.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/regression/block_regression.hpp"
+#include "pinnquad/regression/identification.hpp"
 #include "pinnquad/regression/smoothed_flights.hpp"
 #include "pinnquad/training/structured/closed_form.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"
@@ -64,12 +66,12 @@ AffineMap by_neighbours(const MonotoneShape& shape, const std::vector<int>& nois
 /// rates and velocity; 0: of the rows as they are. Empty for rows without a period.
 std::vector<RegressionSums> row_blocks(const FitContext& context, const RowSet& rows, double window_s);
 
-/// A slope of least squares, in units of features and outputs: of all blocks, and without each in turn.
+/// A slope of least squares of the present's features, in their units: of all blocks, and without each in turn.
 struct SlopeOfBlocks {
   double all = 0;
   std::vector<double> without;
 
-  SlopeOfBlocks(const MonotoneShape& shape, const std::vector<RegressionSums>& blocks, int output);
+  SlopeOfBlocks(const FitContext& context, const std::vector<RegressionSums>& blocks, int output);
 };
 
 /// Standard error of factor x a + b by the jackknife that leaves out blocks (Kuensch, Annals of Statistics 17, 1989),

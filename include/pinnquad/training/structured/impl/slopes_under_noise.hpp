@@ -178,16 +178,17 @@ PINNQUAD_BODY std::vector<RegressionSums> row_blocks(const FitContext& context, 
   return blocks;
 }
 
-PINNQUAD_BODY SlopeOfBlocks::SlopeOfBlocks(const MonotoneShape& shape, const std::vector<RegressionSums>& blocks,
+PINNQUAD_BODY SlopeOfBlocks::SlopeOfBlocks(const FitContext& context, const std::vector<RegressionSums>& blocks,
                                            int output) {
-  const std::vector<bool> taken = features_of_output(shape, output);
-  const auto slope = [&](const RegressionSums& sums) {
-    const AffineMap map = fit_ridge(sums, usual_penalties().front(), taken);
-    double sum = 0;
-    for (const auto& [place, factor] : slope_terms(shape, output)) {
-      sum += factor * map.weights[static_cast<std::size_t>(place)];
-    }
-    return output == 0 ? -sum : sum;
+  const MonotoneShape shape = monotone_shape(context);
+  std::vector<bool> taken = features_of_output(shape, output);
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    taken[i] = taken[i] && is_of_present(context.features.names[i]);
+  }
+  const auto [present, factor] = slope_terms(shape, output).front();
+  const double unit = output == 0 ? -factor : factor;
+  const auto slope = [&, place = static_cast<std::size_t>(present)](const RegressionSums& sums) {
+    return unit * fit_ridge(sums, usual_penalties().front(), taken).weights[place];
   };
   const RegressionSums total_of = total(blocks).of_output(output);
   all = slope(total_of);
@@ -251,14 +252,14 @@ struct SteepestSlope {
   std::optional<SlopeOfBlocks> next;  ///< of the window twice as long, where it tells one
   double of_rows = 0;                 ///< as they are
 
-  SteepestSlope(const MonotoneShape& shape, BlocksByWindow& blocks, int output)
-      : slope(shape, blocks[0], output), of_rows(slope.all) {
+  SteepestSlope(const FitContext& context, BlocksByWindow& blocks, int output)
+      : slope(context, blocks[0], output), of_rows(slope.all) {
     constexpr std::size_t last = 5;
     constexpr double one_sided_99 = 2.326;
     // of the rows: rotor lag, too, moves a slope by some percent; of a window: an eighth of its noise is in the next
     constexpr double kept_by_rows = 0.95, kept_by_window = 0.99;
     for (; window < last && blocks.told(window + 1); ++window) {
-      next.emplace(shape, blocks[window + 1], output);
+      next.emplace(context, blocks[window + 1], output);
       const double factor = -1 / (window == 0 ? kept_by_rows : kept_by_window);
       const double steeper = next->all + factor * slope.all;
       if (!(next->all > 0) || !(steeper > one_sided_99 * block_error(factor, slope, &*next))) return;
@@ -300,10 +301,28 @@ PINNQUAD_BODY MeasuredSlopes measure_slopes(const FitContext& context, const Row
   const double half = student_t_975(static_cast<double>(blocks[0].size()) - 1);
   for (int output = 0; output < map.outputs; ++output) {
     if (output == 0 ? shape.thrusts.empty() : pinned || windowed) continue;
-    const detail::SteepestSlope found(shape, blocks, output);
+    const detail::SteepestSlope found(context, blocks, output);
+    if (windowed && found.window == 0) continue;  // its taps are not what was examined
     const auto begin = std::ptrdiff_t{output} * map.inputs;
+    MeasuredSlope& slope = slopes.of[static_cast<std::size_t>(output)];
+    slope.known = true;
+    slope.window_s = blocks.window_s(found.window);
+    slope.least_squares = found.of_rows;
+    slope.standard_error = detail::block_error(1, found.slope);
+    double upper = -std::numeric_limits<double>::infinity();
+    if (found.window > 0 && found.next) upper = found.next->all + half * detail::block_error(1, *found.next);
     if (found.window > 0) {
-      if (windowed) shape.held_thrust = found.slope.all;
+      if (output == 0) {
+        shape.held_thrust = found.slope.all;
+        const Identification vehicle = identify(rows, axis_signs(context.airframe));
+        const bool through_zero = vehicle.thrust_slope_m_s2.holds(vehicle.thrust_m_s2.value);  // of commands and thrust
+        const Estimate& thrust = through_zero ? vehicle.thrust_m_s2 : vehicle.thrust_slope_m_s2;
+        if (thrust.low() > 0) {
+          shape.held_thrust = 1 / thrust.value;
+          slope.standard_error = thrust.half_width / (half * thrust.value * thrust.value);
+          upper = 1 / thrust.low();
+        }
+      }
       const AffineMap mended = fit_monotone_base(shape, {detail::total(blocks[windowed ? 0 : found.window])}, pinned);
       std::copy_n(mended.weights.begin() + begin, map.inputs, map.weights.begin() + begin);
       map.intercept[static_cast<std::size_t>(output)] = mended.intercept[static_cast<std::size_t>(output)];
@@ -312,17 +331,9 @@ PINNQUAD_BODY MeasuredSlopes measure_slopes(const FitContext& context, const Row
     for (const auto& [place, factor] : detail::slope_terms(shape, output)) {
       fitted += factor * map.weights[static_cast<std::size_t>(begin + place)];
     }
-    MeasuredSlope& slope = slopes.of[static_cast<std::size_t>(output)];
-    slope.known = true;
-    slope.window_s = blocks.window_s(found.window);
-    slope.least_squares = found.of_rows;
-    slope.standard_error = detail::block_error(1, found.slope);
     slope.slope = output == 0 ? -fitted : fitted;
     slope.lower = slope.slope - half * slope.standard_error;
-    slope.upper = slope.slope + half * slope.standard_error;
-    if (found.window > 0 && found.next) {
-      slope.upper = std::max(slope.upper, found.next->all + half * detail::block_error(1, *found.next));
-    }
+    slope.upper = std::max(slope.slope + half * slope.standard_error, upper);
   }
   if (slopes.smoothed()) detail::add_denoised(context, shape, rows, slopes);
   return slopes;
