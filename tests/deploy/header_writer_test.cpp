@@ -312,9 +312,9 @@ TEST_CASE("the opening comment has the verdict in words: figures, what is proven
   CHECK(has("// NOT PROVEN: "));
   CHECK_FALSE(has("// PROVEN"));
   from.slopes[0] = {true, 0, 0, 0.9 * hover_thrust_slope(airframe), 1.1 * hover_thrust_slope(airframe)};
-  from.slopes[2] = {true, 0, 0, 0.97 * own[1], 1.04 * own[1], true, 0.25 * own[1]};
+  from.slopes[2] = {true, 0, 0, 0.97 * own[1], 1.04 * own[1], 0.4, 0.25 * own[1]};
   CHECK(
-      has("// Their 95 % intervals by the training rows: pitch 0.97 to 1.04 (by instruments; least squares 0.25), "
+      has("// Their 95 % intervals by the training rows: pitch 0.97 to 1.04 (by smoothed rows; least squares 0.25), "
           "thrust 0.90 to 1.10.\n"));
   from.airframe_known = false;  // then they are slopes
   from.signs_unproven = false;

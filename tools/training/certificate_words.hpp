@@ -63,8 +63,8 @@ inline std::optional<std::string> thrust_doubt(const pinnquad::Certificate& cert
   return text;
 }
 
-inline bool any_by_instruments(const pinnquad::SlopesOfSums& slopes) {
-  return std::any_of(slopes.begin(), slopes.end(), [](const auto& slope) { return slope.by_instruments; });
+inline bool any_smoothed(const pinnquad::SlopesOfSums& slopes) {
+  return std::any_of(slopes.begin(), slopes.end(), [](const auto& slope) { return slope.smoothed(); });
 }
 
 /// "the residual changes a command by at most 0.1669 0.1669 0.1669 0.1669", rotor by rotor; or that there is none.

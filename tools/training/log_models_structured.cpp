@@ -17,7 +17,7 @@ namespace programs {
 namespace {
 
 /// A structured model, how it was chosen whether it is shown the altitude, and what is known of its slopes. Where they
-/// are by instruments, it is judged by features without their noise.
+/// are by smoothed rows, it is judged by features without their noise.
 class StructuredNetwork : public ExportableNetwork {
  public:
   /// Limits of trust are of models without a window, and found by rows that they were not fitted to.
@@ -28,7 +28,7 @@ class StructuredNetwork : public ExportableNetwork {
         slopes_(slopes),
         context_(std::move(context)) {}
   Predictions predictions(const pinnquad::RowSet& rows) const override {
-    if (!slopes_.by_instruments()) return ExportableNetwork::predictions(rows);
+    if (!slopes_.smoothed()) return ExportableNetwork::predictions(rows);
     Predictions result = without_answer(rows);
     pinnquad::each_denoised(context_, slopes_, rows, [&](std::size_t row, const std::vector<double>& x) {
       result[row] = this->block()->commands(x);
@@ -37,7 +37,7 @@ class StructuredNetwork : public ExportableNetwork {
   }
   Answers answers(const pinnquad::RowSet& rows) const override {
     Answers result = ExportableNetwork::answers(rows);
-    if (slopes_.by_instruments()) result.predictions = predictions(rows);
+    if (slopes_.smoothed()) result.predictions = predictions(rows);
     return result;
   }
   AltitudeChoice altitude() const override { return altitude_; }

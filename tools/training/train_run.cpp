@@ -359,11 +359,12 @@ class Training {
     const Verdict verdict = verdict_of(*chosen_);
     const std::string title = kind.kind.title;
     report_.verdict(kind.kind, rotated() ? std::optional<std::uint64_t>{} : made.seed, verdict, true);
-    const bool by_instruments = programs::any_by_instruments(made.model->slopes());
-    if (by_instruments) {
-      report_.warn("noise of gyro or accelerometer bends the slopes of least squares: those of " + title +
-                   " are by instruments, and it was judged by rows without that noise, as their neighbours tell them; "
-                   "on the noisy rows, by which all others were judged, bent slopes err less");
+    const bool smoothed = programs::any_smoothed(made.model->slopes());
+    if (smoothed) {
+      report_.warn(
+          "noise of gyro or accelerometer bends the slopes of least squares: those of " + title +
+          " are by smoothed rows, and it was judged by rows without that noise, as their neighbours tell them; "
+          "on the noisy rows, by which all others were judged, bent slopes err less");
     } else if (kind.kind.key != std::string("linear") && !verdict.worse_than_mean() &&
                verdict.test_r_squared <= verdict.linear_regression_r_squared) {
       report_.warn(title + " does not beat linear regression on the paper's features (R^2 " +
@@ -411,7 +412,7 @@ class Training {
     const std::string beside = programs::in_words(others, judged_, *chosen_);
     const std::vector<std::string> beaten = programs::beaten_in_words(others, judged_, *chosen_);
     const bool by_a_proven_one =
-        others.beaten() && judged_.kinds[*others.best].proven() && !programs::any_by_instruments(made.model->slopes());
+        others.beaten() && judged_.kinds[*others.best].proven() && !programs::any_smoothed(made.model->slopes());
     const programs::ExportVerdict said =
         programs::export_verdict(kind.title, verdict, made.flown, by_a_proven_one ? beaten.front() : "");
     report_.export_verdict(said, beside, programs::beside_json(others, judged_));

@@ -313,9 +313,9 @@ class TrainingReport {
           !slope.known ? nlohmann::json()
                        : nlohmann::json{{"standard_error", slope.standard_error},
                                         {"interval_95", {slope.lower, slope.upper}},
-                                        {"by", slope.by_instruments ? "instruments" : "least squares"},
+                                        {"by", slope.smoothed() ? "smoothed rows" : "least squares"},
                                         {"least_squares", slope.least_squares},
-                                        {"instruments_f", slope.strength}};
+                                        {"window_s", slope.window_s}};
     }
     if (!structure) return;
     json_["certificate"]["command_bound"] = structure->command_bound;

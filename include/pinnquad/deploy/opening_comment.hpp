@@ -20,8 +20,8 @@
 
 namespace pinnquad {
 
-/// Slopes as the training rows know them, over the airframe's own: "roll 0.97 to 1.02"; by instruments with what least
-/// squares say. Empty where none is known.
+/// Slopes as the training rows know them, over the airframe's own: "roll 0.97 to 1.02"; by smoothed rows with what
+/// least squares of the rows say. Empty where none is known.
 std::string known_slopes_in_words(const SlopesOfSums& slopes, double own_thrust, const AxisSlopes& own,
                                   int decimals = 2);
 

@@ -28,6 +28,22 @@ struct RotorResponse {
   double delay_s = 0;             ///< may be negative: the commands' clock is late
 };
 
+/// Intervals between rows in half a window: four at least.
+std::size_t half_window(double window_s, double period_s);
+
+/// Weights of the intervals in a window of so many on each side, sum 1.
+std::vector<double> window_weights(std::size_t half);
+
+/// Rows i - 1 to i + 2, the ends repeated.
+template <class Value>
+std::array<Value, 4> rows_around(const std::vector<Value>& u, std::size_t i) noexcept {
+  const std::size_t last = u.size() - 1;
+  return {u[i > 0 ? i - 1 : 0], u[i], u[std::min(i + 1, last)], u[std::min(i + 2, last)]};
+}
+
+/// Means from each row to the next, of a cubic through four rows.
+std::vector<double> means_between_rows(const std::vector<double>& u);
+
 /// Series at instants; all of one length.
 class SmoothedFlights {
  public:
@@ -74,18 +90,8 @@ class SmoothedFlights {
     std::size_t instants = 0;
   };
 
-  void make_weights();
-
   /// At a row with its fraction, on a cubic through four rows (Catmull and Rom).
   static AllRotors at_row(const std::vector<AllRotors>& u, double row) noexcept;
-  /// Rows i - 1 to i + 2, the ends repeated.
-  template <class Value>
-  static std::array<Value, 4> around(const std::vector<Value>& u, std::size_t i) noexcept {
-    const std::size_t last = u.size() - 1;
-    return {u[i > 0 ? i - 1 : 0], u[i], u[std::min(i + 1, last)], u[std::min(i + 2, last)]};
-  }
-  /// Means from each row to the next, of that cubic.
-  static Series means(const Series& u);
   Series differences(const Series& u) const;
 
   /// Calls take(weighted sum) of each instant.

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -32,8 +31,6 @@ struct GroundFeatures {
   std::vector<int> accelerations;  ///< places of each tap's angular acceleration about x, the present first
   EachRow each_row;                ///< worked out in float
   EachRow each_exact_row;          ///< in double
-  /// The features of a window's present instant alone; null without a window.
-  std::shared_ptr<const GroundFeatures> present;
 
   std::size_t size() const { return names.size(); }
   /// True of a feature that is a column, at whatever tap of a window.
@@ -128,7 +125,6 @@ GroundFeatures ground_features() {
   }
   if constexpr (is_windowed<Features>) {
     value.window = RunTimeWindow(Window::taps, Window::causal, Window::period_s);
-    value.present = std::make_shared<const GroundFeatures>(ground_features<typename Features::TapFeatures>());
   }
   return value;
 }

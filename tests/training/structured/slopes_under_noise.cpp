@@ -78,16 +78,16 @@ using Setting = Context<InverseFeatures, PaperQuadrotor, AxisCommandOutputs>;
 
 }  // namespace
 
-TEST_CASE("noise of the gyro bends the slopes of least squares; those by instruments are the airframe's") {
+TEST_CASE("noise of the gyro bends the slopes of least squares; those by smoothed rows are the airframe's") {
   const StructuredFit& fit = noisy_fit();
   const Certificate certificate = certificate_of_fit(fit);
   CHECK(certificate.proven());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const MeasuredSlope& slope = fit.slopes.of[1 + axis];
     CHECK(slope.known);
-    CHECK(slope.by_instruments);
+    CHECK(slope.smoothed());
     CHECK(slope.least_squares < 0.8 * own[axis]);
-    CHECK(slope.slope == doctest::Approx(own[axis]).epsilon(axis < 2 ? 0.1 : 0.25));
+    CHECK(slope.slope == doctest::Approx(own[axis]).epsilon(0.05));
     CHECK(slope.lower < 1.03 * own[axis]);  // rotor lag makes a quiet flight's 1.02 of the airframe's
     CHECK(slope.upper > own[axis]);
     CHECK(certificate.slope[axis] == doctest::Approx(slope.slope).epsilon(1e-5));
@@ -99,8 +99,9 @@ TEST_CASE("noise of the gyro bends the slopes of least squares; those by instrum
   CHECK(fit.slopes.of[0].slope == doctest::Approx(own_thrust).epsilon(0.05));
   CHECK(certificate.thrust_slope == doctest::Approx(fit.slopes.of[0].slope).epsilon(1e-5));
 
-  // without noise: 0.007 of a model that was trained so, 0.045 of least squares
-  CHECK(error_on(fit, quiet()) < 0.017);
+  // without noise: 0.007 of a model that was trained so, 0.045 of least squares; the mean of the noisy angular
+  // acceleration about yaw alone makes 0.02 of some flights
+  CHECK(error_on(fit, quiet()) < 0.009);
 }
 
 TEST_CASE("of a quiet flight least squares are kept to the bit, with intervals") {
@@ -110,11 +111,12 @@ TEST_CASE("of a quiet flight least squares are kept to the bit, with intervals")
   const StructuredFit fit = fitted(flight);
   const auto context = make_context<Setting>(split.train);
   const auto base = monotone_base<Setting>(fit_monotone_base(context, split.train));
-  CHECK_FALSE(fit.slopes.by_instruments());
+  CHECK_FALSE(fit.slopes.smoothed());
   for (std::size_t k = 0; k < 4; ++k) {
     const MeasuredSlope& slope = fit.slopes.of[k];
     CHECK(slope.known);
-    CHECK_FALSE(slope.by_instruments);
+    CHECK_FALSE(slope.smoothed());
+    CHECK(slope.least_squares == doctest::Approx(slope.slope).epsilon(0.01));
     CHECK(slope.lower < slope.slope);
     CHECK(slope.slope < slope.upper);
     CHECK(slope.upper - slope.lower < 0.1 * slope.slope);
@@ -157,7 +159,7 @@ TEST_CASE("a window's thrust slope, all taps together, is held where noise bends
   for (Sample& sample : shaken) sample.linear_acceleration_m_s2[2] += 5 * standard_normal(engine);
   const auto fit = fit_of(shaken);
   const Certificate certificate = certificate_of_fit(fit);
-  CHECK(fit.slopes.of[0].by_instruments);
+  CHECK(fit.slopes.of[0].smoothed());
   CHECK(fit.slopes.of[0].least_squares < 0.8 * own_thrust);
   CHECK_FALSE(fit.slopes.of[1].known);
   CHECK(certificate.held_thrust_slope == doctest::Approx(fit.slopes.of[0].slope).epsilon(1e-4));
@@ -182,7 +184,7 @@ TEST_CASE("a window's thrust slope, all taps together, is held where noise bends
   for (std::size_t tap = 0; tap < denoised.size(); ++tap) CHECK(denoised[tap] < 0.8 * measured[tap]);
 }
 
-TEST_CASE("a sum by instruments has no residual, the others keep theirs") {
+TEST_CASE("a sum by smoothed rows has no residual, the others keep theirs") {
   Flight bent = flown(0.03, 2500);
   for (Sample& sample : bent) {
     for (double& u : sample.commands) u += 0.1 * std::abs(sample.velocity_m_s[0]);
@@ -195,7 +197,7 @@ TEST_CASE("a sum by instruments has no residual, the others keep theirs") {
   const auto fit = fit_structured(split_for_training(dataset), given_airframe<PaperQuadrotor>(), settings).best();
   const Certificate certificate = certificate_of_fit(fit);
   CHECK(certificate.proven());
-  CHECK(fit.slopes.of[1].by_instruments);
+  CHECK(fit.slopes.of[1].smoothed());
   CHECK(certificate.residual_upper[1] - certificate.residual_lower[1] == 0);
   CHECK(certificate.residual_upper[0] - certificate.residual_lower[0] > 0.1);
 }
@@ -212,14 +214,13 @@ TEST_CASE("neighbours are a tenth of a second away, and none is beyond a gap or 
     return std::equal(expected.begin(), expected.end(), x);
   };
   for (const FlightRows& piece : rows.pieces()) {
-    detail::each_with_neighbours(
-        context, piece,
-        [&](std::size_t row, const double* x, const double*, const double* before, const double* after) {
-          CHECK(are_of(x, row));
-          CHECK(are_of(before, row - 2));
-          CHECK(are_of(after, row + 2));
-          seen.push_back(row);
-        });
+    detail::each_with_neighbours(context, piece,
+                                 [&](std::size_t row, const double* x, const double* before, const double* after) {
+                                   CHECK(are_of(x, row));
+                                   CHECK(are_of(before, row - 2));
+                                   CHECK(are_of(after, row + 2));
+                                   seen.push_back(row);
+                                 });
   }
   std::vector<std::size_t> expected;
   for (const auto& [begin, end] : {std::pair<std::size_t, std::size_t>{12, 58}, {102, 118}, {122, 198}}) {

@@ -25,7 +25,7 @@ PINNQUAD_BODY std::string known_slopes_in_words(const SlopesOfSums& slopes, doub
     const double one = k == 0 ? own_thrust : own[k - 1];
     const auto share = [one, decimals](double value) { return detail::fixed_text(value / one, decimals); };
     words += std::string(words.empty() ? "" : ", ") + names[k] + " " + share(slope.lower) + " to " + share(slope.upper);
-    if (slope.by_instruments) words += " (by instruments; least squares " + share(slope.least_squares) + ")";
+    if (slope.smoothed()) words += " (by smoothed rows; least squares " + share(slope.least_squares) + ")";
   }
   return words;
 }

@@ -6,11 +6,35 @@
 
 namespace pinnquad::detail {
 
+PINNQUAD_BODY std::size_t half_window(double window_s, double period_s) {
+  return std::max<std::size_t>(4, static_cast<std::size_t>(std::lround(0.5 * window_s / period_s)));
+}
+
+PINNQUAD_BODY std::vector<double> window_weights(std::size_t half) {
+  constexpr double tau = 6.283185307179586;
+  std::vector<double> weights;
+  const std::size_t count = 2 * half;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+    weights.push_back((1 - std::cos(tau * share)) / static_cast<double>(count));
+  }
+  return weights;
+}
+
+PINNQUAD_BODY std::vector<double> means_between_rows(const std::vector<double>& u) {
+  std::vector<double> result(u.size() - 1);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const auto [a, b, c, d] = rows_around(u, i);
+    result[i] = (13 * (b + c) - a - d) / 24;
+  }
+  return result;
+}
+
 PINNQUAD_BODY SmoothedFlights::SmoothedFlights(const RowSet& rows, double window_s) : period_s_(sample_period_s(rows)) {
   if (!(period_s_ > 0)) return;
-  half_ = std::max<std::size_t>(4, static_cast<std::size_t>(std::lround(0.5 * window_s / period_s_)));
+  half_ = half_window(window_s, period_s_);
   stride_ = std::max<std::size_t>(1, half_ / 4);
-  make_weights();
+  weights_ = window_weights(half_);
   for (const FlightRows& piece : rows.pieces()) take(piece);
   const auto moves = [](const Series& series) {
     return std::any_of(series.begin(), series.end(), [](double v) { return v != 0; });
@@ -60,32 +84,14 @@ PINNQUAD_BODY std::array<SmoothedFlights::Series, rotor_count> SmoothedFlights::
   return result;
 }
 
-PINNQUAD_BODY void SmoothedFlights::make_weights() {
-  constexpr double tau = 6.283185307179586;
-  const std::size_t count = 2 * half_;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
-    weights_.push_back((1 - std::cos(tau * share)) / static_cast<double>(count));
-  }
-}
-
 PINNQUAD_BODY SmoothedFlights::AllRotors SmoothedFlights::at_row(const std::vector<AllRotors>& u, double row) noexcept {
   const auto last = static_cast<double>(u.size() - 1);
   if (row <= 0) return u.front();
   if (row >= last) return u.back();
   const auto i = static_cast<std::size_t>(row);
   const AllRotors s(row - static_cast<double>(i)), two(2), three(3), four(4), five(5);
-  const auto [a, b, c, d] = around(u, i);
+  const auto [a, b, c, d] = rows_around(u, i);
   return b + AllRotors(0.5) * s * (c - a + s * (two * a - five * b + four * c - d + s * (three * (b - c) + d - a)));
-}
-
-PINNQUAD_BODY SmoothedFlights::Series SmoothedFlights::means(const Series& u) {
-  Series result(u.size() - 1);
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const auto [a, b, c, d] = around(u, i);
-    result[i] = (13 * (b + c) - a - d) / 24;
-  }
-  return result;
 }
 
 PINNQUAD_BODY SmoothedFlights::Series SmoothedFlights::differences(const Series& u) const {
@@ -139,19 +145,19 @@ PINNQUAD_BODY void SmoothedFlights::take_stretch(const Flight& flight, const Ind
     smooth(intervals, stretch.instants, first, [&result](double sum) { result.push_back(sum); });
   };
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    add(means(series[axis]), rates_[axis]);
+    add(means_between_rows(series[axis]), rates_[axis]);
     add(differences(series[axis]), derivatives_[axis]);
-    add(means(series[3 + axis]), products_[axis]);
-    add(means(series[6 + axis]), forces_[axis]);
-    add(means(series[9 + axis]), velocities_[axis]);
-    add(means(series[12 + axis]), squares_[axis]);
-    Series kinematic = means(series[15 + axis]);
+    add(means_between_rows(series[3 + axis]), products_[axis]);
+    add(means_between_rows(series[6 + axis]), forces_[axis]);
+    add(means_between_rows(series[9 + axis]), velocities_[axis]);
+    add(means_between_rows(series[12 + axis]), squares_[axis]);
+    Series kinematic = means_between_rows(series[15 + axis]);
     const Series derivative = differences(series[9 + axis]);
     for (std::size_t i = 0; i < kinematic.size(); ++i) kinematic[i] += derivative[i];
     add(kinematic, kinematic_forces_[axis]);
   }
   has_voltage_ = has_voltage_ && battery != nullptr;
-  if (has_voltage_) add(means(voltage), voltage_);
+  if (has_voltage_) add(means_between_rows(voltage), voltage_);
   if (!has_voltage_) voltage_.clear();
   stretch_.insert(stretch_.end(), stretch.instants, stretches_.size());
   stretches_.push_back(std::move(stretch));

@@ -63,7 +63,7 @@ PINNQUAD_BODY GroundFeatures named_features(const std::string& type, const std::
   if (names.size() != units.size() || !features.read(held->texts, static_cast<int>(names.size()), window)) {
     throw std::invalid_argument("named_features: " + type + " is no set of features of the library and columns");
   }
-  GroundFeatures value{type, names, units, {}, window, {}, {}, {}, {}};
+  GroundFeatures value{type, names, units, {}, window, {}, {}, {}};
   for (int i = 0; i < features.column_count(); ++i) {
     const auto [name, unit] = features.column(i);
     value.columns.push_back({std::string(name), std::string(unit)});
@@ -74,11 +74,6 @@ PINNQUAD_BODY GroundFeatures named_features(const std::string& type, const std::
   }
   value.each_row = detail::rows_by_name<float>(held);
   value.each_exact_row = detail::rows_by_name<double>(held);
-  if (window.taps == 1) return value;
-  const auto first_other = std::find_if_not(names.begin(), names.end(), detail::is_of_present);
-  const auto count = first_other - names.begin();
-  value.present = std::make_shared<const GroundFeatures>(
-      named_features("the present of " + type, {names.begin(), first_other}, {units.begin(), units.begin() + count}));
   return value;
 }
 

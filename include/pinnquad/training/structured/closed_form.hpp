@@ -120,6 +120,9 @@ namespace detail {
 /// All but the angular accelerations about the other axes.
 std::vector<bool> features_of_output(const MonotoneShape& shape, int output);
 
+/// The slope of a sum as a sum of factor x weight over all taps; that of the thrust is below 0.
+std::vector<std::pair<int, double>> slope_terms(const MonotoneShape& shape, int output);
+
 /// Of an axis command; of the sum of the commands where a window's is held. See fit_monotone_base().
 std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, int output, const std::optional<AxisSlopes>& pinned);
 

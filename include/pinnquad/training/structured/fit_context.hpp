@@ -42,8 +42,6 @@ struct FitContext {
   void each_row(const RowSet& rows, const Visit& visit) const;
   /// Calls `visit` as each_row() does, with standardised numbers.
   void each_standardised(const RowSet& rows, const Visit& visit) const;
-  /// The context of a window's present instant alone, of these rows.
-  FitContext present(const RowSet& rows) const;
 };
 
 /// The context of a training set. Throws std::invalid_argument where no row has all features.

@@ -13,9 +13,9 @@ struct MeasuredSlope {
   double slope = 0;    ///< of the base; of a window the sum over all taps
   double standard_error = 0;
   double lower = 0, upper = 0;  ///< 95 %
-  bool by_instruments = false;  ///< least squares bend it
-  double least_squares = 0;
-  double strength = 0;  ///< F of the instruments (regression/instrumental_variables.hpp): weak below 10
+  double window_s = 0;          ///< of the smoothing of the rows that it is of; 0: of the rows as they are
+  double least_squares = 0;     ///< of the rows as they are
+  bool smoothed() const { return window_s > 0; }
 };
 
 /// Sum of the commands, roll, pitch, yaw.

@@ -95,36 +95,29 @@ PINNQUAD_BODY std::vector<bool> features_of_output(const MonotoneShape& shape, i
   return taken;
 }
 
+PINNQUAD_BODY std::vector<std::pair<int, double>> slope_terms(const MonotoneShape& shape, int output) {
+  std::vector<std::pair<int, double>> terms;
+  for (const int tap : output == 0 ? shape.thrusts : shape.places) {
+    const int place = output == 0 ? tap : tap + output - 1;
+    terms.emplace_back(place, shape.output_deviation[static_cast<std::size_t>(output)] /
+                                  shape.input_deviation[static_cast<std::size_t>(place)]);
+  }
+  return terms;
+}
+
 PINNQUAD_BODY std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, int output,
                                                     const std::optional<AxisSlopes>& pinned) {
   constexpr double least_share = least_fitted_slope_share;
-  const int axis = output - 1;
-  const auto factor = [&](int place) {
-    return shape.output_deviation[static_cast<std::size_t>(output)] /
-           shape.input_deviation[static_cast<std::size_t>(place)];
-  };
-  if (axis < 0) {
-    if (!(shape.held_thrust > 0)) return {};
-    WeightBound held{{}, -shape.held_thrust, true};  // the specific force of thrust is below 0
-    for (const int place : shape.thrusts) held.terms.emplace_back(place, factor(place));
-    return {held};
-  }
-  const auto of_axis = static_cast<std::size_t>(axis);
+  WeightBound held{slope_terms(shape, output), -shape.held_thrust, true};  // the specific force of thrust is below 0
+  if (output == 0) return shape.held_thrust > 0 ? std::vector{held} : std::vector<WeightBound>{};
+  const auto of_axis = static_cast<std::size_t>(output - 1);
   const double least = least_share * shape.airframe_slopes[of_axis];
   if (!(least > 0) || (pinned && !((*pinned)[of_axis] > least))) {
     throw std::invalid_argument("monotone base: expected slopes above 0 and above the least share of the airframe's");
   }
-  WeightBound present, held;
-  for (const int place : shape.places) {
-    if (held.terms.empty()) present.terms.emplace_back(place + axis, factor(place + axis));
-    held.terms.emplace_back(place + axis, factor(place + axis));
-  }
-  present.least = held.least = least;
-  if (pinned) {
-    held.pinned = true;
-    held.least = (*pinned)[of_axis];
-  }
-  return shape.places.size() > 1 ? std::vector{held, present} : std::vector{held};
+  held.pinned = pinned.has_value();
+  held.least = pinned ? (*pinned)[of_axis] : least;
+  return held.terms.size() > 1 ? std::vector{held, WeightBound{{held.terms.front()}, least}} : std::vector{held};
 }
 
 }  // namespace detail

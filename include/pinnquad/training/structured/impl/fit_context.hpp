@@ -43,10 +43,6 @@ PINNQUAD_BODY void FitContext::each_standardised(const RowSet& rows, const Visit
   });
 }
 
-PINNQUAD_BODY FitContext FitContext::present(const RowSet& rows) const {
-  return fit_context(*features.present, schema, GivenAirframe(airframe_name, airframe), rows);
-}
-
 PINNQUAD_BODY FitContext fit_context(GroundFeatures features, GroundOutputs schema, const GivenAirframe& airframe,
                                      const RowSet& rows) {
   FitContext context{

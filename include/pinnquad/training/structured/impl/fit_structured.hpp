@@ -50,11 +50,8 @@ class StructuredFitter {
       groups_.push_back(group);
       sums_.push_back(std::move(sums));
     }
-    if (context_.is_windowed()) hold_thrust();
     measured_ = map_ = fit_monotone_base(shape_, sums_, pinned_);
-    if (!shape_.noisy.empty()) {
-      slopes_ = measure_slopes(shape_, instrumented_blocks(context_, fitted_, shape_.noisy), pinned_, measured_);
-    }
+    slopes_ = measure_slopes(context_, fitted_, pinned_, measured_);
     whole_flights_ = whole_flight_groups(fitted_).size() > 1 && groups_.size() > 1;
   }
 
@@ -79,35 +76,19 @@ class StructuredFitter {
   }
 
  private:
-  /// A window's taps would be their own instruments. What a held force takes is the same without a window: where noise
-  /// bends it there, the sum over all taps is held at what instruments say there.
-  void hold_thrust() {
-    const FitContext present = context_.present(fitted_);
-    const MonotoneShape shape = monotone_shape(present);
-    if (shape.thrusts.size() != 1) return;
-    AffineMap map = fit_monotone_base(shape, regression_sums(present, left_out_groups(fitted_)));
-    const MeasuredSlope thrust =
-        measure_slopes(shape, instrumented_blocks(present, fitted_, shape.noisy), {}, map).of[0];
-    if (!thrust.by_instruments) return;
-    slopes_.of[0] = thrust;
-    shape_.held_thrust = thrust.slope;
-    slopes_.noisy = shape_.thrusts;
-    slopes_.denoised = denoised_taps(context_, shape_, total(instrumented_blocks(context_, fitted_, slopes_.noisy)));
-  }
-
   FittedResidual fitted(const RowSet& training, const AffineMap& map, std::uint64_t seed, const GoesOn& goes_on) const {
     std::mt19937_64 engine(seed);
     return fit_residual(context_, kind_, training, split_.validation, map, settings_.residual, engine, goes_on);
   }
 
-  /// The base with its measured slopes. A sum that has them by instruments has no residual: what a network is shown, it
-  /// would use to take them back.
+  /// The base with its measured slopes. A sum that has them by smoothed rows has no residual: what a network is shown,
+  /// it would use to take them back.
   std::vector<float> with_measured_slopes(std::vector<float> parameters) const {
-    if (!slopes_.by_instruments()) return parameters;
+    if (!slopes_.smoothed()) return parameters;
     const std::vector<float> base = base_parameters(context_.features.accelerations, measured_);
     std::copy(base.begin(), base.end(), parameters.begin());
     for (std::size_t k = 0; k < slopes_.of.size() && parameters.size() > base.size(); ++k) {
-      if (slopes_.of[k].by_instruments) parameters[base.size() + k] = parameters[base.size() + 4 + k] = 0;
+      if (slopes_.of[k].smoothed()) parameters[base.size() + k] = parameters[base.size() + 4 + k] = 0;
     }
     return parameters;
   }
@@ -217,7 +198,7 @@ class StructuredFitter {
   std::vector<RowSet> groups_;
   std::vector<RegressionSums> sums_;  ///< of the groups
   AffineMap map_;                     ///< by least squares
-  AffineMap measured_;                ///< by instruments where noise bends it
+  AffineMap measured_;                ///< by smoothed rows where noise bends it
   MeasuredSlopes slopes_;
   bool whole_flights_ = false;
 };
