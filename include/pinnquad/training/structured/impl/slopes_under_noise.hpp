@@ -315,9 +315,9 @@ PINNQUAD_BODY MeasuredSlopes measure_slopes(const FitContext& context, const Row
       if (output == 0) {
         shape.held_thrust = found.slope.all;
         const Identification vehicle = identify(rows, axis_signs(context.airframe));
-        const bool through_zero = vehicle.thrust_slope_m_s2.holds(vehicle.thrust_m_s2.value);  // of commands and thrust
-        const Estimate& thrust = through_zero ? vehicle.thrust_m_s2 : vehicle.thrust_slope_m_s2;
-        if (thrust.low() > 0) {
+        const Estimate& thrust = vehicle.thrust_m_s2;
+        // commands with another zero, and flights of several masses, have no such thrust: the smoothed rows' slope stays
+        if (thrust.low() > 0 && vehicle.thrust_slope_m_s2.holds(thrust.value)) {
           shape.held_thrust = 1 / thrust.value;
           slope.standard_error = thrust.half_width / (half * thrust.value * thrust.value);
           upper = 1 / thrust.low();
