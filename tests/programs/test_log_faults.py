@@ -411,7 +411,7 @@ def test_px4s_simulation(pinnquad, sih, recorded):
     assert re.search(r"payload: columns u1 to u4: thrust .* 4\.1\d .* 1[67] % less than in 3", said[0])
     # flights of two masses have no one thrust: the slope is not that of either beside the other's hover
     pinnquad("train all --hold-out test_circle --models structured --seeds 1 --epochs 1 --out trained", code=(0, 1))
-    assert json.loads(Path("trained/report.json").read_text())["models"]["structured"]["r2"]["mean"] > 0.5
+    assert json.loads(Path("trained/report.json").read_text())["models"]["structured"]["r2"]["mean"] > 0.35
 
 
 @pytest.mark.parametrize("name", ["turning", "derivative"])

@@ -316,7 +316,8 @@ PINNQUAD_BODY MeasuredSlopes measure_slopes(const FitContext& context, const Row
         shape.held_thrust = found.slope.all;
         const Identification vehicle = identify(rows, axis_signs(context.airframe));
         const Estimate& thrust = vehicle.thrust_m_s2;
-        // commands with another zero, and flights of several masses, have no such thrust: the smoothed rows' slope stays
+        // commands with another zero, and flights of several masses, have no such thrust: the slope of smoothed rows
+        // stays
         if (thrust.low() > 0 && vehicle.thrust_slope_m_s2.holds(thrust.value)) {
           shape.held_thrust = 1 / thrust.value;
           slope.standard_error = thrust.half_width / (half * thrust.value * thrust.value);
