@@ -21,6 +21,8 @@ namespace pinnquad {
 /// The resistance of a cell is 0.02 ohm over its capacity in ampere-hours (the small cell of that paper: 0.063). That,
 /// three cells of 2.2 Ah, and the efficiency of motors and speed controllers are ours.
 struct Battery {
+  static constexpr bool is_battery = true;
+
   double cells{3};
   double capacity_Ah{2.2};
   double start_charge{1};               ///< z at the start of the flight

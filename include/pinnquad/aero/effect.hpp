@@ -10,6 +10,7 @@
 // which is its wrench as if the condition lay on that branch.
 // Optional:
 //   static constexpr VariesWith varies_with    less than place_and_time lets an inverse go without them
+//   static constexpr bool is_battery = true    of one that reads and sets Surroundings::battery
 //   auto bound(const Airframe<Scalar>&)        the effect that a vehicle keeps in its place, of the airframe: it alone
 //                                              may have the functions above
 //   Status status(const Airframe<Scalar>&)     whether its values make sense and its model holds for the airframe: a
@@ -188,6 +189,13 @@ template <class Effect>
 using NoStatus = decltype(&WithNames<Effect>::status);
 }  // namespace detail
 
+namespace detail {
+template <class Effect>
+using IsBattery = std::enable_if_t<Effect::is_battery>;
+}  // namespace detail
+/// True for an effect that reads and sets Surroundings::battery.
+template <class Effect>
+inline constexpr bool is_battery = is_detected<detail::IsBattery, detail::UnswitchedEffect<Effect>>;
 template <class Effect>
 inline constexpr bool changes_surroundings = is_detected<detail::SurroundingsCall, detail::UnswitchedEffect<Effect>>;
 template <class Effect>

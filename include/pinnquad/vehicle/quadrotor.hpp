@@ -102,7 +102,7 @@ class Quadrotor {
     air.time_s = time_s;
     air.position_m = state.position_m;
     air.altitude_m = site_.elevation_m - state.position_m[2];
-    air.battery = use;
+    if constexpr (has_battery) air.battery = use;
     each_effect<usual>([&air](const auto& effect) PINNQUAD_INLINE_LAMBDA {
       if constexpr (changes_surroundings<std::decay_t<decltype(effect)>>) effect.surroundings(air);
     });
@@ -275,7 +275,7 @@ class Quadrotor {
     return detail::refused_where(!is_unit(state.body.attitude), Status::not_unit_quaternion, status);
   }
 
-  static constexpr bool is_switched = (detail::is_switched<Effects> || ...);
+  static constexpr bool is_switched = (detail::is_switched<Effects> || ...), has_battery = (is_battery<Effects> || ...);
   static constexpr bool has_usual = (detail::has_usual_state<Effects> || ...);
   template <bool plain, bool usual>
   PINNQUAD_ALWAYS_INLINE Wrench<Scalar> aerodynamic(const State<Scalar>& state, const Surroundings<Scalar>& air,
@@ -349,7 +349,7 @@ class Quadrotor {
                                                                         Scalar time_s, BatteryUse<Scalar>& use,
                                                                         Outcome<Scalar>& status) const noexcept {
     const Evaluation e = loads<plain, usual>(state, thrusts, time_s, use);
-    use.current_A = e.surroundings.battery.current_A;
+    if constexpr (has_battery) use.current_A = e.surroundings.battery.current_A;
     status = select(status == Status::ok, e.surroundings.status, status);
     // a battery can't reverse thrust
     status = detail::refused_where(!(e.surroundings.thrust_scale >= Scalar(0)), Status::out_of_range, status);
