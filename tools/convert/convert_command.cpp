@@ -15,7 +15,6 @@
 #include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
-#include "command_line/folder_lock.hpp"
 #include "command_line/options.hpp"
 #include "convert/begun_features.hpp"
 #include "convert/convert_network.hpp"

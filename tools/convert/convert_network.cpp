@@ -32,7 +32,7 @@ using namespace pinnquad;
       std::string("a difference of ") + text + (conversion.in_double ? "" : " (--double has more digits)"));
 }
 
-/// Of a block whose weights may not give its golden commands: BlockModel refuses such a one.
+/// Largest difference of a block's golden commands, which its weights may not give: BlockModel refuses such a one.
 template <class Scalar>
 double golden_difference(const std::vector<unsigned char>& block) {
   std::vector<std::uint64_t> aligned((block.size() + 7) / 8);

@@ -189,19 +189,28 @@ std::string network_text(const char* inputs_word, std::size_t inputs, const std:
 }
 
 /// The source's commands for a row, of its answer.
-Commands<double> commands_of(const Numbers& answer, const Numbers& features, const ForeignMeaning& meaning,
-                             const std::vector<std::size_t>& outputs_of_file) {
-  RunTimeOutputs<double> schema;
-  schema.find(meaning.schema);
-  schema.prepare(meaning.airframe.value);
-  Numbers outputs;
-  for (const std::size_t place : outputs_of_file) {
-    outputs.push_back(answer[place] * meaning.output_scale[place] + meaning.output_mean[place]);
+class SourceCommands {
+ public:
+  explicit SourceCommands(const ForeignMeaning& meaning) : meaning_(meaning), of_file_(output_order(meaning)) {
+    schema_.find(meaning.schema);
+    schema_.prepare(meaning.airframe.value);
   }
-  Commands<double> u{};
-  schema.commands(features.data(), outputs.data(), u.data());
-  return u;
-}
+
+  Commands<double> operator()(const Numbers& answer, const Numbers& features) const {
+    Numbers outputs;
+    for (const std::size_t place : of_file_) {
+      outputs.push_back(answer[place] * meaning_.output_scale[place] + meaning_.output_mean[place]);
+    }
+    Commands<double> u{};
+    schema_.commands(features.data(), outputs.data(), u.data());
+    return u;
+  }
+
+ private:
+  const ForeignMeaning& meaning_;
+  std::vector<std::size_t> of_file_;
+  RunTimeOutputs<double> schema_;
+};
 
 constexpr std::size_t golden_rows = 8, compared_rows = 1000;
 
@@ -247,8 +256,8 @@ pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& net
     model.column_names.push_back(feature.name);
     model.column_units.push_back(feature.unit);
   }
-  const std::vector<std::size_t> outputs_of_file = output_order(meaning);
-  const std::vector<ForeignLayer> layers = layers_of(network, meaning, order.of_file, to_network, outputs_of_file);
+  const std::vector<ForeignLayer> layers =
+      layers_of(network, meaning, order.of_file, to_network, output_order(meaning));
   for (const ForeignLayer& layer : layers) {
     for (const Numbers* numbers : {&layer.weights, &layer.bias}) {
       for (const double number : *numbers) model.parameters.push_back(narrowed<Scalar>(number, network));
@@ -256,11 +265,12 @@ pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& net
   }
   model.output_mean.assign(network.outputs, Scalar(0));
   model.output_deviation.assign(network.outputs, Scalar(1));
+  const SourceCommands source(meaning);
   for (std::size_t row = 0; row < golden_rows; ++row) {
     const Numbers& x = rows.features[row];
     auto& golden = model.golden_features.emplace_back();
     for (const double value : x) golden.push_back(static_cast<Scalar>(value));
-    const Commands<double> u = commands_of(network.answers[row], x, meaning, outputs_of_file);
+    const Commands<double> u = source(network.answers[row], x);
     auto& commands = model.golden_commands.emplace_back();
     for (std::size_t i = 0; i < u.size(); ++i) commands[i] = narrowed<Scalar>(u[i], network);
   }
@@ -302,10 +312,10 @@ template pinnquad::detail::WrittenModel<double> converted_model(const ForeignNet
 double largest_difference(const BlockModel& model, const ForeignNetwork& network, const ForeignMeaning& meaning,
                           const AskedRows& rows) {
   Commands<double> most{}, scale{1, 1, 1, 1};
-  const std::vector<std::size_t> outputs_of_file = output_order(meaning);
+  const SourceCommands source(meaning);
   for (std::size_t row = 0; row < rows.features.size(); ++row) {
     const Commands<double> own = model.commands(rows.features[row]),
-                           said = commands_of(network.answers[row], rows.features[row], meaning, outputs_of_file);
+                           said = source(network.answers[row], rows.features[row]);
     for (std::size_t i = 0; i < own.size(); ++i) {
       const double difference = std::abs(own[i] - said[i]);
       if (!(difference <= most[i])) most[i] = difference;  // NaN stays
