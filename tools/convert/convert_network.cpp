@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "convert/convert_network.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -28,7 +27,7 @@ using namespace pinnquad;
   char text[32];
   std::snprintf(text, sizeof text, "%.1e", difference);
   throw InputError(
-      conversion.source, 0, 0, "a network that the model's arithmetic answers within 1e-6 of a command",
+      conversion.source, 0, 0, "a network that the model's arithmetic answers within 1e-5 of a command",
       std::string("a difference of ") + text + (conversion.in_double ? "" : " (--double has more digits)"));
 }
 
@@ -73,10 +72,10 @@ std::string write_model(const Conversion& conversion, const ForeignMeaning& mean
   pinnquad::detail::WrittenModel<Scalar> written = converted_model<Scalar>(network, meaning, rows, conversion.name);
   const std::string block_path = conversion.out + "/model.block", header_path = conversion.out + "/model.hpp";
   const std::vector<unsigned char> block = pinnquad::detail::block_beside_header(written);
-  double difference = golden_difference<Scalar>(block);
-  if (!(difference <= golden_tolerance)) refuse_difference(conversion, difference);
+  const double golden = golden_difference<Scalar>(block);
+  if (!(golden <= golden_tolerance)) refuse_difference(conversion, golden);
   const BlockModel model(block_path, block);
-  difference = std::max(difference, largest_difference(model, network, meaning, rows));
+  const double difference = largest_difference(model, network, meaning, rows);
   if (!(difference <= converted_tolerance)) refuse_difference(conversion, difference);
   if (!model.angular_accelerations().empty()) {
     if (const auto proven = model.proven_signs()) {

@@ -12,8 +12,9 @@
 
 namespace programs {
 
-/// A converted model differs from its source by no more than this, a command's worth.
-inline constexpr double converted_tolerance = 1e-6;
+/// A converted model differs from its source by no more than this, a command's worth: what float loses in layers of a
+/// thousand numbers. The source is asked in double.
+inline constexpr double converted_tolerance = 1e-5;
 
 /// Features inside the envelope, in the model's order and numbers, and the same as the network reads them.
 struct AskedRows {

@@ -36,10 +36,12 @@ class Refused(Exception):
         self.expected, self.found, self.path = expected, found, path
 
 
-def missing(package):
-    """A package that this Python does not have; the program may be told another Python."""
-    return Refused(f"Python's package {package} (pip install {package}; Debian: python3-{package})",
-                   f"none in {sys.executable} (PINNQUAD_PYTHON names another Python)")
+class Missing(Refused):
+    """A package that this Python lacks: the program asks the next Python of PATH."""
+
+    def __init__(self, package):
+        super().__init__(f"Python's package {package} (pip install {package}; Debian: python3-{package})",
+                         f"none in {sys.executable} (PINNQUAD_PYTHON names another Python)")
 
 
 def one_line(error):
@@ -843,7 +845,7 @@ class OnnxReader:
         try:
             import onnx
         except ImportError:
-            raise missing("onnx") from None
+            raise Missing("onnx") from None
         self.onnx, self.path, self.files, self.asked = onnx, Path(path), {}, asked
         model, data = onnx.ModelProto(), network_bytes(path)
         try:
@@ -1211,7 +1213,7 @@ def onnx_of(model):
     try:
         from onnx import TensorProto, helper
     except ImportError:
-        raise missing("onnx") from None
+        raise Missing("onnx") from None
     kind = TensorProto.DOUBLE if model.said["is_double"] else TensorProto.FLOAT
     nodes, constants = [], []
 
@@ -1319,18 +1321,21 @@ def answer(asked, source=None):
     a source is {"expected", "found", "path"}."""
     try:
         if np is None:
-            raise missing("numpy")
+            raise Missing("numpy")
         if "model" in asked:
             write = {".onnx": onnx_of, ".safetensors": safetensors_of}[asked["ending"]]
             return {"bytes": write(Model(asked["model"]).checked()).decode("latin-1")}
         return read_network(asked, source)
     except Refused as refused:
-        return {"expected": refused.expected, "found": refused.found, "path": refused.path}
+        return {"expected": refused.expected, "found": refused.found, "path": refused.path,
+                "missing": isinstance(refused, Missing)}
 
 
 def main():
-    json.dump(answer(json.load(sys.stdin)), sys.stdout)
-    return 0
+    """Exit code 3: this Python lacks a package."""
+    said = answer(json.load(sys.stdin))
+    json.dump(said, sys.stdout)
+    return 3 if said.get("missing") else 0
 
 
 if __name__ == "__main__":
