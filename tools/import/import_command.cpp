@@ -32,7 +32,7 @@ struct ImportOptions {
 
 void list_mappings() {
   for (const logs::ReadyMapping& ready : logs::ready_mappings()) {
-    std::printf("%-12s %s\n", ready.name.c_str(), ready.about.c_str());
+    std::printf("%-14s %s\n", ready.name.c_str(), ready.about.c_str());
   }
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "logs/list_cells.hpp"
 #include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/file_error.hpp"
@@ -233,6 +234,7 @@ LogTopic read_csv_topic(const std::string& path, const LogSelection& selection) 
     again.set_first_text(table.first_text());
     topic = again.read();
   }
+  expand_lists(topic);
   set_clock(topic, table, selection);
   return topic;
 }

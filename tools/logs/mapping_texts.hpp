@@ -2,7 +2,7 @@
 // The mappings that the library brings: the files of examples/mappings, as CMake found them.
 #pragma once
 
-#include <array>
+#include <vector>
 
 namespace pinnquad::logs {
 
@@ -11,6 +11,6 @@ struct MappingText {
   const char* toml;
 };
 
-extern const std::array<MappingText, 5> mapping_texts;
+extern const std::vector<MappingText> mapping_texts;
 
 }  // namespace pinnquad::logs

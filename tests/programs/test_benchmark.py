@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+"""Public data sets (tools/study/benchmark.py): a set of a user's own from import to row, and predictions of others."""
+import csv
+import json
+import shutil
+import sys
+from pathlib import Path
+from statistics import fmean
+
+import pytest
+
+from conftest import SOURCE, Program
+
+benchmark = Program(sys.executable, SOURCE / "tools/study/benchmark.py")
+MAPPING = """about = "flights of pinnquad fly"
+world = "ned"
+body = "frd"
+time = { column = "t", unit = "s" }
+attitude = { euler = ["roll", "pitch", "yaw"] }
+body_rates = { columns = ["w_x", "w_y", "w_z"] }
+velocity = { columns = ["v_bx", "v_by", "v_bz"], axes = "body" }
+altitude = { columns = "altitude" }
+motors = { columns = ["u1", "u2", "u3", "u4"], numbers = "thrust", order = "px4" }
+"""
+SET = """about = "three flights"
+url = "here"
+licence = "none"
+flights = ["*.csv"]
+mapping = "mapping.toml"
+airframe = "paper_quadrotor"
+hold_out = "flight5"
+train = ["--models", "constant,ridge"]
+"""
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+def write_predictions(rows, of):
+    lines = ["t,u1,u2,u3,u4"] + [",".join(repr(one) for one in (row["t"], *of(row))) for row in rows]
+    Path("mine.csv").write_text("\n".join(lines) + "\n")
+
+
+def test_a_set(pinnquad, flown):
+    """The mean of the training commands scores as the program's own row of it; what is right scores 1."""
+    Path("copy").mkdir()
+    for seed in 3, 4, 5:
+        shutil.copy(flown(f"--seed {seed} --samples 2400"), f"copy/flight{seed}.csv")
+    shutil.copy("copy/flight3.csv", "copy/twice.csv")
+    Path("mapping.toml").write_text(MAPPING)
+    Path("mine.toml").write_text(SET)
+    done = benchmark("run", "mine.toml", "copy", "--program", str(pinnquad), "--out", "out")
+    assert "twice.csv: left out" in done.out
+    row = json.loads(Path("out/row.json").read_text())
+    assert row["flights"] == 3 and row["held_out"] == ["flight5"] and row["r2"]["ridge"] > 0.9
+    assert "imported before" in benchmark("run", "mine.toml", "copy", "--program", str(pinnquad), "--out", "out").out
+
+    held_out = rows_of("out/dataset/flight5.csv")
+    training = rows_of("out/dataset/flight3.csv") + rows_of("out/dataset/flight4.csv")
+    mean = [fmean(one[f"u{motor}"] for one in training) for motor in range(1, 5)]
+    write_predictions(held_out, lambda row: mean)
+    benchmark("score", "out", "mine.csv", "--name", "mean")
+    write_predictions(held_out, lambda row: [row[f"u{motor}"] for motor in range(1, 5)])
+    benchmark("score", "out", "mine.csv", "--name", "truth")
+    row = json.loads(Path("out/row.json").read_text())
+    assert row["others"]["mean"]["r2"] == pytest.approx(row["r2"]["constant"], abs=0.01)
+    assert row["others"]["truth"]["r2"] == 1 and row["others"]["truth"]["rmse"] == 0
+    shown = benchmark("table", "out").out
+    assert "| mean | truth |" in shown and "| 1.000 |" in shown
+
+    write_predictions(held_out[1:], lambda row: mean)
+    benchmark.refused("score", "out", "mine.csv", keyword="found none for 1")
+    Path("mine.csv").write_text("t,u1,u2,u3,u4\n0,1,2,3,x\n")
+    benchmark.refused("score", "out", "mine.csv", at="mine.csv:2", keyword="'x'")
+    Path("mine.csv").write_text("t,u1,u2,u3\n")
+    benchmark.refused("score", "out", "mine.csv", at="mine.csv:1", keyword="u4")
+
+
+def test_sets_and_refusals(pinnquad):
+    """Each set of the tree names a mapping that the program, or the set's folder, has."""
+    ready = pinnquad("import --list").out
+    names = [path.stem for path in sorted((SOURCE / "tools/study/data_sets").glob("*.toml"))]
+    listed = benchmark("list").out
+    for name in names:
+        assert name in listed
+    for path in (SOURCE / "tools/study/data_sets").glob("*.toml"):
+        mapping = path.read_text().split('mapping = "')
+        if len(mapping) > 1:
+            assert mapping[1].split('"')[0] in ready or (path.parent / mapping[1].split('"')[0]).is_file()
+    benchmark.refused("run", "nowhere", ".", keyword="one of")
+    benchmark.refused("run", names[0], ".", keyword="expected flights")
+    benchmark.refused("score", ".", "mine.csv", keyword="benchmark.py run")
+    Path("mine.toml").write_text('about = "x"\n')
+    benchmark.refused("run", "mine.toml", ".", at="mine.toml", keyword="`url`")
+
+
+def test_lists_in_cells(pinnquad, flown):
+    """A table that pandas wrote of arrays: vectors and matrices in quoted cells, between commas or blanks."""
+    rows = rows_of(flown("--seed 3 --samples 2400"))
+    text = lambda row, names, between: between.join(repr(row[name]) for name in names)
+    lines = [",t,w,M,u"]
+    for number, row in enumerate(rows):
+        vectors = [f'"[{text(row, ("w_x", "w_y", "w_z"), " ")}]"',
+                   f'"[[{text(row, ("v_bx", "v_by", "v_bz"), ", ")}], [{text(row, ("roll", "pitch", "yaw"), ", ")}]]"',
+                   f'"[{text(row, ("u1", "u2", "u3", "u4"), ", ")}]"']
+        lines.append(",".join([str(number), f'[{row["t"]!r}]', *vectors]))
+    Path("log.csv").write_text("\n".join(lines) + "\n")
+    mapping = MAPPING.replace('["w_x", "w_y", "w_z"]', '["w[0]", "w[1]", "w[2]"]').replace(
+        '["v_bx", "v_by", "v_bz"]', '["M[0][0]", "M[0][1]", "M[0][2]"]').replace(
+        '["roll", "pitch", "yaw"]', '["M[1][0]", "M[1][1]", "M[1][2]"]').replace(
+        '["u1", "u2", "u3", "u4"]', '["u[0]", "u[1]", "u[2]", "u[3]"]')
+    Path("mapping.toml").write_text("".join(line for line in mapping.splitlines(True) if "altitude" not in line))
+    Path("plain.toml").write_text("".join(line for line in MAPPING.splitlines(True) if "altitude" not in line))
+    pinnquad("import log.csv --mapping mapping.toml --lag 0 --out lists")
+    shutil.copy(flown("--seed 3 --samples 2400"), "log.csv")
+    pinnquad("import log.csv --mapping plain.toml --lag 0 --out plain")
+    assert Path("lists/log.csv").read_text() == Path("plain/log.csv").read_text()
+
+    lines[40] = lines[40].replace("[[", "[[1.0, ", 1)
+    Path("log.csv").write_text("\n".join(lines) + "\n")
+    pinnquad.refused("import log.csv --mapping mapping.toml --out other", at="log.csv:41", keyword="a list of 6 numbers")
