@@ -521,6 +521,22 @@ def test_onnx(pinnquad, how, name):
     assert worst(header, lambda row: network(standardised(row))) <= TOLERANCE
 
 
+@pytest.mark.parametrize("shape", [[5], [1, 1, 5], ["rows", "steps", 5]])
+def test_input_shapes(pinnquad, shape):
+    """One motion without a row of its own, or as the only step of a sequence."""
+    network = Network(5, 12, "relu", 4)
+    graph = Graph(has_onnx())
+    linear(graph, network.layers[0], 5, "matmul")
+    activation(graph, "relu")
+    linear(graph, network.layers[2], 12, "matmul")
+    graph.shapes = [shape, [*shape[:-1], 4]]
+    graph.write()
+    features_toml(per_feature=mean_and_scale)
+    header = converted(pinnquad, "net.onnx")
+    standardised = lambda row: [(row[n] - (lower + upper) / 2 - 0.1) / ((upper - lower) / 4) for n, lower, upper in FEATURES]
+    assert worst(header, lambda row: network(standardised(row))) <= TOLERANCE
+
+
 def wrong_onnx(case):
     """change(graph), and a word of the refusal; the sound graph is a Gemm and a Relu."""
     op = lambda name, *more, **how: lambda graph: graph.node(name, graph.x, *(more), **how)
@@ -550,7 +566,8 @@ def wrong_onnx(case):
         "named": (width(lambda t: setattr(t.shape.dim[1], "dim_param", "columns")), "'columns'"),
         "no features": (width(lambda t: setattr(t.shape.dim[1], "dim_value", -3)), "-3"),
         "huge": (width(lambda t: setattr(t.shape.dim[1], "dim_value", 2**62)), "features"),
-        "rank": (width(lambda t: t.shape.dim.add()), "3 dimensions"),
+        "rank": (width(lambda t: t.shape.dim.add()), "no window"),
+        "recurrent": (op("GRU", hidden_size=4), "without a state"),
         "input type": (width(lambda t: setattr(t, "elem_type", 7)), "INT64"),
         "two inputs": (model(lambda m: m.graph.input.add().CopyFrom(m.graph.input[0]) or
                              setattr(m.graph.input[1], "name", "z")), "one input"),
@@ -569,7 +586,7 @@ def wrong_onnx(case):
 
 WRONG_ONNX = ["unknown", "domain", "product", "two products", "over numbers", "erf", "quotient", "by zero", "shape",
               "column", "matrix", "made of nothing", "cast", "training", "variance", "NaN", "inputs", "features",
-              "named", "no features", "huge", "rank", "input type", "two inputs", "two outputs", "no output",
+              "named", "no features", "huge", "rank", "recurrent", "input type", "two inputs", "two outputs", "no output",
               "twice", "external", "negative dims", "huge dims", "huge product", "other dims", "raw",
               "opset"]
 

@@ -70,18 +70,20 @@ class Node:
 
 
 class Graph:
-    """Operators in their order, from the value `input`, rows of `width` numbers, to `output`."""
+    """Operators in their order, from the value `input`, rows of `width` numbers, to `output`. One row is shown in the
+    shape `shape`: [1, width], or as the file has it."""
 
-    def __init__(self, width, nodes, input="x", output=None, rows_are_free=True):
+    def __init__(self, width, nodes, input="x", output=None, rows_are_free=True, shape=None):
         if not 1 <= width <= WIDEST:
             raise Refused(f"1 to {WIDEST} features", str(width))
         self.width, self.nodes, self.input = width, nodes, input
         self.output = output if output is not None else (nodes[-1].output if nodes else input)
         self.rows_are_free = rows_are_free  # however many rows; False: one alone
+        self.shape = shape or (1, width)
 
     def __call__(self, rows):
         """The outputs of rows, a row of both at a time, in double."""
-        return np.array([self._values(row[None, :]).reshape(-1) for row in np.asarray(rows, "f8")])
+        return np.array([self._values(row.reshape(self.shape)).reshape(-1) for row in np.asarray(rows, "f8")])
 
     def _values(self, x):
         values = {self.input: x}
@@ -96,7 +98,7 @@ class Graph:
         rows = np.random.default_rng(3).normal(size=(2, self.width))
         alone = self(rows)
         try:
-            together = self._values(rows)
+            together = self._values(rows.reshape((2, *self.shape[1:])))
         except Refused as refused:
             raise Refused("rows that do not depend on each other", f"two at once, in {refused.expected}") from None
         if together.size != alone.size or not np.allclose(together.reshape(alone.shape), alone, 1e-9, 1e-9, True):
@@ -206,7 +208,7 @@ class Lowering:
     def layers(self):
         """Layers of the library: {"weights", "bias"} or the name of an activation."""
         graph = self.graph
-        values = {graph.input: Value((1, graph.width), Affine({0: np.eye(graph.width)}, np.zeros(graph.width)))}
+        values = {graph.input: Value(graph.shape, Affine({0: np.eye(graph.width)}, np.zeros(graph.width)))}
         for node in graph.nodes:
             values[node.output] = self.taken(node, [values[one] if isinstance(one, str) else one for one in node.inputs])
         last = values[graph.output]
@@ -866,7 +868,7 @@ class OnnxReader:
         inputs = [one for one in self.model.input if one.name not in stored]
         if len(inputs) != 1:
             raise Refused("a graph with one input", str(len(inputs)))
-        width, free = self.described(inputs[0])
+        shape, free = self.described(inputs[0])
         constants, made, nodes = {}, {inputs[0].name}, []
 
         def constant(name, what):
@@ -895,7 +897,7 @@ class OnnxReader:
                     constants[output] = finite(output, np.asarray(own(taken)))
                     if constants[output].size > MOST_NUMBERS:
                         raise Refused(f"{what}: at most 2^24 numbers", str(constants[output].size))
-        return Graph(width, nodes, inputs[0].name, self.output(made), free)
+        return Graph(shape[-1], nodes, inputs[0].name, self.output(made), free, shape)
 
     def output(self, made):
         outputs, wanted = [one.name for one in self.model.output], self.asked.get("output", "")
@@ -913,13 +915,14 @@ class OnnxReader:
         if kind.elem_type not in FLOATS:
             raise Refused(what + "a tensor of FLOAT, DOUBLE, FLOAT16 or BFLOAT16", self.type_name(kind.elem_type))
         sizes = kind.shape.dim
-        if not kind.HasField("shape") or len(sizes) != 2:
-            raise Refused(what + "a shape [rows, features]", f"{len(sizes)} dimensions")
-        if not sizes[1].HasField("dim_value"):
-            raise Refused(what + "a number of features", f"a dynamic one, '{sizes[1].dim_param}'")
-        if not 1 <= sizes[1].dim_value <= WIDEST:
-            raise Refused(what + f"1 to {WIDEST} features", str(sizes[1].dim_value))
-        return sizes[1].dim_value, not (sizes[0].HasField("dim_value") and sizes[0].dim_value == 1)
+        rows = [one.dim_value if one.HasField("dim_value") else 0 for one in sizes]
+        if not kind.HasField("shape") or not sizes or any(size > 1 for size in rows[1:-1]):
+            raise Refused(what + "a shape [rows, features]", f"[{', '.join(map(str, rows))}] (one motion a row: no window)")
+        if not rows[-1]:
+            raise Refused(what + "a number of features", f"a dynamic one, '{sizes[-1].dim_param}'")
+        if not 1 <= rows[-1] <= WIDEST:
+            raise Refused(what + f"1 to {WIDEST} features", str(rows[-1]))
+        return (*[1] * (len(sizes) - 1), rows[-1]), len(sizes) > 1 and rows[0] != 1
 
     def type_name(self, number):
         try:
@@ -950,6 +953,9 @@ class OnnxReader:
         if given.get("training_mode"):
             raise Refused(f"{what}: a network that no longer trains", "training_mode 1")
         table = operators(attribute)
+        if node.op_type in ("GRU", "LSTM", "RNN"):
+            raise Refused(f"{what}: layers without a state (a model is asked for one motion; `pinnquad train --models "
+                          "structured_causal` fits one of the last motions)", node.op_type)
         if node.op_type not in table:
             raise Refused(f"{what}: an affine map or an activation of each number (docs/convert.md)", node.op_type)
         return table[node.op_type]
