@@ -83,7 +83,7 @@ std::vector<LogTopic> dealt(LogTopic topic, const std::vector<std::vector<std::s
   deal(
       topic.place, [](LogTopic & part) -> auto& { return part.place; });
   for (LogColumn& column : topic.columns) {
-    for (LogTopic& part : parts) part.columns.push_back({column.name, {}});
+    for (LogTopic& part : parts) part.columns.push_back({column.name, {}, column.unit});
     deal(
         column.values, [](LogTopic & part) -> auto& { return part.columns.back().values; });
   }
@@ -107,6 +107,14 @@ bool is_name_pattern(std::string_view pattern) {
   return open != pattern.npos && close != pattern.npos && open < close && pattern.find('(', open + 1) == pattern.npos &&
          pattern.find(')', close + 1) == pattern.npos &&
          static_cast<std::size_t>(std::count(pattern.begin(), pattern.end(), '*')) <= most_stars;
+}
+
+bool stands_beside_log(const std::string& path) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  const auto ends = [&name](std::string_view end) {
+    return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+  };
+  return ends(".gps.csv") || ends(".gps.gpx") || ends(".headers.csv") || ends(".event");
 }
 
 std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock) {

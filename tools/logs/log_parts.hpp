@@ -27,6 +27,9 @@ struct LogPlace {
 /// or the logs that ulog2csv wrote into it. Throws InputError: a folder without.
 std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock);
 
+/// True for what blackbox_decode writes beside a log, by its name: *.gps.csv, *.gps.gpx, *.headers.csv, *.event.
+bool stands_beside_log(const std::string& path);
+
 /// A flight's log and what it is called.
 struct LogPart {
   FlightLog log;

@@ -103,8 +103,17 @@ class Import {
     if (!mapping_.trajectory_column.name.empty()) selection.label_columns.push_back(mapping_.trajectory_column.name);
     std::vector<LogPlace> places;
     for (const std::string& path : logs_) {
-      for (LogPlace& place : logs_at(path, selection, !mapping_.time_column.name.empty()))
-        places.push_back(std::move(place));
+      for (LogPlace& place : logs_at(path, selection, !mapping_.time_column.name.empty())) {
+        if (stands_beside_log(place.path)) {
+          add(dataset_.notes, place.path + ": written beside a blackbox log by blackbox_decode: skipped");
+        } else {
+          places.push_back(std::move(place));
+        }
+      }
+    }
+    if (places.empty()) {
+      throw InputError(logs_.front(), 0, 0, "a flight log, such as LOG00001.01.csv",
+                       "what blackbox_decode writes beside one");
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double done = static_cast<double>(i), all = static_cast<double>(places.size());
@@ -142,12 +151,21 @@ class Import {
   void count_topics(const BoundLog& bound, const std::string& name) {
     std::vector<const LogTopic*> counted;
     const auto count = [&](const Signal& signal) {
-      if (!signal.present() || std::find(counted.begin(), counted.end(), signal.topic) != counted.end()) return;
-      counted.push_back(signal.topic);
+      if (!signal.present()) return;
+      if (!signal.note.empty()) add(dataset_.notes, signal.note);
+      const bool known = std::find(counted.begin(), counted.end(), signal.topic) != counted.end();
+      if (known && !signal.sparse) return;
+      if (!signal.sparse) counted.push_back(signal.topic);
       const ClockReport& report = signal.clock->report;
-      steps_.add("read: " + topic_words(signal.topic->name, signal.topic->instance), report.rows_read, report.rows_kept,
-                 "one time a row: no time, a second row of one time and stale first rows are left out");
-      const std::string topic = name + ", " + topic_words(signal.topic->name, signal.topic->instance);
+      std::string of = topic_words(signal.topic->name, signal.topic->instance);
+      if (signal.sparse) of += ", rows with " + signal.source->columns.front().name;
+      steps_.add("read: " + of, report.rows_read, report.rows_kept,
+                 "one time a row: no time, a wild one, a second row of one time and stale first rows are left out");
+      const std::string topic = name + ", " + of;
+      if (report.wild > 0) {
+        warn(topic + ": " + std::to_string(report.wild) + (report.wild > 1 ? " rows have stamps" : " row has a stamp") +
+             " that the rows around it do not have, first " + short_number(report.first_wild_s) + " s: left out");
+      }
       if (report.out_of_order > 0) {
         warn(topic + ": " + std::to_string(report.out_of_order) + " rows were not in time's order and were sorted");
       }

@@ -40,9 +40,10 @@ LogKind kind_of_log(const std::string& path);
 FlightLog read_log(const std::string& path, const LogSelection& selection = {});
 
 /// The rows of a CSV table. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end, quotation
-/// marks as in RFC 4180: accepted. An empty cell and `nan` are NaN, `inf` is infinite; a column with a cell that is no
-/// number is text. Throws InputError, one line: no header, names that come twice, a row of other length, cells between
-/// semicolons or tabs, decimal commas, a clock that is missing or no number.
+/// marks as in RFC 4180, semicolons (with decimal commas) or tabs between the cells: accepted. So are, above the names,
+/// comments and rows of a key and a value (Blackbox Explorer's), and a row of units below them. An empty cell and `nan`
+/// are NaN, `inf` is infinite; a column with a cell that is no number is text. Throws InputError, one line: no header,
+/// names that come twice, a row of other length, decimal commas between commas, a clock that is missing or no number.
 LogTopic read_csv_topic(const std::string& path, const LogSelection& selection = {});
 
 namespace ulog2csv {
