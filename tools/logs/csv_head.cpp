@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <deque>
 #include <limits>
 #include <map>
 #include <string_view>
@@ -185,7 +186,7 @@ class Head {
 
   const std::string& path_;
   detail::CsvRecords records_;
-  std::vector<Record> seen_;
+  std::deque<Record> seen_;  // what it holds stays where it is
 };
 
 }  // namespace

@@ -294,6 +294,10 @@ Source source_of(const std::string& path, const toml::table& node, const Quantit
   source.world = own.world;
   source.body = own.body;
   read_columns(table, source, facts);
+  if (source.euler && node.contains("world") != node.contains("body")) {  // level is 0, 0: both have z up, or down
+    if (node.contains("world")) source.body = source.world == WorldFrame::enu ? BodyFrame::flu : BodyFrame::frd;
+    if (node.contains("body")) source.world = source.body == BodyFrame::flu ? WorldFrame::enu : WorldFrame::ned;
+  }
   table.require_no_more();
   return source;
 }
