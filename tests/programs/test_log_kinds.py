@@ -311,3 +311,19 @@ def test_event_without_variables(pinnquad):
     head = b"\xbc" + struct.pack("<HHH", 2, 1, 0) + b"fixedFrequency\0" + struct.pack("<H", 0)
     Path("log00").write_bytes(head + b"".join(struct.pack("<HQ", 0, 10000 * n) for n in range(ROWS)))
     pinnquad.refused("import log00 --mapping crazyflie --out bad", at="crazyflie.toml:*", keyword="no variable at all")
+
+
+def test_clock_that_runs_wrong_is_found(pinnquad):
+    """By attitude, velocity and altitude alike; with the scale it is not."""
+    names = [*NAMES, "vn", "ve", "vd", "x", "y", "z"]
+
+    def motion(t):
+        return [2 * sin(0.9 * t), 1.5 * cos(0.6 * t), 0.5 * sin(0.8 * t) - 1.5 / 4.1 * cos(4.1 * t), -2 / 0.9 * cos(0.9 * t),
+                2.5 * sin(0.6 * t), -20 - 0.5 / 0.8 * cos(0.8 * t) - 1.5 / 4.1**2 * sin(4.1 * t)]
+
+    mapping = TABLE + '[velocity]\ncolumns = ["vn", "ve", "vd"]\naxes = "world"\n[position]\ncolumns = ["x", "y", "z"]\n'
+    for factor, scale, found in ((84 / 85, "", True), (84 / 85, f"\nscale = {85 / 84!r}", False), (1, "", False)):
+        write("log.csv", [names], [[n / 100 * factor, *row_at(n)[1:], *motion(n / 100)] for n in range(ROWS)])
+        Path("table.toml").write_text(mapping.replace('"t"', f'"t"{scale}'))
+        said = imported(pinnquad, "log.csv", "--mapping", "table.toml", *LAG, "--rate", "100", out="out")
+        assert ("runs wrong" in said and "1.0119 s" in said) == found, said

@@ -391,9 +391,10 @@ Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& s
     const std::optional<double> least = number_in(log, source.least), most = number_in(log, source.most);
     if (!least || !most || !(*most > *least)) {
       if (!why) return {};
-      throw InputError(mapping.file, source.place.line, source.place.column,
-                       "the parameters " + source.least.parameter + " and " + source.most.parameter + " in " + log.source,
-                       "none, or not one above the other");
+      throw InputError(
+          mapping.file, source.place.line, source.place.column,
+          "the parameters " + source.least.parameter + " and " + source.most.parameter + " in " + log.source,
+          "none, or not one above the other");
     }
     const MotorRange range{*least, *most};
     require_four_motors(log, *topic, source, range.least, range.most, mapping.file);

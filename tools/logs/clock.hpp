@@ -13,8 +13,8 @@ namespace pinnquad::logs {
 /// The cleaning of a topic's clock, in rows.
 struct ClockReport {
   std::size_t rows_read = 0;
-  std::size_t not_a_time = 0;      ///< NaN or infinite: left out
-  std::size_t wild = 0;            ///< a few that fit no row around them: left out
+  std::size_t not_a_time = 0;  ///< NaN or infinite: left out
+  std::size_t wild = 0;        ///< a few that fit no row around them: left out
   double first_wild_s = 0;
   std::size_t out_of_order = 0;    ///< earlier than a row before them: sorted in
   std::size_t same_time = 0;       ///< left out: of rows with one time the last of the file stays

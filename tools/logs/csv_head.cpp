@@ -42,7 +42,7 @@ struct Record {
   std::size_t numbers() const {
     double ignored = 0;
     return static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [&](const std::string& cell) {
-      return !cell.empty() && cell_number(cell, ignored, separator);
+      return !cell.empty() && cell != "-" && cell_number(cell, ignored, separator);
     }));
   }
   std::size_t filled() const {
@@ -71,8 +71,8 @@ class Head {
       throw InputError(path_, at(0).line, 0, "a header that names the columns", "comments alone");
     }
     // NumPy writes the names behind a comment's sign
-    const bool commented = names > 0 && at(names - 1).comment && at(names - 1).is_names() &&
-                           at(names).is_row_below(at(names - 1));
+    const bool commented =
+        names > 0 && at(names - 1).comment && at(names - 1).is_names() && at(names).is_row_below(at(names - 1));
     if (commented) --names;
     return head_of(names);
   }

@@ -18,7 +18,8 @@ std::string unit_behind(const std::string& column, const std::string& name) {
   if (column.size() < name.size() + 3 || column.compare(0, name.size(), name) != 0) return "";
   std::size_t begin = name.size();
   while (begin < column.size() && column[begin] == ' ') ++begin;
-  const bool round = column[begin] == '(' && column.back() == ')', square = column[begin] == '[' && column.back() == ']';
+  const bool round = column[begin] == '(' && column.back() == ')',
+             square = column[begin] == '[' && column.back() == ']';
   if (!(round || square) || column.find_first_of("()[]", begin + 1) != column.size() - 1) return "";
   const std::string unit = column.substr(begin + 1, column.size() - begin - 2);
   const bool index = unit.find_first_not_of("0123456789") == std::string::npos;  // "gyro[0]" is no gyro in "0"

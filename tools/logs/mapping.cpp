@@ -441,7 +441,8 @@ Mapping mapping_of(const toml::table& tables, const std::string& path) {
 }  // namespace
 
 std::optional<double> unit_in_si(Dimension dimension, const std::string& name) {
-  const auto same = std::find_if(spellings.begin(), spellings.end(), [&](const auto& one) { return one.first == name; });
+  const auto same =
+      std::find_if(spellings.begin(), spellings.end(), [&](const auto& one) { return one.first == name; });
   const Unit* unit = unit_named(dimension, same == spellings.end() ? std::string_view(name) : same->second);
   if (!unit) return std::nullopt;
   return unit->in_si;

@@ -30,7 +30,8 @@ std::optional<Numbered> numbered(const std::string& name) {
   while (first > 0 && name[first - 1] >= '0' && name[first - 1] <= '9') --first;
   if (last - first > 2) return std::nullopt;
   Numbered result{name.substr(0, first), name.substr(last + 1), 0};
-  for (std::size_t i = first; i <= last; ++i) result.number = 10 * result.number + static_cast<std::size_t>(name[i] - '0');
+  for (std::size_t i = first; i <= last; ++i)
+    result.number = 10 * result.number + static_cast<std::size_t>(name[i] - '0');
   return result;
 }
 
@@ -124,7 +125,8 @@ void require_four_motors(const FlightLog& log, const LogTopic& topic, const Sour
   std::string names;
   for (const LogColumn* column : commanded) names += (names.empty() ? "" : ", ") + column->name;
   const std::string found = "commands in " + std::to_string(commanded.size()) + " columns (" + names + "): ";
-  if (!nothing && unused != nullptr) refuse(*unused, "none in " + unused->name + ", " + found + kind_of(commanded.size()));
+  if (!nothing && unused != nullptr)
+    refuse(*unused, "none in " + unused->name + ", " + found + kind_of(commanded.size()));
   if (commanded.size() > rotor_count) refuse(source.columns.back(), found + kind_of(commanded.size()));
   if (is_plus_frame(log)) {
     refuse(source.columns.front(), "rotors ahead, behind and to both sides by CA_ROTOR0_PX and so on: a '+' frame");

@@ -388,7 +388,8 @@ class Import {
         flight.name = free_name(dataset_.flights, passage.name, ++part);
         const bool misread = causes_.find(flight.name) != causes_.end();
         if (!misread) {
-          for (const SensorFinding& finding : check_sensors(flight, !dataset_.lacks("velocity"))) {
+          for (const SensorFinding& finding :
+               check_sensors(flight, !dataset_.lacks("velocity"), !dataset_.lacks("altitude"))) {
             warn(flight.name + ": " + finding.words);
             if (finding.may_be_heading) causes_.emplace(flight.name, finding.words);
           }
