@@ -118,6 +118,7 @@ class Import {
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double done = static_cast<double>(i), all = static_cast<double>(places.size());
       selection.prefix = places[i].prefix;
+      selection.flight = places[i].flight;
       selection.on_progress = [&](double share) { report("reading " + places[i].name, (done + share) / all); };
       FlightLog log = read_log(places[i].path, selection);
       dataset_.warnings.insert(dataset_.warnings.end(), log.warnings.begin(), log.warnings.end());

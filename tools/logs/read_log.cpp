@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "logs/blackbox.hpp"
 #include "logs/csv_log.hpp"
 #include "logs/ulog.hpp"
 #include "logs/ulog2csv_folder.hpp"
@@ -49,6 +50,7 @@ LogKind kind_of_log(const std::string& path) {
   const std::string_view begin(block.data(), file.read(block.data(), block.size()));
   if (begin.substr(0, ulog::magic.size()) == ulog::magic) return LogKind::ulog;
   if (is_usd_log(begin)) return LogKind::usd;
+  if (is_blackbox_log(begin)) return LogKind::blackbox;
   refuse_compressed(path, begin);
   if (std::filesystem::path(path).extension() == ".ulg" || begin.find('\0') != std::string_view::npos) {
     throw InputError(path, 0, 0, "a ULog file, a CSV table, a Crazyflie's log, or a folder that ulog2csv wrote",
@@ -62,6 +64,8 @@ FlightLog read_log(const std::string& path, const LogSelection& selection) {
     case LogKind::ulog: return read_ulog(path, selection);
     case LogKind::ulog2csv_folder: return read_ulog2csv_folder(path, selection);
     case LogKind::usd: return read_usd_log(path);
+    case LogKind::blackbox: return read_blackbox(path, selection);
+    case LogKind::dataflash:
     case LogKind::csv: break;
   }
   return read_csv_log(path, selection);
