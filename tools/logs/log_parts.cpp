@@ -132,8 +132,9 @@ void add_file(const std::string& path, std::vector<LogPlace>& places) {
   }
 }
 
-/// What in a folder is a log by its content, tables aside.
-bool is_log_of_a_vehicle(const std::string& path) {
+}  // namespace
+
+bool is_vehicles_log(const std::string& path) {
   try {
     const LogKind kind = kind_of_log(path);
     return kind != LogKind::csv && kind != LogKind::ulog2csv_folder;
@@ -141,8 +142,6 @@ bool is_log_of_a_vehicle(const std::string& path) {
     return false;
   }
 }
-
-}  // namespace
 
 std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock) {
   namespace fs = std::filesystem;
@@ -159,7 +158,7 @@ std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selec
     const std::string file = entry->path().string();
     std::error_code ignored;
     if (!entry->is_regular_file(ignored)) continue;
-    if (entry->path().extension() == ".ulg" || is_log_of_a_vehicle(file)) files.push_back(file);
+    if (entry->path().extension() == ".ulg" || is_vehicles_log(file)) files.push_back(file);
     if (entry->path().extension() == ".csv") tables.push_back(entry->path().string());
   }
   if (error) throw InputError(path, 0, 0, "a readable folder", "none (" + error.message() + ")");

@@ -11,6 +11,6 @@ struct MappingText {
   const char* toml;
 };
 
-extern const std::array<MappingText, 5> mapping_texts;
+extern const std::array<MappingText, 7> mapping_texts;
 
 }  // namespace pinnquad::logs

@@ -72,6 +72,34 @@ std::string kind_of(std::size_t motors) {
   return motors < kinds.size() ? kinds[motors] : "a vehicle of " + std::to_string(motors) + " motors";
 }
 
+/// ArduPilot's FRAME_CLASS that is no quadrotor's, and a '+' by its FRAME_TYPE; empty for all others.
+std::string other_frame(const FlightLog& log) {
+  constexpr std::array<const char*, 16> classes = {"",
+                                                   "a quadrotor",
+                                                   "a hexacopter",
+                                                   "an octocopter",
+                                                   "eight motors in pairs",
+                                                   "six motors in a Y",
+                                                   "",
+                                                   "a tricopter",
+                                                   "one rotor and flaps",
+                                                   "two rotors side by side",
+                                                   "a tailsitter",
+                                                   "a dodecahexacopter",
+                                                   "",
+                                                   "",
+                                                   "a decacopter",
+                                                   ""};
+  const auto kind = log.parameters.find("FRAME_CLASS"), type = log.parameters.find("FRAME_TYPE");
+  if (kind == log.parameters.end()) return "";
+  if (kind->second > 1) {
+    const auto index = static_cast<std::size_t>(std::min(kind->second, 15.0));
+    return "FRAME_CLASS " + std::to_string(index) +
+           (classes[index][0] == '\0' ? "" : std::string(": ") + classes[index]);
+  }
+  return type != log.parameters.end() && std::abs(type->second) < 0.5 ? "FRAME_TYPE 0: a '+' frame" : "";
+}
+
 /// PX4's parameters of the places, where all four are logged: rotors ahead, behind and beside the centre.
 bool is_plus_frame(const FlightLog& log) {
   constexpr double on_axis = 0.2;
@@ -101,6 +129,8 @@ void require_four_motors(const FlightLog& log, const LogTopic& topic, const Sour
     throw InputError(mapping_file, at.place.line, at.place.column, "a quadrotor in X with four motors",
                      found + " (" + topic.file + ")");
   };
+  const std::string frame = other_frame(log);
+  if (!frame.empty()) refuse(source.columns.front(), frame);
   std::vector<const LogColumn*> columns, commanded;
   for (const NamedColumn& one : source.columns) columns.push_back(column_named(topic, one.name));
   const std::vector<const LogColumn*> further = further_motors(topic, source);
