@@ -10,6 +10,7 @@
 
 #include "fuzz/fuzzing.hpp"
 #include "fuzz/memory_file.hpp"
+#include "logs/csv_head.hpp"
 #include "logs/csv_log.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/file_error.hpp"

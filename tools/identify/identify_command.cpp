@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Finds the vehicle that flew flights or logs: thrust, turning, drag, lag, each with an interval; writes it as an
 // airframe file.
-//   pinnquad identify flight.ulg --mapping px4 --mass 1.2 --out vehicle.toml
+//   pinnquad identify flight.ulg --mass 1.2 --out vehicle.toml
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -71,6 +71,7 @@ void print_json(const programs::ToldVehicle& vehicle, const logs::ImportedDatase
 }
 
 void print_table(const programs::ToldVehicle& vehicle, const logs::ImportedDataset& dataset) {
+  for (const std::string& taken : dataset.taken) std::printf("%s\n", taken.c_str());
   for (const std::string& warning : dataset.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("%zu flights, %.1f s of them, in %zu blocks\n", dataset.flights.size(), vehicle.found.duration_s,
               vehicle.found.blocks);
@@ -98,7 +99,8 @@ int run(const IdentifyOptions& options) {
     throw std::invalid_argument("--out " + options.out + ": a name that ends in .toml was expected");
   }
   logs::ImportedDataset dataset = read(options);
-  const programs::ToldVehicle vehicle = programs::told_vehicle(dataset, said_by(options), !options.mapping.empty());
+  const programs::ToldVehicle vehicle =
+      programs::told_vehicle(dataset, said_by(options), !options.mapping.empty() || !dataset.taken.empty());
   if (!vehicle.airframe) {
     programs::complain("identify", vehicle.why_not);
     return programs::exit_failed;
@@ -153,15 +155,18 @@ Command identify_command(CLI::App& program) {
   line->add_flag("--json", options->json, "the numbers as JSON, and nothing else, on stdout");
   line->footer(
       "Examples:\n"
-      "  pinnquad identify logs --mapping px4 --mass 1.2 --arm 0.18 --out vehicle.toml\n"
+      "  pinnquad identify logs --mass 1.2 --arm 0.18 --out vehicle.toml\n"
       "  pinnquad identify my_logs --airframe mine.toml --json\n"
       "  pinnquad identify d1.csv\n"
       "Exit codes: 0; 1 the flights do not tell thrust, roll or pitch, or the commands turn the vehicle the other "
       "way;\n"
       "2 bad input or a file that can't be read or written; 130 interrupted. Then nothing was written.");
   return {line, [options] {
-            if (options->rate_hz && options->mapping.empty()) {
-              throw std::invalid_argument("--rate goes with logs and their --mapping: other rows have their own");
+            const bool are_logs =
+                !options->mapping.empty() ||
+                (!options->flights.empty() && logs::kind_of_source(options->flights.front()) == logs::SourceKind::logs);
+            if (options->rate_hz && !are_logs) {
+              throw std::invalid_argument("--rate goes with logs: other rows have their own");
             }
             return run(*options);
           }};

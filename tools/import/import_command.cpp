@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Makes one dataset of flight logs, and says what each step cost.
-//   pinnquad import flight.ulg --mapping px4 --airframe mine.toml --out dataset
+//   pinnquad import flight.ulg --airframe mine.toml --out dataset
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
@@ -54,6 +54,7 @@ void print_steps(const logs::ImportedDataset& dataset) {
 }
 
 void print_text(const logs::ImportedDataset& dataset, const std::string& out) {
+  for (const std::string& taken : dataset.taken) std::printf("%s\n", taken.c_str());
   print_steps(dataset);
   for (const std::string& note : dataset.notes) std::printf("%s\n", note.c_str());
   for (const pinnquad::Flight& flight : dataset.flights.flights()) {
@@ -83,10 +84,7 @@ int run(const ImportOptions& options) {
     return 0;
   }
   if (options.logs.empty())
-    throw std::invalid_argument("expected a log: a .ulg file, a .csv table, a folder of ulog2csv");
-  if (options.mapping.empty()) {
-    throw std::invalid_argument("expected --mapping: " + logs::mapping_names() + ", or a .toml file");
-  }
+    throw std::invalid_argument("expected a log: a .ulg, .bbl or .bin file, a .csv table, a folder of them");
   if (options.out.empty()) throw std::invalid_argument("expected --out DATASET: the folder to write");
   logs::LogSettings settings = settings_of(options);
   logs::require_dataset_place(options.out);
@@ -108,11 +106,13 @@ int run(const ImportOptions& options) {
 namespace programs {
 
 Command import_command(CLI::App& program) {
-  CLI::App* line = program.add_subcommand("import", "Makes a dataset of flight logs: ULog, ulog2csv, CSV");
+  CLI::App* line = program.add_subcommand("import", "Makes a dataset of flight logs: ULog, blackbox, DataFlash, CSV");
   const auto options = std::make_shared<ImportOptions>();
-  add_paths(*line, "logs", options->logs, "LOG", "ULog files, CSV tables, folders of ulog2csv or of ULog files");
-  line->add_option("--mapping", options->mapping,
-                   "what the columns mean: " + pinnquad::logs::mapping_names() + ", or a file")
+  add_paths(*line, "logs", options->logs, "LOG",
+            "ULog, blackbox, DataFlash and uSD logs, CSV tables, folders of them; told apart by content");
+  line->add_option(
+          "--mapping", options->mapping,
+          "what the columns mean, where the content does not tell: " + pinnquad::logs::mapping_names() + ", or a file")
       ->type_name("NAME|FILE.toml");
   add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
            "gives rotor speeds and thrusts their commands; the mapping may name one");
@@ -127,8 +127,9 @@ Command import_command(CLI::App& program) {
   line->add_flag("--list", options->list, "list the ready mappings");
   line->footer(
       "Examples:\n"
-      "  pinnquad import flight.ulg --mapping px4 --airframe mine.toml --out dataset\n"
-      "  pinnquad import logs/ --mapping px4 --rate 50 --out dataset      all .ulg files of a folder\n"
+      "  pinnquad import flight.ulg --airframe mine.toml --out dataset\n"
+      "  pinnquad import LOG00001.BFL --rate 200 --out dataset             Betaflight's blackbox, as it is\n"
+      "  pinnquad import logs/ --rate 50 --out dataset                     all logs of a folder\n"
       "  pinnquad import log.csv --mapping mine.toml --lag 0.03 --out dataset --json\n"
       "Each flight becomes a CSV file of the folder; dataset.json says how they were made. The folder appears whole or "
       "not "

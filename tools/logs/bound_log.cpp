@@ -4,12 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <stdexcept>
 #include <utility>
 
+#include "logs/csv_head.hpp"
+#include "logs/log_columns.hpp"
+#include "logs/motor_count.hpp"
 #include "logs/nearest_names.hpp"
 #include "pinnquad/core/rotation.hpp"
+#include "pinnquad/dynamics/allocation.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
-#include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/io/decimal.hpp"
 
 namespace pinnquad::logs {
@@ -83,6 +87,11 @@ std::size_t motor_at(const Source& source, std::size_t place) {
   return place;
 }
 
+/// A motor's number: stopped or idle, and full.
+struct MotorRange {
+  double least = 0, most = 1;
+};
+
 double thrust_curve(const std::optional<NamedAirframe>& airframe, std::size_t rotor) {
   return airframe ? airframe->value.rotors[rotor].thrust_curve : 0.0;
 }
@@ -91,7 +100,7 @@ double thrust_curve(const std::optional<NamedAirframe>& airframe, std::size_t ro
 /// 1, and falls to the rule for saturated rows. `curve`: thrust = s ((1 - k) + k s) of a signal, where the log or the
 /// mapping says so; then the command is the airframe's of that thrust, and else the signal itself.
 void to_commands(const Source& source, const std::optional<NamedAirframe>& airframe, double curve,
-                 std::vector<std::vector<double>>& values) {
+                 const MotorRange& range, std::vector<std::vector<double>>& values) {
   std::vector<std::vector<double>> commands;
   for (std::size_t place = 0; place < rotor_count; ++place) {
     std::vector<double> u = values[motor_at(source, place)];
@@ -100,8 +109,8 @@ void to_commands(const Source& source, const std::optional<NamedAirframe>& airfr
         value = airframe ? command_from_speed(airframe->value, place, value) : std::nan("");
         continue;
       }
-      const bool ranged = !detail::equal(source.least, 0.0) || !detail::equal(source.most, 1.0);
-      value = (value - source.least) / (source.most - source.least);
+      const bool ranged = !detail::equal(range.least, 0.0) || !detail::equal(range.most, 1.0);
+      value = (value - range.least) / (range.most - range.least);
       if (ranged && value < 0) value = 0;
       if (ranged && value > 1) value = 1;
       const bool straight = source.numbers == MotorNumbers::signal && !(curve > 0);
@@ -129,12 +138,45 @@ std::array<double, 4> rebuilt_commands(const std::array<double, 3>& torque, doub
   return u;
 }
 
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::isfinite(value) ? std::max(most, std::abs(value)) : most;
+  return most;
+}
+
+/// Torques that never reach 1 % beside a thrust: no controller that flies asks for so little.
+bool are_no_shares(const std::vector<std::vector<double>>& values) {
+  constexpr double least_torque = 0.01, least_thrust = 0.05;
+  constexpr std::size_t fewest_rows = 64;
+  const double torque = std::max({largest(values[0]), largest(values[1]), largest(values[2])});
+  return values[3].size() >= fewest_rows && torque < least_torque && largest(values[3]) > least_thrust;
+}
+
+/// Thrust shares of an airframe's rotors that make the torque [N m] and the thrust [N] in still air of the rated
+/// density. NaN where one would be beyond 0..1.
+std::array<double, 4> wrench_commands(const AllocationMatrix<double>& inverse, const std::array<double, 3>& torque_N_m,
+                                      double thrust_N) {
+  constexpr double rounding = 1e-9;
+  std::array<double, 4> u = product(inverse, {thrust_N, torque_N_m[0], torque_N_m[1], torque_N_m[2]});
+  for (double& one : u) {
+    if (!(one >= -rounding && one <= 1 + rounding)) return {std::nan(""), std::nan(""), std::nan(""), std::nan("")};
+    one = std::clamp(one, 0.0, 1.0);
+  }
+  return u;
+}
+
 /// The columns of `torque_and_thrust` as commands.
 void rebuild_commands(const Source& source, const std::optional<NamedAirframe>& airframe,
                       std::vector<std::vector<double>>& values) {
+  AllocationMatrix<double> inverse{};
+  if (source.wrench && invert_allocation(allocation(airframe->value), inverse) != Status::ok) {
+    throw std::invalid_argument("airframe " + airframe->name + ": its rotors cannot make every torque and thrust");
+  }
   for (std::size_t row = 0; row < values[0].size(); ++row) {
     const double thrust = source.thrust_is_up ? values[3][row] : -values[3][row];
-    const std::array<double, 4> u = rebuilt_commands({values[0][row], values[1][row], values[2][row]}, thrust);
+    const std::array<double, 3> torque = {values[0][row], values[1][row], values[2][row]};
+    const std::array<double, 4> u =
+        source.wrench ? wrench_commands(inverse, torque, thrust) : rebuilt_commands(torque, thrust);
     for (std::size_t place = 0; place < u.size(); ++place) {
       values[place][row] = command_of_fraction(thrust_curve(airframe, place), u[place]);
     }
@@ -149,29 +191,6 @@ const LogTopic* topic_of(const FlightLog& log, const std::string& name, int inst
 
 bool has_number(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
-}
-
-/// The columns of a topic that a source names; with `why`, the reason is thrown where one is missing or holds text.
-std::vector<const LogColumn*> columns_in(const LogTopic& topic, const std::vector<NamedColumn>& wanted,
-                                         const std::string& mapping_file, bool why) {
-  std::vector<const LogColumn*> found;
-  for (const NamedColumn& one : wanted) {
-    if (const LogColumn* column = topic.column(one.name)) {
-      found.push_back(column);
-      continue;
-    }
-    if (!why) return {};
-    if (const LogText* text = topic.text(one.name)) {
-      throw wrong_cell(topic, text->first_text, one.name, "a number in column " + one.name,
-                       quoted_cell(text->values[text->first_text]));
-    }
-    std::vector<std::string> known;
-    for (const LogColumn& column : topic.columns) known.push_back(column.name);
-    throw InputError(mapping_file, one.place.line, one.place.column,
-                     "a column of " + topic_words(topic.name, topic.instance) + " in " + topic.file,
-                     "`" + printable(one.name) + "`, which it has not; " + nearest_names(one.name, known));
-  }
-  return found;
 }
 
 /// Rows of `other` at the times of `time_s`: stamps of one sample, to half a microsecond. NaN where there is none.
@@ -205,23 +224,58 @@ void require_unit(const Signal& signal) {
   }
 }
 
-/// Pitch beyond 90 degrees in more than a few rows is in degrees: turned into a quaternion it would wrap round.
+/// Pitch beyond 90 degrees in more than a few rows is in another unit: turned into a quaternion it would wrap round.
 void require_radians(const Signal& signal) {
   constexpr double most_rad = 1.6, few = 0.01;
+  const Source& source = *signal.source;
   const std::vector<double>& pitch = signal.values[1];
   std::size_t beyond = 0, worst = 0;
+  std::vector<double> sizes;
   for (std::size_t row = 0; row < pitch.size(); ++row) {
+    if (std::isfinite(pitch[row])) sizes.push_back(std::abs(pitch[row]));
     if (!(std::abs(pitch[row]) > most_rad)) continue;
     if (beyond++ == 0 || std::abs(pitch[row]) > std::abs(pitch[worst])) worst = row;
   }
   if (static_cast<double>(beyond) <= few * static_cast<double>(pitch.size())) return;
-  throw wrong_cell(*signal.topic, worst, signal.source->columns[1].name,
-                   "a pitch of at most 90 degrees (degrees? Then the mapping needs unit = \"deg\")",
+  // as the log has it nearly always: the smallest unit by which that is at most a right angle
+  const auto usual = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), usual, sizes.end());
+  const double in_si = *unit_in_si(Dimension::angle, source.unit.empty() ? "rad" : source.unit);
+  std::string advice;
+  for (const char* unit : {"deg", "ddeg", "cdeg"}) {
+    if (unit == source.unit || *usual / in_si * *unit_in_si(Dimension::angle, unit) > most_rad) continue;
+    advice = std::string(" (another unit? Then the mapping needs unit = \"") + unit + "\")";
+    break;
+  }
+  throw wrong_cell(*signal.topic, worst, source.columns[1].name, "a pitch of at most 90 degrees" + advice,
                    number_text(pitch[worst]) + " rad, beyond in " + std::to_string(beyond) + " rows");
 }
 
+/// x, y, z of a unit quaternion as w, x, y, z, w >= 0; longer than one by rounding: w is 0.
+void make_scalar(std::vector<std::vector<double>>& values) {
+  std::vector<double> w(values[0].size());
+  for (std::size_t row = 0; row < w.size(); ++row) {
+    const double x = values[0][row], y = values[1][row], z = values[2][row], rest = 1 - (x * x + y * y + z * z);
+    w[row] = std::isnan(rest) ? rest : std::sqrt(std::max(0.0, rest));
+  }
+  values.insert(values.begin(), std::move(w));
+}
+
+/// Whole numbers up to 32767 are a quaternion of 16-bit integers (Betaflight's imuQuaternion).
+bool counts_to_32767(const std::vector<std::vector<double>>& values) {
+  double most = 0;
+  for (const std::vector<double>& column : values) {
+    for (const double value : column) {
+      if (!std::isfinite(value)) continue;
+      if (std::abs(value - std::round(value)) > 0 || std::abs(value) > 32768) return false;
+      most = std::max(most, std::abs(value));
+    }
+  }
+  return most > 2;
+}
+
 /// Commands beyond 0..1 in more than a few rows are another unit than the mapping says.
-void require_commands(const Signal& signal) {
+void require_commands(const Signal& signal, const MotorRange& range) {
   constexpr double spare = 0.02;
   std::size_t numbers = 0, beyond = 0, first = 0, motor = 0;
   for (std::size_t place = 0; place < rotor_count; ++place) {
@@ -240,27 +294,39 @@ void require_commands(const Signal& signal) {
   const Source& source = *signal.source;
   const std::string column = source.columns[motor_at(source, motor)].name;
   throw wrong_cell(*signal.topic, first, column,
-                   "motor commands from `least` to `most` of [motors] (" + number_text(source.least) + " to " +
-                       number_text(source.most) + ")",
-                   number_text(signal.topic->column(column)->values[first]));
+                   "motor commands from `least` to `most` of [motors] (" + number_text(range.least) + " to " +
+                       number_text(range.most) + ")",
+                   number_text(column_named(*signal.topic, column)->values[first]));
 }
 
-/// A vehicle of another number of motors: a column of the four without a number, or one more of the same array with
-/// numbers.
-void require_four_motors(const Signal& signal, const Mapping& mapping) {
-  const Source& source = *signal.source;
-  for (const NamedColumn& one : source.columns) {
-    if (has_number(signal.topic->column(one.name)->values)) continue;
-    throw InputError(mapping.file, one.place.line, one.place.column, "four motors with commands",
-                     "no number in column " + one.name + " of " + signal.topic->file);
+/// A row a message, other cells empty (PlotJuggler, joins of pandas): runs of a few filled rows between empty ones.
+bool is_sparse(const std::vector<std::size_t>& filled, std::size_t rows) {
+  constexpr double dense = 0.9;
+  constexpr std::size_t usual_run = 4;
+  if (filled.empty() || static_cast<double>(filled.size()) > dense * static_cast<double>(rows)) return false;
+  std::size_t runs = 1;
+  for (std::size_t i = 1; i < filled.size(); ++i) runs += filled[i] == filled[i - 1] + 1 ? 0 : 1;
+  return filled.size() < usual_run * runs;
+}
+
+/// The clock of the rows that the signal fills: of a sparse table its own.
+void set_clock(Signal& signal, const std::vector<double>& time_s) {
+  std::vector<std::size_t> filled;
+  for (std::size_t row = 0; row < time_s.size(); ++row) {
+    const bool any = std::any_of(signal.values.begin(), signal.values.end(),
+                                 [row](const std::vector<double>& column) { return std::isfinite(column[row]); });
+    if (any) filled.push_back(row);
   }
-  const std::string& last = source.columns.back().name;
-  if (last.size() < 3 || last.compare(last.size() - 3, 3, "[3]") != 0) return;
-  const LogColumn* fifth = signal.topic->column(last.substr(0, last.size() - 3) + "[4]");
-  if (fifth == nullptr || source.numbers != MotorNumbers::thrust || !has_number(fifth->values)) return;
-  throw InputError(mapping.file, source.columns.back().place.line, source.columns.back().place.column,
-                   "a vehicle of four motors",
-                   "commands of a fifth in column " + fifth->name + " of " + signal.topic->file);
+  signal.sparse = signal.topic->places_are_lines && is_sparse(filled, time_s.size());
+  if (!signal.sparse) {
+    signal.clock = std::make_shared<const CleanClock>(clean_clock(time_s));
+    return;
+  }
+  std::vector<double> own_s;
+  for (const std::size_t row : filled) own_s.push_back(time_s[row]);
+  CleanClock clock = clean_clock(own_s);
+  for (std::size_t& row : clock.row) row = filled[row];
+  signal.clock = std::make_shared<const CleanClock>(std::move(clock));
 }
 
 /// The quantity as this source has it; not present() where the log lacks it. With `why`, the reason is thrown, one
@@ -281,7 +347,7 @@ Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& s
   if (apart) wanted.pop_back();
   std::vector<const LogColumn*> columns = columns_in(*topic, wanted, mapping.file, why);
   if (columns.empty()) return signal;
-  if (!why && !source.time_column.empty() && !topic->column(source.time_column)) return signal;
+  if (!why && !source.time_column.empty() && !column_named(*topic, source.time_column)) return signal;
   const bool empty =
       std::any_of(columns.begin(), columns.end(), [](const LogColumn* column) { return !has_number(column->values); });
   if (empty && source.quantity != Quantity::motors) {
@@ -292,25 +358,46 @@ Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& s
   signal.source = &source;
   signal.topic = topic;
   signal.told = topic_words(source.topic, source.instance);
-  for (const LogColumn* column : columns) signal.values.push_back(column->values);
+  signal.values = scaled_values(log, mapping, source, columns, why);
+  if (signal.values.empty()) return {};
   const std::vector<double> time_s = times_of(*topic, source, mapping);
   if (apart) {
     const LogTopic* thrust = topic_of(log, source.thrust_topic, source.instance);
     const std::vector<const LogColumn*> along =
         thrust ? columns_in(*thrust, {source.columns.back()}, mapping.file, why) : std::vector<const LogColumn*>();
     if (along.empty()) return {};
-    signal.values.push_back(at_same_times(time_s, times_of(*thrust, source, mapping), along[0]->values));
+    const std::vector<double> scaled = scaled_values(log, mapping, source, along, why).front();
+    signal.values.push_back(at_same_times(time_s, times_of(*thrust, source, mapping), scaled));
     signal.told += " and " + topic_words(source.thrust_topic, source.instance);
   }
-  for (std::vector<double>& column : signal.values) {
-    for (double& value : column) value *= source.in_si;
+  if (source.wrench) {
+    for (double& value : signal.values[3]) value *= source.thrust_in_si / source.in_si;
   }
-  signal.clock = std::make_shared<const CleanClock>(clean_clock(time_s));
-  if (source.quantity == Quantity::attitude && !source.euler) require_unit(signal);
+  set_clock(signal, time_s);
+  if (source.quantity == Quantity::attitude && !source.euler) {
+    const bool said = !source.scale.parameter.empty() || std::abs(source.scale.value - 1) > 0;
+    if (!said && counts_to_32767(signal.values)) {
+      for (std::vector<double>& column : signal.values) {
+        for (double& value : column) value /= 32767;
+      }
+      signal.note = "attitude: a quaternion of whole numbers, taken as 32767 for 1 (scale = \"1/32767\")";
+    }
+    if (source.without_scalar) make_scalar(signal.values);
+    require_unit(signal);
+  }
   if (source.quantity == Quantity::attitude && source.euler) require_radians(signal);
   to_our_frames(source, signal.values);
   if (source.quantity == Quantity::motors) {
-    require_four_motors(signal, mapping);
+    const std::optional<double> least = number_in(log, source.least), most = number_in(log, source.most);
+    if (!least || !most || !(*most > *least)) {
+      if (!why) return {};
+      throw InputError(
+          mapping.file, source.place.line, source.place.column,
+          "the parameters " + source.least.parameter + " and " + source.most.parameter + " in " + log.source,
+          "none, or not one above the other");
+    }
+    const MotorRange range{*least, *most};
+    require_four_motors(log, *topic, source, range.least, range.most, mapping.file);
     double curve = source.thrust_curve;
     const auto logged = log.parameters.find(source.thrust_curve_parameter);
     if (logged != log.parameters.end()) curve = std::clamp(logged->second, 0.0, 1.0);
@@ -318,10 +405,23 @@ Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& s
       throw InputError(mapping.file, source.place.line, source.place.column,
                        "--airframe, which says what rotor speeds command", "none");
     }
-    to_commands(source, airframe, curve, signal.values);
-    require_commands(signal);
+    to_commands(source, airframe, curve, range, signal.values);
+    require_commands(signal, range);
   }
-  if (source.quantity == Quantity::torque_and_thrust) rebuild_commands(source, airframe, signal.values);
+  if (source.quantity == Quantity::torque_and_thrust) {
+    if (!source.wrench && are_no_shares(signal.values)) {
+      if (!why) return {};
+      throw InputError(mapping.file, source.place.line, source.place.column,
+                       "torques as shares of 1 (in N m? Then [torque_and_thrust] needs torque_unit = \"N m\" and "
+                       "thrust_unit = \"N\", and the import the airframe)",
+                       "none above 0.01 beside a thrust of up to " + number_text(largest(signal.values[3])));
+    }
+    if (source.wrench && !airframe) {
+      throw InputError(mapping.file, source.place.line, source.place.column,
+                       "--airframe, which says what a torque and a thrust command", "none");
+    }
+    rebuild_commands(source, airframe, signal.values);
+  }
   return signal;
 }
 
@@ -369,7 +469,7 @@ void let_go(FlightLog& log, const Mapping& mapping, const Source& source) {
 /// Gives a signal the clock of an earlier one of the same topic and clock column.
 void share_clock(Signal& signal, const BoundLog& bound) {
   for (const Signal& other : bound.signals) {
-    if (!other.present() || &other == &signal) continue;
+    if (!other.present() || &other == &signal || other.sparse || signal.sparse) continue;
     const bool same = other.topic == signal.topic && other.source->time_column == signal.source->time_column;
     if (same && other.source->time_in_s == signal.source->time_in_s) signal.clock = other.clock;
   }
@@ -387,9 +487,9 @@ InputError wrong_cell(const LogTopic& topic, std::size_t row, const std::string&
   std::string file = topic.file;
   if (topic.places_are_lines && row < topic.place.size()) {
     line = static_cast<std::size_t>(topic.place[row]);
-    const std::vector<std::string> header = detail::csv_header(file);
+    const std::vector<std::string> header = csv_head(file).names;
     for (std::size_t i = 0; i < header.size(); ++i) {
-      if (header[i] == column) field = i + 1;
+      if (header[i] == column || header[i].rfind(column + " (", 0) == 0) field = i + 1;
     }
   } else if (row < topic.place.size()) {
     file += ", byte " + std::to_string(topic.place[row]);
@@ -416,17 +516,36 @@ std::vector<std::string> mapped_topics(const Mapping& mapping) {
 }
 
 std::vector<double> times_of(const LogTopic& topic, const Source& source, const Mapping& mapping) {
+  constexpr double most_late_s = 1;  // from a sample to its message
   const bool own = !source.time_column.empty();
-  if (!own && has_number(topic.time_s)) return topic.time_s;
-  if (!own && mapping.time_column.name.empty()) {
+  const bool topic_has = has_number(topic.time_s);
+  std::vector<double> time_s;
+  if (!own && topic_has) {
+    time_s = topic.time_s;
+  } else if (!own && mapping.time_column.name.empty()) {
     throw InputError(mapping.file, source.place.line, source.place.column,
                      "a table [time] that names the clock of " + topic.file, "none");
+  } else {
+    NamedColumn clock = own ? NamedColumn{source.time_column, source.place} : mapping.time_column;
+    const std::size_t unit = clock.name.rfind(" (");  // "time (us)" of Explorer's table is "time"
+    if (column_named(topic, clock.name) == nullptr && unit != std::string::npos &&
+        topic.column(clock.name.substr(0, unit)) != nullptr) {
+      clock.name.erase(unit);
+    }
+    const LogColumn& column = *columns_in(topic, {clock}, mapping.file, true).front();
+    const double in_s = own ? source.time_in_s : mapping.time_in_s;
+    const double ticks_per_s = std::round(1 / own_unit(column, clock.name, Dimension::time, true).value_or(in_s));
+    time_s = column.values;
+    for (std::size_t row = 0; row < time_s.size(); ++row) {
+      time_s[row] /= ticks_per_s;
+      // a sample's time that is 0, or wild, is that of its message
+      const bool wrong = topic_has && !(std::abs(time_s[row] - topic.time_s[row]) <= most_late_s);
+      if (wrong) time_s[row] = topic.time_s[row];
+    }
   }
-  const NamedColumn clock = own ? NamedColumn{source.time_column, source.place} : mapping.time_column;
-  const std::vector<const LogColumn*> column = columns_in(topic, {clock}, mapping.file, true);
-  const double ticks_per_s = std::round(1 / (own ? source.time_in_s : mapping.time_in_s));
-  std::vector<double> time_s = column[0]->values;
-  for (double& t : time_s) t /= ticks_per_s;
+  if (std::abs(mapping.time_scale - 1) > 0) {
+    for (double& t : time_s) t *= mapping.time_scale;
+  }
   return time_s;
 }
 

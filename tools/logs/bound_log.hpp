@@ -27,6 +27,8 @@ struct Signal {
   std::shared_ptr<const CleanClock> clock;  ///< signals of one topic and clock column share it
   std::vector<std::vector<double>> values;  ///< by component, by the topic's row; NaN where it has none
   std::string told;                         ///< where it is from: "actuator_motors"
+  std::string note;                         ///< how its numbers were taken; empty: as the mapping says
+  bool sparse = false;                      ///< the table has rows without it between its own: its clock has these
 
   bool present() const noexcept { return source != nullptr; }
   double period_s() const noexcept { return clock->report.nominal_period_s; }
@@ -58,11 +60,12 @@ struct BoundLog {
 /// The topics that a mapping looks at: none are named by one of a table.
 std::vector<std::string> mapped_topics(const Mapping& mapping);
 
-/// By the source's own column, or the topic's clock, or the one that [time] names for a table.
+/// By the source's own column (the topic's clock where that is more than a second off it), or the topic's clock, or the
+/// one that [time] names for a table.
 std::vector<double> times_of(const LogTopic& topic, const Source& source, const Mapping& mapping);
 
 /// Throws InputError, one line: a source that is not optional and not there, cells that are no numbers, quaternions
-/// that are no unit, another number of motors. Columns of the log that one source alone reads are empty afterwards.
+/// that are no unit, another number of motors, torques that are no shares. Columns of the log that one source alone reads are empty afterwards.
 BoundLog bind_log(FlightLog& log, const Mapping& mapping, const std::optional<NamedAirframe>& airframe);
 
 }  // namespace pinnquad::logs

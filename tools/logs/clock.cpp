@@ -40,6 +40,56 @@ struct LocalLine {
   }
 };
 
+/// The longest chain of rows whose times do not decrease, by the index in `time_s`.
+std::vector<bool> longest_chain(const std::vector<double>& time_s, const std::vector<std::size_t>& rows) {
+  std::vector<std::size_t> ends, before(rows.size(), rows.size());  // by length: the row whose time is the least
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto place = std::upper_bound(ends.begin(), ends.end(), time_s[rows[i]],
+                                        [&](double t, std::size_t end) { return t < time_s[rows[end]]; });
+    if (place != ends.begin()) before[i] = *(place - 1);
+    if (place == ends.end()) {
+      ends.push_back(i);
+    } else {
+      *place = i;
+    }
+  }
+  std::vector<bool> in(rows.size(), false);
+  for (std::size_t i = ends.empty() ? rows.size() : ends.back(); i < rows.size(); i = before[i]) in[i] = true;
+  return in;
+}
+
+/// Rows whose time is more than a second off all rows around them that follow each other, or hours behind all others:
+/// not among `rows` afterwards where they are few.
+void leave_out_wild(const std::vector<double>& time_s, std::vector<std::size_t>& rows, ClockReport& report) {
+  constexpr std::size_t most_percent = 1, most_at_end = 2;
+  constexpr double hours_s = 3 * 3600;
+  const auto at = [&](std::size_t i) { return time_s[rows[i]]; };
+  std::vector<bool> in(rows.size(), true);
+  bool steps_back = false;
+  for (std::size_t i = 1; i < rows.size(); ++i) steps_back = steps_back || at(i - 1) - at(i) > restart_step_s;
+  if (steps_back) in = longest_chain(time_s, rows);
+  for (std::size_t n = 0; n < most_at_end && rows.size() > 2 * most_at_end; ++n) {  // nothing follows them
+    std::size_t last = rows.size();
+    while (last > 0 && !in[last - 1]) --last;
+    if (last < 2 || !in[last - 2] || at(last - 1) - at(last - 2) < hours_s) break;
+    in[last - 1] = false;
+  }
+  std::vector<std::size_t> left, wild;
+  double before = -std::numeric_limits<double>::infinity();
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    while (next < rows.size() && (next <= i || !in[next])) ++next;
+    const double after = next < rows.size() ? at(next) : before + restart_step_s;
+    const bool near = at(i) > before - restart_step_s && at(i) < after + restart_step_s;  // a queue reorders so
+    (in[i] || near ? left : wild).push_back(rows[i]);
+    if (in[i]) before = at(i);
+  }
+  if (wild.empty() || wild.size() * 100 > std::max<std::size_t>(100, most_percent * rows.size())) return;
+  report.wild = wild.size();
+  report.first_wild_s = time_s[wild.front()];
+  rows = std::move(left);
+}
+
 }  // namespace
 
 CleanClock clean_clock(const std::vector<double>& time_s) {
@@ -49,13 +99,17 @@ CleanClock clean_clock(const std::vector<double>& time_s) {
   ClockReport& report = clock.report;
   report.rows_read = time_s.size();
   std::vector<std::size_t> rows;
-  double latest = -std::numeric_limits<double>::infinity(), before = latest;
   for (std::size_t row = 0; row < time_s.size(); ++row) {
-    const double t = time_s[row];
-    if (!std::isfinite(t)) {
+    if (std::isfinite(time_s[row])) {
+      rows.push_back(row);
+    } else {
       report.not_a_time += 1;
-      continue;
     }
+  }
+  leave_out_wild(time_s, rows, report);
+  double latest = -std::numeric_limits<double>::infinity(), before = latest;
+  for (const std::size_t row : rows) {
+    const double t = time_s[row];
     if (t < latest) report.out_of_order += 1;
     if (t < before) {
       report.largest_step_back_s = std::max(report.largest_step_back_s, before - t);
@@ -63,7 +117,6 @@ CleanClock clean_clock(const std::vector<double>& time_s) {
     }
     latest = std::max(latest, t);
     before = t;
-    rows.push_back(row);
   }
   std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
   for (const std::size_t row : rows) {

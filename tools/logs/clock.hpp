@@ -13,7 +13,9 @@ namespace pinnquad::logs {
 /// The cleaning of a topic's clock, in rows.
 struct ClockReport {
   std::size_t rows_read = 0;
-  std::size_t not_a_time = 0;      ///< NaN or infinite: left out
+  std::size_t not_a_time = 0;  ///< NaN or infinite: left out
+  std::size_t wild = 0;        ///< a few that fit no row around them: left out
+  double first_wild_s = 0;
   std::size_t out_of_order = 0;    ///< earlier than a row before them: sorted in
   std::size_t same_time = 0;       ///< left out: of rows with one time the last of the file stays
   std::size_t stale_first = 0;     ///< left out: one or two latched values from before the log began
@@ -41,7 +43,7 @@ struct CleanClock {
 /// A step back is no restart up to this: queues and buses reorder within it.
 inline constexpr double restart_step_s = 1.0;
 
-/// Puts a topic's clock right; of several rows with one time the last stays (a publisher that corrects itself does so
+/// Puts a topic's clock right; a few stamps (1 %) more than a second off the rows around them are left out. Of several rows with one time the last stays (a publisher that corrects itself does so
 /// later). Never throws: a topic without one usable row has an empty clock.
 CleanClock clean_clock(const std::vector<double>& time_s);
 

@@ -34,7 +34,10 @@ bool on_one_clock(const BoundLog& log) {
   const auto same = [&first](const Signal& other) {
     return !other.present() || (other.topic == first.topic && other.source->time_column == first.source->time_column);
   };
-  return std::all_of(log.signals.begin(), log.signals.end(), same) &&
+  const bool sparse = std::any_of(log.signals.begin(), log.signals.end(), [](const Signal& signal) {
+    return signal.sparse && signal.source->quantity != Quantity::landed;
+  });
+  return !sparse && std::all_of(log.signals.begin(), log.signals.end(), same) &&
          std::all_of(log.extras.begin(), log.extras.end(), [&](const BoundExtra& extra) { return same(extra.signal); });
 }
 
@@ -158,8 +161,9 @@ CommonRows common_rows(BoundLog& log, const std::optional<double>& period_s, boo
   if (log.of(Quantity::altitude).present()) rows.altitude = clock.values(log.of(Quantity::altitude), 0);
   if (log.of(Quantity::landed).present()) rows.landed = latest(log.of(Quantity::landed), rows.time_s);
   for (BoundExtra& extra : log.extras) {
-    std::vector<double> values = clock.values(extra.signal, 0);
-    if (!rows.own_rows) extend_ends(values);
+    const bool by_own_rows = rows.own_rows && extra.signal.sparse;
+    std::vector<double> values = by_own_rows ? latest(extra.signal, rows.time_s) : clock.values(extra.signal, 0);
+    if (!rows.own_rows || by_own_rows) extend_ends(values);
     rows.extras.push_back(std::move(values));
   }
   return rows;

@@ -3,16 +3,12 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "pinnquad/logs/read_log.hpp"
 
 namespace pinnquad::logs {
 
-/// A cell as a number: NaN of an empty one, and nan and inf as programs write them. False for text.
-bool cell_number(std::string_view cell, double& value);
-
-/// A log of one topic without name.
+/// A log of one topic without name; rows of keys and values above the table are its facts, numbers its parameters.
 FlightLog read_csv_log(const std::string& path, const LogSelection& selection = {});
 
 }  // namespace pinnquad::logs

@@ -8,10 +8,12 @@
 #include <system_error>
 #include <utility>
 
+#include "logs/blackbox.hpp"
 #include "logs/bound_log.hpp"
 #include "logs/nearest_names.hpp"
 #include "logs/ulog2csv_folder.hpp"
 #include "pinnquad/io/file_error.hpp"
+#include "pinnquad/io/text_file.hpp"
 
 namespace pinnquad::logs {
 namespace {
@@ -83,7 +85,7 @@ std::vector<LogTopic> dealt(LogTopic topic, const std::vector<std::vector<std::s
   deal(
       topic.place, [](LogTopic & part) -> auto& { return part.place; });
   for (LogColumn& column : topic.columns) {
-    for (LogTopic& part : parts) part.columns.push_back({column.name, {}});
+    for (LogTopic& part : parts) part.columns.push_back({column.name, {}, column.unit});
     deal(
         column.values, [](LogTopic & part) -> auto& { return part.columns.back().values; });
   }
@@ -109,34 +111,72 @@ bool is_name_pattern(std::string_view pattern) {
          static_cast<std::size_t>(std::count(pattern.begin(), pattern.end(), '*')) <= most_stars;
 }
 
+bool stands_beside_log(const std::string& path) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  const auto ends = [&name](std::string_view end) {
+    return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+  };
+  return ends(".gps.csv") || ends(".gps.gpx") || ends(".headers.csv") || ends(".event");
+}
+
+namespace {
+
+/// A file, or the flights of a blackbox log of several, numbered as blackbox_decode does.
+void add_file(const std::string& path, std::vector<LogPlace>& places) {
+  const std::string name = printable(std::filesystem::path(path).stem().string());
+  const bool is_blackbox = kind_of_log(path) == LogKind::blackbox;
+  const std::size_t flights = is_blackbox ? blackbox_flights(file_text(path)).size() : 1;
+  for (std::size_t flight = 0; flight < flights; ++flight) {
+    const std::string number = (flight < 9 ? ".0" : ".") + std::to_string(flight + 1);
+    places.push_back({path, "", flights > 1 ? name + number : name, flight});
+  }
+}
+
+}  // namespace
+
+bool is_vehicles_log(const std::string& path) {
+  try {
+    const LogKind kind = kind_of_log(path);
+    return kind != LogKind::csv && kind != LogKind::ulog2csv_folder;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock) {
   namespace fs = std::filesystem;
   std::error_code error;
   fs::path shown = path;
   if (!shown.has_filename()) shown = shown.parent_path();
-  if (!fs::is_directory(path, error)) return {{path, "", printable(shown.stem().string())}};
+  std::vector<LogPlace> places;
+  if (!fs::is_directory(path, error)) {
+    add_file(path, places);
+    return places;
+  }
   std::vector<std::string> files, tables;
   for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
-    if (entry->path().extension() == ".ulg") files.push_back(entry->path().string());
+    const std::string file = entry->path().string();
+    std::error_code ignored;
+    if (!entry->is_regular_file(ignored)) continue;
+    if (entry->path().extension() == ".ulg" || is_vehicles_log(file)) files.push_back(file);
     if (entry->path().extension() == ".csv") tables.push_back(entry->path().string());
   }
   if (error) throw InputError(path, 0, 0, "a readable folder", "none (" + error.message() + ")");
   std::sort(files.begin(), files.end());
-  std::vector<LogPlace> places;
-  for (const std::string& file : files) places.push_back({file, "", printable(fs::path(file).stem().string())});
+  for (const std::string& file : files) add_file(file, places);
   if (!places.empty()) return places;
   std::sort(tables.begin(), tables.end());
   if (tables_have_clock) {
     for (const std::string& file : tables) {
-      places.push_back({file, "", printable(fs::path(file).stem().string())});
+      places.push_back({file, "", printable(fs::path(file).stem().string()), 0});
     }
     if (!places.empty()) return places;
   }
   for (const std::string& log : ulog2csv_logs(path, selection)) {
-    places.push_back({path, log, printable(log)});
+    places.push_back({path, log, printable(log), 0});
   }
   if (places.empty()) {
-    throw InputError(path, 0, 0, "a folder of .ulg files, or one that ulog2csv wrote", "neither");
+    throw InputError(path, 0, 0, "a folder of logs, or one that ulog2csv wrote", "neither");
   }
   return places;
 }

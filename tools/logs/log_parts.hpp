@@ -2,6 +2,7 @@
 // The logs that a path means, the flights that one table holds, and their names.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,12 +21,19 @@ bool is_name_pattern(std::string_view pattern);
 struct LogPlace {
   std::string path;
   std::string prefix;  ///< which log of a folder of ulog2csv
-  std::string name;    ///< "test_circle"
+  std::string name;    ///< "test_circle"; "LOG00001.02" of a blackbox log of several flights
+  std::size_t flight = 0;
 };
 
-/// Files as they are; of a folder its ULog files, or its CSV tables where the mapping says which column is their clock,
+/// A file that a vehicle's logger wrote, by its content: no table.
+bool is_vehicles_log(const std::string& path);
+
+/// Files as they are, each flight of a blackbox log; of a folder its logs by their content, or its CSV tables where the mapping says which column is their clock,
 /// or the logs that ulog2csv wrote into it. Throws InputError: a folder without.
 std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock);
+
+/// True for what blackbox_decode writes beside a log, by its name: *.gps.csv, *.gps.gpx, *.headers.csv, *.event.
+bool stands_beside_log(const std::string& path);
 
 /// A flight's log and what it is called.
 struct LogPart {

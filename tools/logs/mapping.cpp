@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "logs/mapping.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
@@ -23,30 +25,57 @@ struct Unit {
 
 constexpr double g_m_s2 = 9.80665;  // standard gravity: what "g" means in a log
 
-constexpr std::array<Unit, 24> units = {{{Dimension::time, "s", 1},
-                                         {Dimension::time, "ms", 1e-3},
-                                         {Dimension::time, "us", 1e-6},
-                                         {Dimension::time, "ns", 1e-9},
-                                         {Dimension::angle, "rad", 1},
-                                         {Dimension::angle, "deg", 1 / degrees_per_radian},
-                                         {Dimension::turning, "rad/s", 1},
-                                         {Dimension::turning, "deg/s", 1 / degrees_per_radian},
-                                         {Dimension::angular_acceleration, "rad/s^2", 1},
-                                         {Dimension::angular_acceleration, "deg/s^2", 1 / degrees_per_radian},
-                                         {Dimension::acceleration, "m/s^2", 1},
-                                         {Dimension::acceleration, "g", g_m_s2},
-                                         {Dimension::acceleration, "mm/s^2", 1e-3},
-                                         {Dimension::speed, "m/s", 1},
-                                         {Dimension::speed, "mm/s", 1e-3},
-                                         {Dimension::speed, "cm/s", 1e-2},
-                                         {Dimension::speed, "km/h", 1 / 3.6},
-                                         {Dimension::length, "m", 1},
-                                         {Dimension::length, "mm", 1e-3},
-                                         {Dimension::length, "cm", 1e-2},
-                                         {Dimension::length, "ft", 0.3048},
-                                         {Dimension::rotor_speed, "rev/s", 1},
-                                         {Dimension::rotor_speed, "rpm", 1.0 / 60},
-                                         {Dimension::rotor_speed, "rad/s", 0.15915494309189535}}};
+// The first names of a dimension are those that a message offers.
+constexpr Unit units[] = {{Dimension::time, "s", 1},
+                          {Dimension::time, "ms", 1e-3},
+                          {Dimension::time, "us", 1e-6},
+                          {Dimension::time, "ns", 1e-9},
+                          {Dimension::angle, "rad", 1},
+                          {Dimension::angle, "deg", 1 / degrees_per_radian},
+                          {Dimension::angle, "ddeg", 0.1 / degrees_per_radian},
+                          {Dimension::angle, "cdeg", 0.01 / degrees_per_radian},
+                          {Dimension::angle, "mrad", 1e-3},
+                          {Dimension::turning, "rad/s", 1},
+                          {Dimension::turning, "deg/s", 1 / degrees_per_radian},
+                          {Dimension::turning, "ddeg/s", 0.1 / degrees_per_radian},
+                          {Dimension::turning, "cdeg/s", 0.01 / degrees_per_radian},
+                          {Dimension::turning, "mrad/s", 1e-3},
+                          {Dimension::angular_acceleration, "rad/s^2", 1},
+                          {Dimension::angular_acceleration, "deg/s^2", 1 / degrees_per_radian},
+                          {Dimension::acceleration, "m/s^2", 1},
+                          {Dimension::acceleration, "g", g_m_s2},
+                          {Dimension::acceleration, "mg", 1e-3 * g_m_s2},
+                          {Dimension::acceleration, "cm/s^2", 1e-2},
+                          {Dimension::acceleration, "mm/s^2", 1e-3},
+                          {Dimension::speed, "m/s", 1},
+                          {Dimension::speed, "mm/s", 1e-3},
+                          {Dimension::speed, "cm/s", 1e-2},
+                          {Dimension::speed, "km/h", 1 / 3.6},
+                          {Dimension::length, "m", 1},
+                          {Dimension::length, "mm", 1e-3},
+                          {Dimension::length, "cm", 1e-2},
+                          {Dimension::length, "ft", 0.3048},
+                          {Dimension::rotor_speed, "rev/s", 1},
+                          {Dimension::rotor_speed, "rpm", 1.0 / 60},
+                          {Dimension::rotor_speed, "rad/s", 0.15915494309189535},
+                          {Dimension::force, "N", 1},
+                          {Dimension::force, "mN", 1e-3},
+                          {Dimension::torque, "N m", 1},
+                          {Dimension::torque, "mN m", 1e-3}};
+
+/// Other spellings, as logs have them.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> spellings = {{{"m/s/s", "m/s^2"},
+                                                                                      {"m/s2", "m/s^2"},
+                                                                                      {"degree", "deg"},
+                                                                                      {"degrees", "deg"},
+                                                                                      {"radians", "rad"},
+                                                                                      {"dps", "deg/s"},
+                                                                                      {"rad/s/s", "rad/s^2"},
+                                                                                      {"deg/s/s", "deg/s^2"},
+                                                                                      {"rad/s2", "rad/s^2"},
+                                                                                      {"mps", "m/s"},
+                                                                                      {"Nm", "N m"},
+                                                                                      {"sec", "s"}}};
 
 /// Null if that dimension has no such unit.
 const Unit* unit_named(Dimension dimension, std::string_view name) {
@@ -84,27 +113,67 @@ Frames frames_of(TomlTable& table, const Frames& otherwise) {
   return frames;
 }
 
+/// As the number of a mapping: 0.1, or "1/2048", "1/acc_1G", "acc_1G", of which a name is one of the log's parameters.
+MappedNumber mapped_number(TomlTable& table, const char* key, double otherwise) {
+  MappedNumber number{otherwise, {}, false};
+  const toml::node* node = table.optional(key);
+  if (!node) return number;
+  if (!node->is_string()) return {table.as_number(*node, of_either_sign), {}, false};
+  std::string name = table.as_text(*node, a_name);
+  number.divides = name.rfind("1/", 0) == 0;
+  if (number.divides) name.erase(0, 2);
+  if (parse_number(name, number.value)) {
+    if (number.divides) number.value = 1 / number.value;
+    if (std::isfinite(number.value)) return {number.value, {}, false};
+  }
+  if (name.empty() || name != printable(name)) {
+    table.refuse(*node, "a number, or the name of a parameter that the log has", described(*node));
+  }
+  number.parameter = name;
+  return number;
+}
+
+/// `scale` and `offset`, which any quantity may have.
+void read_scale(TomlTable& table, Source& source) {
+  source.scale = mapped_number(table, "scale", 1);
+  source.offset = table.number("offset", of_either_sign, 0);
+  if (source.scale.parameter.empty() && !(std::abs(source.scale.value) > 0)) {
+    const toml::node& node = table.required("scale", "a number");
+    table.refuse(node, "a scale other than 0", described(node));
+  }
+}
+
 double unit_of(TomlTable& table, const char* key, Dimension dimension) {
   const toml::node* node = table.optional(key);
   if (!node) return 1;
   const std::string expected = "a unit: " + unit_names(dimension);
-  const Unit* unit = unit_named(dimension, table.as_text(*node, expected));
-  if (!unit) table.refuse(*node, expected, described(*node));
-  return unit->in_si;
+  const std::optional<double> in_si = unit_in_si(dimension, table.as_text(*node, expected));
+  if (!in_si) table.refuse(*node, expected, described(*node));
+  return *in_si;
 }
 
 double time_unit_of(TomlTable& table, const char* key, double otherwise) {
   return table.optional(key) ? unit_of(table, key, Dimension::time) : otherwise;
 }
 
-std::vector<NamedColumn> columns_of(TomlTable& table, const char* key, std::size_t count, const std::string& what) {
-  const std::string expected =
-      std::to_string(count) + (count == 1 ? " column of " : " columns of ") + what + ", names in quotation marks";
+/// The unit of the quantity's table.
+void read_unit(TomlTable& table, Source& source, Dimension dimension) {
+  source.in_si = unit_of(table, "unit", dimension);
+  source.unit = table.text("unit", a_name, "");
+}
+
+/// `least` of them or more, up to `count`.
+std::vector<NamedColumn> columns_of(TomlTable& table, const char* key, std::size_t count, const std::string& what,
+                                    std::size_t least = 0) {
+  const std::string expected = (least > 0 ? std::to_string(least) + " or " : "") + std::to_string(count) +
+                               (count == 1 ? " column of " : " columns of ") + what + ", names in quotation marks";
   const toml::node& node = table.required(key, expected);
   std::vector<NamedColumn> columns;
   if (count == 1 && node.is_string()) return {{node.as_string()->get(), place_of(node)}};
   const toml::array* list = node.as_array();
-  if (!list || list->size() != count) table.refuse(node, expected, described(node));
+  if (!list || (list->size() != count && (least == 0 || list->size() != least))) {
+    table.refuse(node, expected, described(node));
+  }
   for (const toml::node& name : *list) columns.push_back({table.as_text(name, a_name), place_of(name)});
   return columns;
 }
@@ -143,14 +212,15 @@ void read_motors(TomlTable& table, Source& source) {
   constexpr std::array<const char*, 3> kinds = {"thrust", "signal", "speed"};
   source.corners = motor_order_of(table);
   source.numbers = static_cast<MotorNumbers>(table.choice("numbers", kinds, 0));
-  source.least = table.number("least", of_either_sign, 0);
-  source.most = table.number("most", of_either_sign, 1);
-  if (!(source.most > source.least)) {
+  source.least = mapped_number(table, "least", 0);
+  source.most = mapped_number(table, "most", 1);
+  const bool of_log = !source.least.parameter.empty() || !source.most.parameter.empty();
+  if (!of_log && !(source.most.value > source.least.value)) {
     const toml::node* node = table.optional("most");
     if (!node) node = table.optional("least");
-    if (node) table.refuse(*node, "`most` above `least`", number_text(source.most));
+    if (node) table.refuse(*node, "`most` above `least`", number_text(source.most.value));
   }
-  if (source.numbers == MotorNumbers::speed) source.in_si = unit_of(table, "unit", Dimension::rotor_speed);
+  if (source.numbers == MotorNumbers::speed) read_unit(table, source, Dimension::rotor_speed);
   const toml::node* curve = table.optional("thrust_curve");
   if (curve && curve->is_string()) {
     source.thrust_curve_parameter = curve->as_string()->get();
@@ -164,9 +234,10 @@ void read_columns(TomlTable& table, Source& source, const QuantityFacts& facts) 
     constexpr std::array<const char*, 2> orders = {"wxyz", "xyzw"}, directions = {"body_to_world", "world_to_body"};
     source.euler = table.optional("euler") != nullptr;
     source.columns = source.euler ? columns_of(table, "euler", 3, "roll, pitch and yaw")
-                                  : columns_of(table, "quaternion", 4, "a quaternion");
+                                  : columns_of(table, "quaternion", 4, "a quaternion", 3);
+    source.without_scalar = !source.euler && source.columns.size() == 3;
     if (source.euler) {
-      source.in_si = unit_of(table, "unit", facts.dimension);
+      read_unit(table, source, facts.dimension);
       for (std::size_t i = 0; i < source.columns.size(); ++i) {
         std::string& name = source.columns[i].name;
         if (name[0] != '-') continue;
@@ -174,7 +245,7 @@ void read_columns(TomlTable& table, Source& source, const QuantityFacts& facts) 
         name.erase(0, 1);
       }
     }
-    if (!source.euler) source.scalar_last = table.choice("order", orders, 0) == 1;
+    if (!source.euler && !source.without_scalar) source.scalar_last = table.choice("order", orders, 0) == 1;
     source.world_to_body = table.choice("direction", directions, 0) == 1;
   } else if (facts.quantity == Quantity::torque_and_thrust) {
     constexpr std::array<const char*, 2> ways = {"down", "up"};
@@ -182,11 +253,20 @@ void read_columns(TomlTable& table, Source& source, const QuantityFacts& facts) 
     source.columns.push_back(columns_of(table, "thrust", 1, "thrust along z").front());
     source.thrust_topic = table.text("thrust_topic", a_name, source.topic);
     source.thrust_is_up = table.choice("thrust_is", ways, 0) == 1;
+    source.wrench = table.optional("torque_unit") != nullptr;
+    if (source.wrench) {
+      source.in_si = unit_of(table, "torque_unit", Dimension::torque);
+      static_cast<void>(table.required("thrust_unit", "a unit: " + unit_names(Dimension::force)));
+      source.thrust_in_si = unit_of(table, "thrust_unit", Dimension::force);
+    } else if (const toml::node* thrust = table.optional("thrust_unit")) {
+      table.refuse(*thrust, "`torque_unit` beside it", "none");
+    }
   } else {
     source.columns = columns_of(table, "columns", facts.columns, facts.words);
     if (facts.quantity == Quantity::motors) read_motors(table, source);
-    if (facts.dimension != Dimension::none) source.in_si = unit_of(table, "unit", facts.dimension);
+    if (facts.dimension != Dimension::none) read_unit(table, source, facts.dimension);
   }
+  read_scale(table, source);
   if (facts.quantity == Quantity::acceleration || facts.quantity == Quantity::velocity) {
     constexpr std::array<const char*, 2> axes = {"body", "world"};
     source.axes = static_cast<Axes>(table.choice("axes", axes, facts.quantity == Quantity::velocity ? 1 : 0));
@@ -214,6 +294,10 @@ Source source_of(const std::string& path, const toml::table& node, const Quantit
   source.world = own.world;
   source.body = own.body;
   read_columns(table, source, facts);
+  if (source.euler && node.contains("world") != node.contains("body")) {  // level is 0, 0: both have z up, or down
+    if (node.contains("world")) source.body = source.world == WorldFrame::enu ? BodyFrame::flu : BodyFrame::frd;
+    if (node.contains("body")) source.world = source.body == BodyFrame::flu ? WorldFrame::enu : WorldFrame::ned;
+  }
   table.require_no_more();
   return source;
 }
@@ -271,7 +355,8 @@ void read_extras(const std::string& path, TomlTable& root, Mapping& mapping) {
       }
     }
     extra.source.columns = columns_of(table, "column", 1, extra.name);
-    extra.source.in_si = table.number("scale", of_either_sign, 1);
+    extra.source.unit = extra.unit;
+    read_scale(table, extra.source);
     table.require_no_more();
     mapping.extras.push_back(std::move(extra));
   }
@@ -279,8 +364,12 @@ void read_extras(const std::string& path, TomlTable& root, Mapping& mapping) {
 
 void read_rules(const std::string& path, TomlTable& root, Mapping& mapping) {
   with_table(path, root, "time", [&](TomlTable& table) {
-    mapping.time_column = named(table, "column");
-    mapping.time_in_s = unit_of(table, "unit", Dimension::time);
+    const toml::node* scale = table.optional("scale");
+    if (!scale || table.optional("column")) {  // topics have clocks of their own, which may run wrong too
+      mapping.time_column = named(table, "column");
+      mapping.time_in_s = unit_of(table, "unit", Dimension::time);
+    }
+    if (scale) mapping.time_scale = table.as_number(*scale, {0.5, 2, "a value from 0.5 to 2"});
   });
   with_table(path, root, "flights", [&](TomlTable& table) {
     if (table.optional("column")) mapping.flight_column = named(table, "column");
@@ -350,6 +439,14 @@ Mapping mapping_of(const toml::table& tables, const std::string& path) {
 }
 
 }  // namespace
+
+std::optional<double> unit_in_si(Dimension dimension, const std::string& name) {
+  const auto same =
+      std::find_if(spellings.begin(), spellings.end(), [&](const auto& one) { return one.first == name; });
+  const Unit* unit = unit_named(dimension, same == spellings.end() ? std::string_view(name) : same->second);
+  if (!unit) return std::nullopt;
+  return unit->in_si;
+}
 
 Mapping parse_mapping(const std::string& text, const std::string& path) {
   return mapping_of(parse_toml(text, path), path);

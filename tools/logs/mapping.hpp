@@ -30,7 +30,19 @@ enum class Quantity {
 };
 
 /// The dimension of a unit.
-enum class Dimension { time, angle, turning, angular_acceleration, acceleration, speed, length, rotor_speed, none };
+enum class Dimension {
+  time,
+  angle,
+  turning,
+  angular_acceleration,
+  acceleration,
+  speed,
+  length,
+  rotor_speed,
+  force,
+  torque,
+  none
+};
 
 struct QuantityFacts {
   Quantity quantity;
@@ -83,6 +95,13 @@ struct NamedColumn {
   MappingPlace place;
 };
 
+/// A number that the mapping says, or that the log has among its parameters: 0.1, "1/acc_1G", "motorOutput[0]".
+struct MappedNumber {
+  double value = 0;       ///< where the log is not asked
+  std::string parameter;  ///< of the log; empty: `value`
+  bool divides = false;   ///< one over it
+};
+
 /// Where a quantity may stand: one of several, the first that the log has is taken.
 struct Source {
   Quantity quantity = Quantity::attitude;
@@ -90,7 +109,11 @@ struct Source {
   int instance = 0;
   std::string thrust_topic;  ///< of torque_and_thrust, where it is another one
   std::vector<NamedColumn> columns;
+  /// A number n of the log is (n * scale + offset) * in_si.
+  MappedNumber scale{1, {}, false};
+  double offset = 0;
   double in_si = 1;
+  std::string unit;         ///< that the mapping says; empty: SI
   bool optional = false;    ///< a log without it is one
   std::string time_column;  ///< empty: the topic's clock
   double time_in_s = 1e-6;
@@ -99,6 +122,7 @@ struct Source {
 
   bool euler = false;                             ///< of attitude: roll, pitch, yaw instead of a quaternion
   std::array<double, 3> euler_signs = {1, 1, 1};  ///< "-pitch": the log has it the other way round
+  bool without_scalar = false;                    ///< x, y, z alone: w >= 0 is what makes them a unit quaternion
   bool scalar_last = false;                       ///< x, y, z, w
   bool world_to_body = false;                     ///< the quaternion's direction
   WorldFrame world = WorldFrame::ned;
@@ -107,17 +131,19 @@ struct Source {
 
   MotorNumbers numbers = MotorNumbers::thrust;
   std::array<MotorOrder::Corner, rotor_count> corners = px4_motor_order.corners;
-  double least = 0, most = 1;          ///< of a motor's number: stopped or idle, and full
-  double thrust_curve = 0;             ///< of a signal: thrust = s ((1 - k) + k s)
-  std::string thrust_curve_parameter;  ///< that the log has it by
-  bool thrust_is_up = false;           ///< of torque_and_thrust: positive for thrust, PX4's z is negative
+  MappedNumber least{0, {}, false}, most{1, {}, false};  ///< of a motor's number: stopped or idle, and full
+  double thrust_curve = 0;                               ///< of a signal: thrust = s ((1 - k) + k s)
+  std::string thrust_curve_parameter;                    ///< that the log has it by
+  bool thrust_is_up = false;  ///< of torque_and_thrust: positive for thrust, PX4's z is negative
+  bool wrench = false;        ///< torque and thrust are in units, not shares: the airframe makes the commands
+  double thrust_in_si = 1;    ///< `in_si` is the torque's
 };
 
 /// A column that goes along as it is: a model's extra input.
 struct ExtraSource {
   std::string name;  ///< "battery_voltage"
   std::string unit;  ///< "V"
-  Source source;     ///< one column; `in_si` is the factor to the unit
+  Source source;     ///< one column; `scale` and `offset` lead to the unit
 };
 
 struct Mapping {
@@ -127,6 +153,7 @@ struct Mapping {
   std::string airframe;     ///< where none is given
   NamedColumn time_column;  ///< of a table, which has no clock of its own
   double time_in_s = 1;
+  double time_scale = 1;  ///< of every clock of the log: a second of it in seconds
 
   NamedColumn flight_column;      ///< labels that part a table into flights
   NamedColumn trajectory_column;  ///< labels that name what was flown
@@ -147,6 +174,10 @@ struct Mapping {
   std::vector<Source> sources;
   std::vector<ExtraSource> extras;
 };
+
+/// The factor to SI of a unit that a mapping, or a log's column, names: "deg", "m/s/s"; empty for one that is none of
+/// that dimension.
+std::optional<double> unit_in_si(Dimension dimension, const std::string& name);
 
 /// The mapping of a TOML text, whose tables are the quantities; `path` is for messages. Throws InputError with line and
 /// column: no TOML, keys that are none, values of another kind.

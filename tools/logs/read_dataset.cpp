@@ -21,6 +21,7 @@
 #include "logs/log_parts.hpp"
 #include "logs/mapping.hpp"
 #include "logs/mapping_texts.hpp"
+#include "logs/offered_mapping.hpp"
 #include "logs/row_checks.hpp"
 #include "logs/sensor_check.hpp"
 #include "logs/specific_force.hpp"
@@ -43,6 +44,14 @@ Mapping chosen_mapping(const std::string& name_or_file) {
   }
   throw std::invalid_argument("no mapping named '" + printable(name_or_file) + "'; known: " + mapping_names() +
                               ", or a file whose name ends in .toml");
+}
+
+/// Throws InputError where the content asks for none.
+OfferedMapping required_offer(const std::string& path) {
+  if (const auto offered = offered_mapping(path)) return *offered;
+  throw InputError(
+      path, 0, 0, "a flight, a dataset, or a --mapping of the log's columns (" + mapping_names() + ", or a .toml file)",
+      "a log that does not tell which");
 }
 
 /// Fewest rows of a flight: a batch of training.
@@ -70,6 +79,7 @@ class Steps {
 /// A flight on its way: segments of rows without a gap.
 struct Passage {
   std::string name, trajectory, source;
+  std::size_t mapping = 0;  ///< which of the import's
   std::vector<Flight> segments;
 
   std::size_t rows() const {
@@ -88,30 +98,48 @@ std::size_t rows_in(const std::vector<Passage>& passages) {
 class Import {
  public:
   Import(const std::vector<std::string>& logs, const LogSettings& settings)
-      : logs_(logs), settings_(settings), mapping_(chosen_mapping(settings.mapping)), steps_(dataset_.steps) {
+      : logs_(logs), settings_(settings), steps_(dataset_.steps) {
+    choose_mappings();
     if (settings.rate_hz) period_s_ = 1 / *settings.rate_hz;
     const std::string& name = settings.airframe.empty() ? mapping_.airframe : settings.airframe;
     if (!name.empty()) airframe_ = chosen_airframe(name);
-    dataset_.mapping = mapping_.name;
+    for (const Mapping& mapping : mappings_) dataset_.mapping += (dataset_.mapping.empty() ? "" : ", ") + mapping.name;
     dataset_.airframe = airframe_ ? airframe_->name : "";
   }
 
   ImportedDataset run() {
-    LogSelection selection;
-    selection.topics = mapped_topics(mapping_);
-    if (!mapping_.flight_column.name.empty()) selection.label_columns.push_back(mapping_.flight_column.name);
-    if (!mapping_.trajectory_column.name.empty()) selection.label_columns.push_back(mapping_.trajectory_column.name);
     std::vector<LogPlace> places;
-    for (const std::string& path : logs_) {
-      for (LogPlace& place : logs_at(path, selection, !mapping_.time_column.name.empty()))
-        places.push_back(std::move(place));
+    std::vector<std::size_t> mappings;  // of the places
+    for (std::size_t i = 0; i < logs_.size(); ++i) {
+      use(mapping_of_log_[i]);
+      for (LogPlace& place : logs_at(logs_[i], selection(), !mapping_.time_column.name.empty())) {
+        if (stands_beside_log(place.path)) {
+          add(dataset_.notes, place.path + ": written beside a blackbox log by blackbox_decode: skipped");
+        } else {
+          places.push_back(std::move(place));
+          mappings.push_back(mapping_of_log_[i]);
+        }
+      }
+    }
+    if (places.empty()) {
+      throw InputError(logs_.front(), 0, 0, "a flight log, such as LOG00001.01.csv",
+                       "what blackbox_decode writes beside one");
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double done = static_cast<double>(i), all = static_cast<double>(places.size());
-      selection.prefix = places[i].prefix;
-      selection.on_progress = [&](double share) { report("reading " + places[i].name, (done + share) / all); };
-      FlightLog log = read_log(places[i].path, selection);
+      use(mappings[i]);
+      LogSelection selected = selection();
+      selected.prefix = places[i].prefix;
+      selected.flight = places[i].flight;
+      selected.on_progress = [&](double share) { report("reading " + places[i].name, (done + share) / all); };
+      FlightLog log = read_log(places[i].path, selected);
       dataset_.warnings.insert(dataset_.warnings.end(), log.warnings.begin(), log.warnings.end());
+      const bool is_one_of_several =
+          log.topics.empty() && places.size() > 1;  // a flight of a blackbox that has no frame
+      if (is_one_of_several) {
+        warn(places[i].name + ": no row in it: left out");
+        continue;
+      }
       for (LogPart& part : parts_of(std::move(log), places[i].name, mapping_)) {
         take(part, places[i]);
         part.log = {};
@@ -130,6 +158,34 @@ class Import {
   void report(const std::string& job, double share) const {
     if (settings_.on_progress) settings_.on_progress(job, share);
   }
+  /// The one that the settings name, or of each log the one that its content asks for.
+  void choose_mappings() {
+    mapping_of_log_.assign(logs_.size(), 0);
+    if (!settings_.mapping.empty()) mappings_.push_back(chosen_mapping(settings_.mapping));
+    for (std::size_t i = 0; i < logs_.size() && settings_.mapping.empty(); ++i) {
+      const OfferedMapping offered = required_offer(logs_[i]);
+      const auto known = std::find_if(mappings_.begin(), mappings_.end(),
+                                      [&offered](const Mapping& mapping) { return mapping.name == offered.name; });
+      mapping_of_log_[i] = static_cast<std::size_t>(known - mappings_.begin());
+      if (known == mappings_.end()) mappings_.push_back(chosen_mapping(offered.name));
+      add(dataset_.taken, "mapping " + offered.name + " taken: " + offered.why);
+    }
+    use(0);
+  }
+
+  void use(std::size_t mapping) {
+    current_ = mapping;
+    mapping_ = mappings_[mapping];
+  }
+
+  LogSelection selection() const {
+    LogSelection selected;
+    selected.topics = mapped_topics(mapping_);
+    if (!mapping_.flight_column.name.empty()) selected.label_columns.push_back(mapping_.flight_column.name);
+    if (!mapping_.trajectory_column.name.empty()) selected.label_columns.push_back(mapping_.trajectory_column.name);
+    return selected;
+  }
+
   /// Each sentence once.
   static void add(std::vector<std::string>& sentences, const std::string& one) {
     if (std::find(sentences.begin(), sentences.end(), one) == sentences.end()) sentences.push_back(one);
@@ -142,12 +198,21 @@ class Import {
   void count_topics(const BoundLog& bound, const std::string& name) {
     std::vector<const LogTopic*> counted;
     const auto count = [&](const Signal& signal) {
-      if (!signal.present() || std::find(counted.begin(), counted.end(), signal.topic) != counted.end()) return;
-      counted.push_back(signal.topic);
+      if (!signal.present()) return;
+      if (!signal.note.empty()) add(dataset_.notes, signal.note);
+      const bool known = std::find(counted.begin(), counted.end(), signal.topic) != counted.end();
+      if (known && !signal.sparse) return;
+      if (!signal.sparse) counted.push_back(signal.topic);
       const ClockReport& report = signal.clock->report;
-      steps_.add("read: " + topic_words(signal.topic->name, signal.topic->instance), report.rows_read, report.rows_kept,
-                 "one time a row: no time, a second row of one time and stale first rows are left out");
-      const std::string topic = name + ", " + topic_words(signal.topic->name, signal.topic->instance);
+      std::string of = topic_words(signal.topic->name, signal.topic->instance);
+      if (signal.sparse) of += ", rows with " + signal.source->columns.front().name;
+      steps_.add("read: " + of, report.rows_read, report.rows_kept,
+                 "one time a row: no time, a wild one, a second row of one time and stale first rows are left out");
+      const std::string topic = name + ", " + of;
+      if (report.wild > 0) {
+        warn(topic + ": " + std::to_string(report.wild) + (report.wild > 1 ? " rows have stamps" : " row has a stamp") +
+             " that the rows around it do not have, first " + short_number(report.first_wild_s) + " s: left out");
+      }
       if (report.out_of_order > 0) {
         warn(topic + ": " + std::to_string(report.out_of_order) + " rows were not in time's order and were sorted");
       }
@@ -201,6 +266,7 @@ class Import {
     passage.name = part.name;
     passage.trajectory = part.trajectory;
     passage.source = place.path;
+    passage.mapping = current_;
     Flight airborne = without(std::move(log_rows.flight), out);
     steps_.add("on the ground", before, airborne.size(),
                "landed by the log, lower than the mapping's [ground] says, borne by something");
@@ -329,6 +395,7 @@ class Import {
   void drop(const std::string& name, const std::string& told, const Mask& mask) {
     const std::size_t before = rows_in(passages_);
     for (Passage& passage : passages_) {
+      use(passage.mapping);
       Flight whole = joined(std::move(passage.segments));
       const RowMask out = mask(whole);
       passage.segments.clear();
@@ -362,6 +429,7 @@ class Import {
     const std::size_t before = rows_in(passages_);
     std::size_t longest = 0;
     for (Passage& passage : passages_) {
+      use(passage.mapping);
       int part = 0;
       for (Flight& flight : split_at_gaps(joined(std::move(passage.segments)), mapping_.split_gap_s)) {
         longest = std::max(longest, flight.size());
@@ -370,7 +438,8 @@ class Import {
         flight.name = free_name(dataset_.flights, passage.name, ++part);
         const bool misread = causes_.find(flight.name) != causes_.end();
         if (!misread) {
-          for (const SensorFinding& finding : check_sensors(flight, !dataset_.lacks("velocity"))) {
+          for (const SensorFinding& finding :
+               check_sensors(flight, !dataset_.lacks("velocity"), !dataset_.lacks("altitude"))) {
             warn(flight.name + ": " + finding.words);
             if (finding.may_be_heading) causes_.emplace(flight.name, finding.words);
           }
@@ -416,7 +485,10 @@ class Import {
 
   const std::vector<std::string>& logs_;
   const LogSettings& settings_;
-  Mapping mapping_;
+  std::vector<Mapping> mappings_;
+  std::vector<std::size_t> mapping_of_log_;
+  std::size_t current_ = 0;
+  Mapping mapping_;  ///< the current one
   std::optional<NamedAirframe> airframe_;
   ImportedDataset dataset_;
   Steps steps_;
@@ -442,9 +514,6 @@ std::string mapping_names() {
 
 ImportedDataset read_dataset(const std::vector<std::string>& logs, const LogSettings& settings) {
   if (logs.empty()) throw std::invalid_argument("expected a log: a .ulg file, a .csv table, a folder of ulog2csv");
-  if (settings.mapping.empty()) {
-    throw std::invalid_argument("expected a mapping of the log's columns: " + mapping_names() + ", or a .toml file");
-  }
   return Import(logs, settings).run();
 }
 

@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <system_error>
 
+#include "logs/blackbox.hpp"
 #include "logs/csv_log.hpp"
+#include "logs/dataflash.hpp"
+#include "logs/foreign_files.hpp"
 #include "logs/ulog.hpp"
 #include "logs/ulog2csv_folder.hpp"
 #include "logs/ulog_types.hpp"
@@ -14,33 +17,6 @@
 #include "pinnquad/io/text_file.hpp"
 
 namespace pinnquad::logs {
-namespace {
-
-/// Throws InputError that says how to restore what was compressed.
-void refuse_compressed(const std::string& path, std::string_view begin) {
-  struct Compression {
-    std::string_view magic;
-    const char* name;
-    const char* restored_by;
-  };
-  constexpr std::array<Compression, 4> compressions{{{{"\xfd"
-                                                       "7zXZ\0",
-                                                       6},
-                                                      "xz",
-                                                      "xz -d"},
-                                                     {{"\x1f\x8b", 2}, "gzip", "gzip -d"},
-                                                     {{"\x28\xb5\x2f\xfd", 4}, "zstd", "zstd -d"},
-                                                     {{"PK\x03\x04", 4}, "zip", "unzip"}}};
-  for (const Compression& compression : compressions) {
-    if (begin.substr(0, compression.magic.size()) != compression.magic) continue;
-    throw InputError(
-        path, 0, 0, "a log as it was written",
-        std::string("one compressed by ") + compression.name + " (restore it with " + compression.restored_by + ")");
-  }
-}
-
-}  // namespace
-
 LogKind kind_of_log(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return LogKind::ulog2csv_folder;
@@ -49,9 +25,13 @@ LogKind kind_of_log(const std::string& path) {
   const std::string_view begin(block.data(), file.read(block.data(), block.size()));
   if (begin.substr(0, ulog::magic.size()) == ulog::magic) return LogKind::ulog;
   if (is_usd_log(begin)) return LogKind::usd;
-  refuse_compressed(path, begin);
+  if (is_dataflash_log(begin)) return LogKind::dataflash;
+  if (is_blackbox_log(begin)) return LogKind::blackbox;
+  refuse_foreign(path, begin);
   if (std::filesystem::path(path).extension() == ".ulg" || begin.find('\0') != std::string_view::npos) {
-    throw InputError(path, 0, 0, "a ULog file, a CSV table, a Crazyflie's log, or a folder that ulog2csv wrote",
+    throw InputError(path, 0, 0,
+                     "a ULog file, a blackbox log, a DataFlash log, a CSV table, a Crazyflie's log, or a folder that "
+                     "ulog2csv wrote",
                      begin.empty() ? "an empty file" : "neither by its first bytes");
   }
   return LogKind::csv;
@@ -62,6 +42,8 @@ FlightLog read_log(const std::string& path, const LogSelection& selection) {
     case LogKind::ulog: return read_ulog(path, selection);
     case LogKind::ulog2csv_folder: return read_ulog2csv_folder(path, selection);
     case LogKind::usd: return read_usd_log(path);
+    case LogKind::blackbox: return read_blackbox(path, selection);
+    case LogKind::dataflash: return read_dataflash(path, selection);
     case LogKind::csv: break;
   }
   return read_csv_log(path, selection);

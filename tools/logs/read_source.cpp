@@ -153,7 +153,7 @@ SourceKind kind_of_source(const std::string& path) {
 }
 
 SourceKind kind_of_sources(const std::vector<std::string>& paths, const std::string& mapping) {
-  if (paths.empty()) throw std::invalid_argument("expected FLIGHTS: flights, a dataset, or logs with a --mapping");
+  if (paths.empty()) throw std::invalid_argument("expected FLIGHTS: flights, a dataset, or logs");
   const SourceKind kind = kind_of_source(paths.front());
   if (!mapping.empty()) {
     if (kind != SourceKind::dataset) return SourceKind::logs;
@@ -163,11 +163,6 @@ SourceKind kind_of_sources(const std::vector<std::string>& paths, const std::str
     if (kind_of_source(path) == kind && (kind != SourceKind::dataset || paths.size() == 1)) continue;
     throw std::invalid_argument("expected flights, one dataset, or logs, found " + printable(paths.front()) + " and " +
                                 printable(path) + ": import them into one dataset first");
-  }
-  if (kind == SourceKind::logs) {
-    throw InputError(paths.front(), 0, 0,
-                     "a flight, a dataset, or a mapping of its columns (" + mapping_names() + ", or a .toml file)",
-                     "a log without a mapping");
   }
   return kind;
 }

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "logs/log_checks.hpp"
 #include "logs/specific_force.hpp"
@@ -159,14 +161,89 @@ void check_force(const Flight& flight, double period_s, std::vector<SensorFindin
   }
 }
 
+/// A second of the log in seconds, by what changes over time: y = rate * x + offset for each of `axes_of` axes.
+template <std::size_t Axes, class ChangeAndIntegral>
+Estimate clock_rate(const StepsOfFlight& steps, const ChangeAndIntegral& of) {
+  const auto found = solved<1 + Axes>(steps, [&](BlockRegression& regression, std::size_t block, std::size_t row) {
+    const std::array<Vector3<double>, 2> step = of(row, row + steps.size);
+    for (std::size_t axis = 3 - Axes; axis < 3; ++axis) {
+      std::array<double, 1 + Axes> x{};
+      x[0] = step[1][static_cast<Eigen::Index>(axis)];
+      x[1 + axis - (3 - Axes)] = steps.duration_s;
+      regression.add(block, x.data(), step[0][static_cast<Eigen::Index>(axis)]);
+    }
+  });
+  return found && found->told(0) ? found->estimate(0) : Estimate{};
+}
+
+/// A gyro's scale may be off, and an accelerometer's: a clock shows in two or more alike.
+void check_clock_rate(const Flight& flight, double period_s, bool has_velocity, bool has_altitude,
+                      std::vector<SensorFinding>& findings) {
+  constexpr double step_s = 0.4, least_off = 0.006, told = 0.006;
+  const StepsOfFlight steps = steps_of(flight, period_s, step_s);
+  const auto in_world = [&](std::size_t row, const Vector3<double>& v) {
+    return body_to_world<double>(attitude(flight[row]), v);
+  };
+  std::vector<std::pair<const char*, Estimate>> rates;
+  rates.emplace_back("attitude and body rates", clock_rate<3>(steps, [&](std::size_t first, std::size_t last) {
+                       const auto of = [](const Sample& sample) { return sample.body_rates_rad_s; };
+                       return std::array<Vector3<double>, 2>{
+                           detail::turn_vector(conjugate(attitude(flight[first])) * attitude(flight[last])),
+                           mean_of(flight, first, last - first, of) * steps.duration_s};
+                     }));
+  const auto velocity = [&](std::size_t row) { return in_world(row, flight[row].velocity_m_s); };
+  if (has_velocity) {
+    rates.emplace_back("velocity and specific force", clock_rate<3>(steps, [&](std::size_t first, std::size_t last) {
+                         const auto of = [](const Sample& sample) {
+                           return body_to_world<double>(attitude(sample), specific_force_m_s2(sample));
+                         };
+                         return std::array<Vector3<double>, 2>{
+                             velocity(last) - velocity(first),
+                             mean_of(flight, first, last - first, of) * steps.duration_s};
+                       }));
+  }
+  if (has_velocity && has_altitude) {
+    rates.emplace_back(
+        "altitude and velocity", clock_rate<1>(steps, [&](std::size_t first, std::size_t last) {
+          const auto of = [](const Sample& sample) {
+            return body_to_world<double>(attitude(sample), sample.velocity_m_s);
+          };
+          const Vector3<double> fallen(0, 0, flight[first].altitude_m - flight[last].altitude_m);
+          return std::array<Vector3<double>, 2>{fallen, mean_of(flight, first, last - first, of) * steps.duration_s};
+        }));
+  }
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    for (std::size_t k = i + 1; k < rates.size(); ++k) {
+      const Estimate &a = rates[i].second, &b = rates[k].second;
+      const auto off = [](const Estimate& rate) {
+        return rate.half_width < told && is_beyond({rate.value - 1, rate.half_width}, least_off);
+      };
+      const double wide = std::hypot(a.half_width, b.half_width);
+      if (!off(a) || !off(b) || std::abs(a.value - b.value) > wide) continue;
+      const Estimate& best = a.half_width < b.half_width ? a : b;
+      char scale[32];
+      std::snprintf(scale, sizeof scale, "%.4f", best.value);
+      findings.push_back(
+          {std::string("column t: a second of the log lasts ") + scale + " s, by " + rates[i].first + " and by " +
+               rates[k].first +
+               " alike: its clock runs wrong (a Crazyflie's uSD deck before August 2026: 85/84 = 1.0119); "
+               "scale = " +
+               scale + " in [time] of the mapping puts it right",
+           false});
+      return;
+    }
+  }
+}
+
 }  // namespace
 
-std::vector<SensorFinding> check_sensors(const Flight& flight, bool has_velocity) {
+std::vector<SensorFinding> check_sensors(const Flight& flight, bool has_velocity, bool has_altitude) {
   std::vector<SensorFinding> findings;
   const double period_s = sample_period_s(RowSet(flight, {0, flight.size()}));
   if (!(period_s > 0)) return findings;
   check_rates(flight, period_s, findings);
   if (has_velocity) check_force(flight, period_s, findings);
+  check_clock_rate(flight, period_s, has_velocity, has_altitude, findings);
   return findings;
 }
 

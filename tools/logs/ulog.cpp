@@ -177,7 +177,7 @@ class Reader {
     topic.instance = from.instance;
     topic.file = log_.source;
     topic.places_are_lines = false;
-    for (const Leaf& leaf : from.numbers) topic.columns.push_back({leaf.column, {}});
+    for (const Leaf& leaf : from.numbers) topic.columns.push_back({leaf.column, {}, {}});
     for (const Leaf& leaf : from.texts) topic.texts.push_back({leaf.column, {}});
     log_.topics.push_back(std::move(topic));
   }

@@ -106,7 +106,7 @@ FlightLog read_usd_log(const std::string& path) {
       if (type == nullptr) bytes.refuse("a type of a variable that is known");
       event.types.push_back(*type);
       event.length += type->size;
-      topic.columns.push_back({variable.substr(0, variable.size() - 3), {}});
+      topic.columns.push_back({variable.substr(0, variable.size() - 3), {}, {}});
     }
     events[id] = event;
     log.topics.push_back(std::move(topic));

@@ -44,6 +44,27 @@ TEST_CASE("a shuffled log is the sorted one, every row at its time") {
   CHECK(clock.report.restarts == 0);
 }
 
+TEST_CASE("a few wild stamps are left out wherever they stand; many are a second recording") {
+  for (const std::size_t at : {0ul, 1ul, 500ul, 998ul, 999ul}) {
+    for (const double wild_s : {9.2e12, -4.0, 1e5}) {
+      std::vector<double> time_s = ticks(1000, 0.01, 100);
+      time_s[at] = wild_s;
+      const CleanClock clock = clean_clock(time_s);
+      CHECK(clock.size() >= (at == 1 ? 998 : 999));  // of two rows nobody knows which is wild
+      CHECK(clock.report.wild + clock.report.stale_first == 1000 - clock.size());
+      CHECK(clock.report.restarts == 0);
+      CHECK(clock.report.largest_step_s < 0.03);
+    }
+  }
+  std::vector<double> time_s = ticks(1000, 0.01, 100);
+  for (std::size_t row = 980; row < 1000; ++row) time_s[row] -= 50;
+  CHECK(clean_clock(time_s).report.restarts == 1);
+  CHECK(clean_clock(time_s).report.wild == 0);
+  time_s = ticks(1000, 0.01, 100);
+  for (std::size_t row = 500; row < 1000; ++row) time_s[row] += 50;  // a pause is none
+  CHECK(clean_clock(time_s).size() == 1000);
+}
+
 TEST_CASE("of rows with one time the last stays; no time, no row; all is counted") {
   const CleanClock clock = clean_clock({0, 1, 1, 1, 2, std::nan(""), 3, HUGE_VAL, 2.5});
   REQUIRE(clock.size() == 5);

@@ -123,15 +123,39 @@ TEST_CASE("what is wrong with a table: one line that says where") {
   CHECK(complaint(wide + "\n") == ":1: expected at most 10000 columns, found 10001");
 }
 
-TEST_CASE("decimal commas and other separators: what to do about them") {
+TEST_CASE("semicolons, with decimal commas or points, and tabs") {
+  for (const char* text :
+       {"t;x;y\n1;2;3\n2;0,035;3\n", "t;x;y\n1;2;3\n2;0.035;3\n", "t\tx\ty\n1\t2\t3\n2\t0.035\t3\n"}) {
+    const LogTopic topic = read(text, by("t"));
+    REQUIRE(topic.size() == 2);
+    CHECK(topic.column("x")->values == std::vector<double>{2, 0.035});
+  }
+}
+
+TEST_CASE("the table below comments, keys and values, and above a row of units") {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("log.csv",
+                                        "\"Product\",\"of, somebody\"\n\"acc_1G\",2048\n\"motorOutput\",\"158,2047\"\n"
+                                        "# a comment, of two cells\n\"t\",\"x\",\"y\",\"z\"\ns,m,[deg],-\n1,2,3,4\n");
+  const auto log = read_csv_log(path, by("t"));
+  CHECK(log.facts.at("Product") == "of, somebody");
+  CHECK(log.parameters.at("acc_1G") == 2048);
+  CHECK(log.parameters.at("motorOutput[1]") == 2047);
+  REQUIRE(log.topics[0].size() == 1);
+  CHECK(log.topics[0].column("y")->values == std::vector<double>{3});
+  CHECK(log.topics[0].column("y")->unit == "deg");
+  CHECK(log.topics[0].place == std::vector<std::uint64_t>{7});
+  CHECK(read("# t x\n# t, x\n1,2\n", by("t")).column("x")->values == std::vector<double>{2});
+  CHECK(complaint("# t\n# x\n") == ":1: expected a header that names the columns, found comments alone");
+  // a table of labels has no row of units
+  CHECK(read("t,flight\n1,a\n2,b\n").text("flight")->values == std::vector<std::string>{"a", "b"});
+}
+
+TEST_CASE("decimal commas between commas: what to do about them") {
   const std::string numbers =
-      ": expected numbers with a decimal point, commas between the cells (export the table so), found ";
-  CHECK(complaint("t;x;y\n1;2;3\n2;0,035;3\n") == ":3:2" + numbers + "\"0,035\" between semicolons");
+      ": expected numbers with a decimal point, or semicolons between the cells (export the table so), found ";
   CHECK(complaint("t,x\n\"1\",\"-0,5e-3\"\n") == ":2:2" + numbers + "\"-0,5e-3\"");
   CHECK(complaint("t,x\n0,1,2,5\n") == ":2:3: expected 2 cells as in the header, found 4 (are there decimal commas?)");
-  CHECK(complaint("t;x\n1;2\n") ==
-        ":1: expected commas between the cells (export the table with them), found semicolons");
-  CHECK(complaint("t\tx\n1\t2\n") == ":1: expected commas between the cells (export the table with them), found tabs");
   // a label may hold a comma between digits
   LogSelection selection;
   selection.label_columns = {"x"};

@@ -16,6 +16,7 @@ namespace pinnquad::logs {
 struct LogColumn {
   std::string name;  ///< "q[0]", "battery_voltage"
   std::vector<double> values;
+  std::string unit{};  ///< that a row below the names says, "deg/s"; empty where none does
 };
 
 /// A column of labels: of what cannot be read as numbers throughout. Bytes as they stand in the log.
@@ -76,7 +77,7 @@ struct FlightLog {
   std::string source;  ///< file or folder, as it was given
   double start_s = 0;  ///< when the logger began, as it says itself; 0 where it does not. Rows before it are old news
   std::vector<LogTopic> topics;
-  std::map<std::string, double> parameters;  ///< as they stood when the log began
+  std::map<std::string, double> parameters;  ///< as they stood when the log began; "acc_1G", "motorOutput[0]"
   std::map<std::string, std::string> facts;  ///< "sys_name", "ver_hw" ...
   std::vector<LogMessage> messages;
   std::vector<LogDropout> dropouts;

@@ -31,6 +31,7 @@ struct ImportedDataset {
   double lag_removed_s = 0;  ///< by how much later than told the commands stand in the rows
   std::string airframe;
   std::string mapping;
+  std::vector<std::string> taken;  ///< the mapping that logs asked for, where none was given, and why
   std::vector<ImportStep> steps;
   std::vector<std::string> notes;           ///< how what the logs lack was computed
   std::vector<std::string> warnings;        ///< what looks wrong
@@ -49,7 +50,7 @@ struct ImportedDataset {
 using OnProgress = std::function<void(const std::string& job, double share)>;
 
 struct LogSettings {
-  std::string mapping;  ///< the name of a ready one, or a TOML file
+  std::string mapping;  ///< the name of a ready one, or a TOML file; empty: of each log what its content asks for
   /// Gives rotor speeds and thrusts their commands, and the motors their places: a name or a TOML file; empty: that of
   /// the mapping. Without one thrust is proportional to the command, and PX4's motor order holds.
   std::string airframe;
@@ -60,7 +61,8 @@ struct LogSettings {
   OnProgress on_progress;
 };
 
-/// ULog files, CSV tables, Crazyflie's logs, folders of them or of ulog2csv. Throws InputError and
+/// Logs of any kind and folders of them, told apart by their content: ULog files, ulog2csv's folders, blackbox and
+/// DataFlash logs, Crazyflie's, CSV tables. Throws InputError and
 /// std::invalid_argument, one line, for logs and mappings that give no dataset.
 ImportedDataset read_dataset(const std::vector<std::string>& logs, const LogSettings& settings);
 
@@ -93,7 +95,7 @@ SourceKind kind_of_source(const std::string& path);
 SourceKind kind_of_sources(const std::vector<std::string>& paths, const std::string& mapping);
 
 /// Flights of any source: paths of one kind, or one dataset, with the extra columns that all have. Where `settings`
-/// have a mapping the paths are logs; without one only `on_progress` counts. Throws InputError and
+/// have a mapping the paths are logs; for flights and datasets only `on_progress` counts. Throws InputError and
 /// std::invalid_argument, one line.
 ImportedDataset read_source(const std::vector<std::string>& paths, const LogSettings& settings = {});
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A log as its file has it, whatever the file is: ULog, a folder that ulog2csv wrote, a Crazyflie's uSD card's, a CSV
-// table.
+// A log as its file has it, whatever the file is: ULog, a folder that ulog2csv wrote, a Crazyflie's uSD card's,
+// Betaflight's or INAV's blackbox, ArduPilot's DataFlash, a CSV table.
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@ namespace pinnquad::logs {
 struct LogSelection {
   std::vector<std::string> topics;         ///< by name, each with all its instances; every topic if empty
   std::string prefix;                      ///< which log of a folder of several: what its files' names begin with
+  std::size_t flight = 0;                  ///< which flight of a blackbox log of several
   std::string clock_column;                ///< of a CSV table; none if empty: its time_s is NaN
   double clock_ticks_per_s = 1;            ///< 1e6 where that column is in microseconds
   std::vector<std::string> label_columns;  ///< of a CSV table: kept as text even where every cell is a number
@@ -31,7 +33,7 @@ struct LogSelection {
   }
 };
 
-enum class LogKind { ulog, ulog2csv_folder, usd, csv };
+enum class LogKind { ulog, ulog2csv_folder, usd, blackbox, dataflash, csv };
 
 /// By its first bytes, or by being a folder. Throws InputError for what is none of them.
 LogKind kind_of_log(const std::string& path);
@@ -40,9 +42,10 @@ LogKind kind_of_log(const std::string& path);
 FlightLog read_log(const std::string& path, const LogSelection& selection = {});
 
 /// The rows of a CSV table. LF and CRLF, a byte order mark, blanks around cells, empty lines at the end, quotation
-/// marks as in RFC 4180: accepted. An empty cell and `nan` are NaN, `inf` is infinite; a column with a cell that is no
-/// number is text. Throws InputError, one line: no header, names that come twice, a row of other length, cells between
-/// semicolons or tabs, decimal commas, a clock that is missing or no number.
+/// marks as in RFC 4180, semicolons (with decimal commas) or tabs between the cells: accepted. So are, above the names,
+/// comments and rows of a key and a value (Blackbox Explorer's), and a row of units below them. An empty cell and `nan`
+/// are NaN, `inf` is infinite; a column with a cell that is no number is text. Throws InputError, one line: no header,
+/// names that come twice, a row of other length, decimal commas between commas, a clock that is missing or no number.
 LogTopic read_csv_topic(const std::string& path, const LogSelection& selection = {});
 
 namespace ulog2csv {

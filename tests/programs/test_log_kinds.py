@@ -1,0 +1,329 @@
+# SPDX-License-Identifier: MIT
+"""Logs as loggers and users leave them: what stands around a table, what stands beside a log, scales and units, cells that
+are empty, slots that nobody uses, stamps that are wild. One flight in closed form is written each way, and must come
+out as that flight; what cannot is refused in one line."""
+import re
+import struct
+from math import cos, degrees, pi, sin, sqrt
+from pathlib import Path
+
+import pytest
+from test_import import (angles, commands_at, facts, imported, like_closed_form, logs, quaternion_enu_flu,  # noqa: F401
+                         rates, specific_force)
+
+GRAVITY = 9.80665
+ROWS = 2000
+LAG = ("--lag", "0.04")
+TABLE = """\
+world = "ned"
+[time]
+column = "t"
+[attitude]
+euler = ["roll", "pitch", "yaw"]
+[body_rates]
+columns = ["p", "q", "r"]
+[specific_force]
+columns = ["fx", "fy", "fz"]
+[motors]
+columns = ["u1", "u2", "u3", "u4"]
+order = "px4"
+"""
+NAMES = "t roll pitch yaw p q r fx fy fz u1 u2 u3 u4".split()
+
+
+def row_at(n):
+    """SI units, NED, FRD."""
+    t = n / 100
+    return [t, *angles(t), *rates(t), *specific_force(t), *commands_at(t)]
+
+
+def text_of(value):
+    return value if isinstance(value, str) else f"{value:.9g}"
+
+
+def write(path, head, rows, separator=","):
+    Path(path).write_text("".join(separator.join(map(text_of, row)) + "\n" for row in [*head, *rows]))
+
+
+def plain(path, head=None, separator=",", change=lambda row: row):
+    write(path, [NAMES] if head is None else head, [change(row_at(n)) for n in range(ROWS)], separator)
+
+
+def flight_in(folder):
+    (flight,) = facts(folder)["flights"]
+    return Path(folder, flight["file"])
+
+
+def comes_out(pinnquad, log, *words, mapping=TABLE, rounding=1e-5, rows=1900):
+    """The log imports and is the flight."""
+    Path("table.toml").write_text(mapping)
+    said = imported(pinnquad, log, "--mapping", "table.toml", *LAG, *words, out="out")
+    like_closed_form(flight_in("out"), rounding, rows)
+    return said
+
+
+def decimal_comma(row):
+    return [text_of(value).replace(".", ",") for value in row]
+
+
+@pytest.mark.parametrize("head, separator, change", [
+    ([["# a comment"], ["% another"], NAMES], ",", list), ([["# " + ",".join(NAMES)]], ",", list),
+    ([["logger", "mine"], ["rate", 100], NAMES], ",", list), ([[f'"{name}"' for name in NAMES]], ",", list),
+    ([NAMES], ";", list), ([NAMES], ";", decimal_comma), ([NAMES], "\t", list),
+    ([["firmware", "4.5"], ["motorOutput", '"48,2047"'], [f'"{name}"' for name in NAMES]], ",", list),
+    ([["\ufeff" + NAMES[0], *NAMES[1:]]], ",", list)])
+def test_around_a_table(pinnquad, head, separator, change):
+    plain("log.csv", head, separator, change)
+    comes_out(pinnquad, "log.csv")
+
+
+def test_row_of_units(pinnquad):
+    """Below the names; the mapping says none, so they count."""
+    units = ["[s]", *3 * ["[deg]"], *3 * ["[deg/s]"], *3 * ["[m/s^2]"], *4 * ["[-]"]]
+    plain("log.csv", [NAMES, units], change=lambda row: [row[0], *map(degrees, row[1:7]), *row[7:]])
+    comes_out(pinnquad, "log.csv")
+
+
+def test_units_behind_names(pinnquad):
+    """`roll (deg)` is found as `roll`, and its unit is the log's, whatever the mapping says."""
+    head = [f"{name} (deg)" if name in ("roll", "pitch", "yaw") else name for name in NAMES]
+    plain("log.csv", [head], change=lambda row: [row[0], *map(degrees, row[1:4]), *row[4:]])
+    comes_out(pinnquad, "log.csv")
+    comes_out(pinnquad, "log.csv", mapping=TABLE.replace('"yaw"]', '"yaw"]\nunit = "mrad"'))
+
+
+def test_scale_and_offset(pinnquad):
+    """In every table of a mapping; units of tenths."""
+
+    def change(row):
+        t, *rest = row
+        return [t, *(10 * degrees(angle) for angle in rest[:3]), *(rate * 16.4 + 7 for rate in rest[3:6]),
+                *(force / GRAVITY * 512 for force in rest[6:9]), *rest[9:]]
+
+    plain("log.csv", change=change)
+    mapping = TABLE.replace('"yaw"]', '"yaw"]\nunit = "ddeg"').replace(
+        '"r"]', f'"r"]\nscale = {1 / 16.4!r}\noffset = {-7 / 16.4!r}').replace(
+            '"fz"]', '"fz"]\nunit = "g"\nscale = "1/512"')
+    comes_out(pinnquad, "log.csv", mapping=mapping)
+    comes_out(pinnquad, "log.csv", mapping=mapping.replace('unit = "ddeg"', 'unit = "deg"\nscale = 0.1'))
+    plain("log.csv", [["acc", "512"], NAMES], change=change)
+    comes_out(pinnquad, "log.csv", mapping=mapping.replace("1/512", "1/acc"))
+    Path("none.toml").write_text(mapping.replace("1/512", "1/acc_1G"))
+    pinnquad.refused("import log.csv --mapping none.toml --out bad", at="none.toml:11:*", keyword="acc_1G")
+    Path("zero.toml").write_text(mapping.replace('"1/512"', "0"))
+    pinnquad.refused("import log.csv --mapping zero.toml --out bad", at="zero.toml:*", keyword="scale other than 0")
+
+
+def test_advice_is_not_what_the_mapping_says(pinnquad):
+    """Tenths of a degree as degrees: the advice names the unit that fits, not the one that is there."""
+    plain("log.csv", change=lambda row: [row[0], *(10 * degrees(angle) for angle in row[1:4]), *row[4:]])
+    Path("deg.toml").write_text(TABLE.replace('"yaw"]', '"yaw"]\nunit = "deg"'))
+    refused = pinnquad.refused("import log.csv --mapping deg.toml --out bad", at="log.csv:*", keyword='unit = "ddeg"')
+    assert 'unit = "deg"' not in str(refused)
+
+
+EXPLORER = ("loopIteration time axisD[2] vbatLatest gyroADC[0] gyroADC[1] gyroADC[2] accSmooth[0] accSmooth[1] "
+            "accSmooth[2] motor[0] motor[1] motor[2] motor[3]").split()
+
+
+def blackbox_row(n, motors=(158, 2047), acc_1g=2048):
+    """As the flight controller logs it: whole numbers, FLU."""
+    t = n / 100
+    (p, q, r), (fx, fy, fz) = rates(t), specific_force(t)
+    u1, u2, u3, u4 = commands_at(t)
+    least, most = motors
+    return [8 * n, 10000 * n, "", 1680 - n // 100, degrees(p), -degrees(q), -degrees(r),
+            *(round(acc_1g * f / GRAVITY) for f in (fx, -fy, -fz)),
+            *(round(least + (most - least) * u) for u in (u4, u1, u2, u3))]
+
+
+def test_explorer(pinnquad):
+    """Blackbox Explorer's CSV: keys and values above the table, of which its scales are read; angles in radians."""
+    head = [['"Product"', '"Blackbox flight data recorder"'], ['"acc_1G"', "2048"], ['"motorOutput"', '"158,2047"'],
+            ['"rates"', '""'], [f'"{name}"' for name in [*EXPLORER, "heading[0]", "heading[1]", "heading[2]"]]]
+    rows = []
+    for n in range(ROWS):
+        roll, pitch, yaw = angles(n / 100)
+        rows.append([*blackbox_row(n), roll, -pitch, yaw % (2 * pi)])
+    write("explorer.csv", head, rows)
+    imported(pinnquad, "explorer.csv", "--mapping", "betaflight", "--airframe", "paper_quadrotor", *LAG, out="out")
+    like_closed_form(flight_in("out"), 2e-3, 1900)
+    assert "battery_voltage [V]" in flight_in("out").read_text().split("\n")[0]
+    assert 15 < float(flight_in("out").read_text().split("\n")[1].split(",")[-1]) < 17
+    write("other.csv", [*head[:1], ['"acc_1G"', "1024"], *head[2:]],
+          [[*blackbox_row(n, acc_1g=1024), *row[14:]] for n, row in enumerate(rows)])
+    imported(pinnquad, "other.csv", "--mapping", "betaflight", "--airframe", "paper_quadrotor", *LAG, out="out")
+    like_closed_form(flight_in("out"), 2e-3, 1900)
+
+
+def quaternion_of(n):
+    """x, y, z with w >= 0, FLU to ENU."""
+    w, x, y, z = quaternion_enu_flu(n / 100)[3], *quaternion_enu_flu(n / 100)[:3]
+    return [round(32767 * value * (1 if w >= 0 else -1)) for value in (x, y, z)]
+
+
+def test_imu_quaternion(pinnquad):
+    """Three of its four numbers, times 32767; before the angles that blackbox_decode integrates, which are wrong here."""
+    names = [*EXPLORER, *(f"imuQuaternion[{i}]" for i in range(3)), "roll", "pitch", "heading"]
+    names = [re.sub("^time$", "time (us)", name) for name in names]
+    write("log.csv", [names], [[*blackbox_row(n, motors=(48, 2047)), *quaternion_of(n), 40, 50, 60]
+                               for n in range(ROWS)])
+    imported(pinnquad, "log.csv", "--mapping", "betaflight", "--airframe", "paper_quadrotor", *LAG, out="out")
+    like_closed_form(flight_in("out"), 2e-3, 1900)
+    mapping = """\
+world = "enu"
+body = "flu"
+[time]
+column = "time (us)"
+unit = "us"
+[attitude]
+quaternion = ["imuQuaternion[0]", "imuQuaternion[1]", "imuQuaternion[2]"]
+[body_rates]
+columns = ["gyroADC[0]", "gyroADC[1]", "gyroADC[2]"]
+unit = "deg/s"
+[specific_force]
+columns = ["accSmooth[0]", "accSmooth[1]", "accSmooth[2]"]
+unit = "g"
+scale = "1/2048"
+[motors]
+columns = ["motor[0]", "motor[1]", "motor[2]", "motor[3]"]
+numbers = "signal"
+least = 48
+most = 2047
+order = "betaflight"
+"""
+    said = comes_out(pinnquad, "log.csv", mapping=mapping, rounding=2e-3)
+    assert "32767" in said
+
+
+@pytest.mark.parametrize("beside", ["LOG.01.gps.csv", "LOG.01.headers.csv", "LOG.01.event"])
+def test_beside_a_log(pinnquad, beside):
+    """What blackbox_decode writes beside a log is skipped with a word, named alone it is refused."""
+    Path("folder").mkdir()
+    plain("folder/LOG.01.csv")
+    Path("folder", beside).write_text("time (us), GPS_numSat\n1, 9\n")
+    Path("table.toml").write_text(TABLE)
+    for given in (["folder/LOG.01.csv", f"folder/{beside}"], ["folder"]):
+        said = pinnquad("import", *given, "--mapping", "table.toml", *LAG, "--out", "out").out
+        assert len(facts("out")["flights"]) == 1
+        assert ("skipped" in said) == (beside.endswith(".csv") or len(given) > 1), said
+    pinnquad.refused(f"import folder/{beside} --mapping table.toml --out bad", at=f"folder/{beside}",
+                     keyword="beside")
+
+
+def sparse(path, *, forward=0):
+    """A row a message: attitude, rates, force and motors at times of their own."""
+    rows = []
+    for n in range(ROWS):
+        for late, first, last in ((0, 1, 4), (0.0011, 4, 7), (0.0022, 7, 10), (0.0031, 10, 14)):
+            t = n / 100 + late
+            full = [t, *angles(t), *rates(t), *specific_force(t), *commands_at(t)]
+            rows.append([t, *(full[i] if first <= i < last else "" for i in range(1, 14))])
+    write(path, [NAMES], rows)
+
+
+def test_sparse_table(pinnquad):
+    """PlotJuggler's and pandas' joins: each quantity is resampled by its own rows."""
+    sparse("log.csv")
+    said = comes_out(pinnquad, "log.csv", rounding=2e-3)
+    assert "gaps" not in said, said
+
+
+def test_sparse_extra(pinnquad):
+    """A battery once in half a second in a table of even rows: the rows stay, the voltage is held."""
+    write("log.csv", [[*NAMES, "bat"]], [[*row_at(n), 12 - n / 1000 if n % 50 == 0 else ""] for n in range(ROWS)])
+    mapping = TABLE + '[[extra]]\nname = "battery_voltage"\nunit = "V"\ncolumn = "bat"\n'
+    comes_out(pinnquad, "log.csv", mapping=mapping)
+    values = {float(line.split(",")[-1]) for line in flight_in("out").read_text().splitlines()[1:]}
+    assert len(values) == 40 and max(values) == 12
+
+
+@pytest.mark.parametrize("row, stamp", [(700, 9.2e12), (700, 0), (0, 9.2e12), (ROWS - 1, 9.2e12), (700, -50)])
+def test_wild_stamp(pinnquad, row, stamp):
+    plain("log.csv", change=lambda cells: [stamp, *cells[1:]] if cells[0] == row / 100 else cells)
+    said = comes_out(pinnquad, "log.csv")
+    assert "1 row has a stamp" in said, said
+
+
+def test_clock_that_runs_wrong(pinnquad):
+    """`scale` in [time]: a clock of 84/85."""
+    plain("log.csv", change=lambda row: [row[0] * 84 / 85, *row[1:]])
+    mapping = TABLE.replace('"t"', f'"t"\nscale = {85 / 84!r}')
+    comes_out(pinnquad, "log.csv", "--rate", "100", mapping=mapping, rounding=2e-3)
+
+
+def motors_table(path, motors):
+    """`motors(u1..u4)` are the log's columns control[0] on."""
+    columns = [motors(commands_at(n / 100)) for n in range(ROWS)]
+    write(path, [[*NAMES[:10], *(f"control[{i}]" for i in range(len(columns[0])))]],
+          [[*row_at(n)[:10], *columns[n]] for n in range(ROWS)])
+
+
+CONTROLS = TABLE.replace('["u1", "u2", "u3", "u4"]', '["control[0]", "control[1]", "control[2]", "control[3]"]')
+
+
+@pytest.mark.parametrize("unused", [0, "nan", "", 0.0025])
+def test_unused_slots(pinnquad, unused):
+    """ROS 2's twelve motors: slots that never move from 0 are no motors."""
+    motors_table("log.csv", lambda u: [*u, *8 * [unused]])
+    comes_out(pinnquad, "log.csv", mapping=CONTROLS)
+
+
+@pytest.mark.parametrize("motors, kind", [
+    (lambda u: [*u, *u[:2], *6 * [0]], "a hexacopter"), (lambda u: [*u, *u, *4 * ["nan"]], "an octocopter"),
+    (lambda u: [u[0], *11 * ["nan"]], "a plane"), (lambda u: [u[0], *11 * [0]], "a plane"),
+    (lambda u: [*u[:3], *9 * [0.0025]], "a tricopter"), (lambda u: [*u, u[0], *7 * [0]], "a pusher")])
+def test_other_vehicles(pinnquad, motors, kind):
+    motors_table("log.csv", motors)
+    Path("table.toml").write_text(CONTROLS)
+    pinnquad.refused("import log.csv --mapping table.toml --out bad", at="table.toml:11:*", keyword=kind)
+
+
+def test_torque_in_si(pinnquad):
+    """Torque in N m and thrust in N by the airframe; taken as shares they are refused."""
+    mass, arm, most_n, drag = 0.027, 0.0325, 0.15, 0.006  # as small as they come
+    Path("small.toml").write_text((Path(__file__).parents[2] / "examples/airframes/crazyflie_2_1.toml").read_text())
+    del mass, arm, most_n, drag
+    rows = []
+    for n in range(ROWS):
+        u = [0.3 + 0.02 * (u - 0.5) for u in commands_at(n / 100)]
+        rows.append([*row_at(n)[:10], 3e-4 * (u[1] - u[0]), 3e-4 * (u[0] - u[1]), 1e-5, 0.27 + 0.01 * sin(n / 50)])
+    write("log.csv", [[*NAMES[:10], "tx", "ty", "tz", "thrust"]], rows)
+    begin = TABLE[:TABLE.index("[motors]")] + '[torque_and_thrust]\ntorque = ["tx", "ty", "tz"]\nthrust = "thrust"\n' \
+        'thrust_is = "up"\n'
+    Path("shares.toml").write_text(begin)
+    pinnquad.refused("import log.csv --mapping shares.toml --airframe crazyflie_2_1 --out bad", at="shares.toml:10:*",
+                     keyword="torque_unit")
+    Path("units.toml").write_text(begin + 'torque_unit = "N m"\nthrust_unit = "N"\n')
+    pinnquad("import log.csv --mapping units.toml --airframe crazyflie_2_1 --lag 0 --out out")
+    # the commands make that thrust: four rotors of the airframe
+    rows = flight_in("out").read_text().splitlines()
+    header = rows[0].split(",")
+    shares = [sum(float(row.split(",")[header.index(f"u{i}")]) for i in (1, 2, 3, 4)) for row in rows[1:]]
+    assert 0.27 / max(shares) == pytest.approx(0.27 / min(shares), rel=0.1)
+    pinnquad.refused("import log.csv --mapping units.toml --out bad", at="units.toml:10:*", keyword="--airframe")
+    Path("half.toml").write_text(begin + 'torque_unit = "N m"\n')
+    pinnquad.refused("import log.csv --mapping half.toml --out bad", keyword="thrust_unit")
+
+
+def test_event_without_variables(pinnquad):
+    """A Crazyflie's log whose event names no variable."""
+    head = b"\xbc" + struct.pack("<HHH", 2, 1, 0) + b"fixedFrequency\0" + struct.pack("<H", 0)
+    Path("log00").write_bytes(head + b"".join(struct.pack("<HQ", 0, 10000 * n) for n in range(ROWS)))
+    pinnquad.refused("import log00 --mapping crazyflie --out bad", at="crazyflie.toml:*", keyword="no variable at all")
+
+
+def test_clock_that_runs_wrong_is_found(pinnquad):
+    """By attitude, velocity and altitude alike; with the scale it is not."""
+    names = [*NAMES, "vn", "ve", "vd", "x", "y", "z"]
+
+    def motion(t):
+        return [2 * sin(0.9 * t), 1.5 * cos(0.6 * t), 0.5 * sin(0.8 * t) - 1.5 / 4.1 * cos(4.1 * t), -2 / 0.9 * cos(0.9 * t),
+                2.5 * sin(0.6 * t), -20 - 0.5 / 0.8 * cos(0.8 * t) - 1.5 / 4.1**2 * sin(4.1 * t)]
+
+    mapping = TABLE + '[velocity]\ncolumns = ["vn", "ve", "vd"]\naxes = "world"\n[position]\ncolumns = ["x", "y", "z"]\n'
+    for factor, scale, found in ((84 / 85, "", True), (84 / 85, f"\nscale = {85 / 84!r}", False), (1, "", False)):
+        write("log.csv", [names], [[n / 100 * factor, *row_at(n)[1:], *motion(n / 100)] for n in range(ROWS)])
+        Path("table.toml").write_text(mapping.replace('"t"', f'"t"{scale}'))
+        said = imported(pinnquad, "log.csv", "--mapping", "table.toml", *LAG, "--rate", "100", out="out")
+        assert ("runs wrong" in said and "1.0119 s" in said) == found, said
