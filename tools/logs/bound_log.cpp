@@ -539,8 +539,8 @@ std::vector<double> times_of(const LogTopic& topic, const Source& source, const 
     for (std::size_t row = 0; row < time_s.size(); ++row) {
       time_s[row] /= ticks_per_s;
       // a sample's time that is 0, or wild, is that of its message
-      const bool wrong = topic_has && !(std::abs(time_s[row] - topic.time_s[row]) <= most_late_s);
-      if (wrong) time_s[row] = topic.time_s[row];
+      const bool right = time_s[row] > 0 && std::abs(time_s[row] - topic.time_s[row]) <= most_late_s;
+      if (topic_has && !right) time_s[row] = topic.time_s[row];
     }
   }
   if (std::abs(mapping.time_scale - 1) > 0) {
