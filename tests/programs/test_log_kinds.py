@@ -410,3 +410,20 @@ def test_profile_that_is_set(pinnquad):
         Path("table.toml").write_text(mapping)
         said = imported(pinnquad, "log.ulg", "--mapping", "table.toml", *LAG, "--rate", "50", out="out")
         assert "too slow" in said and ("set SDLOG_PROFILE" in said) == advised, said
+
+
+def test_plus_frame(pinnquad):
+    """Motors ahead, right, left and behind: named as such, by how roll and pitch follow the commands."""
+    rows = []
+    for n in range(ROWS):
+        u1, u2, u3, u4 = commands_at(n / 100)
+        c, roll, pitch, yaw = (u1 + u2 + u3 + u4) / 4, (u2 + u3 - u1 - u4) / 4, (u1 + u3 - u2 - u4) / 4, \
+            (u1 + u2 - u3 - u4) / 4
+        rows.append([*row_at(n)[:10], c + 1.4 * pitch + yaw, c - 1.4 * roll - yaw, c + 1.4 * roll - yaw,
+                     c - 1.4 * pitch + yaw])
+    write("log.csv", [NAMES], rows)
+    Path("table.toml").write_text(TABLE)
+    said = imported(pinnquad, "log.csv", "--mapping", "table.toml", *LAG, out="out")
+    assert re.search("a '[+]' frame, u2 right, u3 left, u1 front, u4 rear", said), said
+    plain("x.csv")
+    assert "frame" not in imported(pinnquad, "x.csv", "--mapping", "table.toml", *LAG, out="x")
