@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <stdexcept>
 #include <utility>
 
+#include "logs/attitude_numbers.hpp"
 #include "logs/csv_head.hpp"
 #include "logs/log_columns.hpp"
 #include "logs/motor_count.hpp"
 #include "logs/nearest_names.hpp"
+#include "logs/rebuilt_commands.hpp"
 #include "pinnquad/core/rotation.hpp"
-#include "pinnquad/dynamics/allocation.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/io/decimal.hpp"
 
@@ -123,66 +123,6 @@ void to_commands(const Source& source, const std::optional<NamedAirframe>& airfr
   values = std::move(commands);
 }
 
-/// Thrust shares of a symmetric X quadrotor from what its controller asked for, torque normalised to -1..1 and thrust
-/// to 0..1:
-///   u = T -+ r x +- r y +- z, r = sqrt(1/2), as PX4's allocation makes them while no motor is at its limit.
-/// NaN where one would be beyond: its desaturation is not known then.
-std::array<double, 4> rebuilt_commands(const std::array<double, 3>& torque, double thrust) {
-  const double r = std::sqrt(0.5), x = r * torque[0], y = r * torque[1], z = torque[2];
-  const std::array<double, 4> u = {thrust - x + y + z, thrust + x - y + z, thrust + x + y - z, thrust - x - y - z};
-  for (const double one : u) {
-    if (one >= 0 && one <= 1) continue;
-    const double none = std::nan("");
-    return {none, none, none, none};
-  }
-  return u;
-}
-
-double largest(const std::vector<double>& values) {
-  double most = 0;
-  for (const double value : values) most = std::isfinite(value) ? std::max(most, std::abs(value)) : most;
-  return most;
-}
-
-/// Torques that never reach 1 % beside a thrust: no controller that flies asks for so little.
-bool are_no_shares(const std::vector<std::vector<double>>& values) {
-  constexpr double least_torque = 0.01, least_thrust = 0.05;
-  constexpr std::size_t fewest_rows = 64;
-  const double torque = std::max({largest(values[0]), largest(values[1]), largest(values[2])});
-  return values[3].size() >= fewest_rows && torque < least_torque && largest(values[3]) > least_thrust;
-}
-
-/// Thrust shares of an airframe's rotors that make the torque [N m] and the thrust [N] in still air of the rated
-/// density. NaN where one would be beyond 0..1.
-std::array<double, 4> wrench_commands(const AllocationMatrix<double>& inverse, const std::array<double, 3>& torque_N_m,
-                                      double thrust_N) {
-  constexpr double rounding = 1e-9;
-  std::array<double, 4> u = product(inverse, {thrust_N, torque_N_m[0], torque_N_m[1], torque_N_m[2]});
-  for (double& one : u) {
-    if (!(one >= -rounding && one <= 1 + rounding)) return {std::nan(""), std::nan(""), std::nan(""), std::nan("")};
-    one = std::clamp(one, 0.0, 1.0);
-  }
-  return u;
-}
-
-/// The columns of `torque_and_thrust` as commands.
-void rebuild_commands(const Source& source, const std::optional<NamedAirframe>& airframe,
-                      std::vector<std::vector<double>>& values) {
-  AllocationMatrix<double> inverse{};
-  if (source.wrench && invert_allocation(allocation(airframe->value), inverse) != Status::ok) {
-    throw std::invalid_argument("airframe " + airframe->name + ": its rotors cannot make every torque and thrust");
-  }
-  for (std::size_t row = 0; row < values[0].size(); ++row) {
-    const double thrust = source.thrust_is_up ? values[3][row] : -values[3][row];
-    const std::array<double, 3> torque = {values[0][row], values[1][row], values[2][row]};
-    const std::array<double, 4> u =
-        source.wrench ? wrench_commands(inverse, torque, thrust) : rebuilt_commands(torque, thrust);
-    for (std::size_t place = 0; place < u.size(); ++place) {
-      values[place][row] = command_of_fraction(thrust_curve(airframe, place), u[place]);
-    }
-  }
-}
-
 /// A log that is one table has one topic, whatever it is called.
 const LogTopic* topic_of(const FlightLog& log, const std::string& name, int instance) {
   if (name.empty()) return log.topics.empty() ? nullptr : &log.topics.front();
@@ -209,69 +149,6 @@ std::vector<double> at_same_times(const std::vector<double>& time_s, const std::
     if (after != rows.end() && after->first <= time_s[i] + same_s) matched[i] = after->second;
   }
   return matched;
-}
-
-/// Throws for a row whose numbers are no unit quaternion; zeros are a row without attitude.
-void require_unit(const Signal& signal) {
-  constexpr double tolerance = 0.05;
-  for (std::size_t row = 0; row < signal.topic->size(); ++row) {
-    const auto& v = signal.values;
-    const double square = v[0][row] * v[0][row] + v[1][row] * v[1][row] + v[2][row] * v[2][row] + v[3][row] * v[3][row];
-    if (!std::isfinite(square) || square < 1e-12 || std::abs(std::sqrt(square) - 1) <= tolerance) continue;
-    throw wrong_cell(*signal.topic, row, signal.source->columns[0].name,
-                     "a unit quaternion in " + topic_words(signal.topic->name, signal.topic->instance),
-                     "one of length " + number_text(std::sqrt(square)));
-  }
-}
-
-/// Pitch beyond 90 degrees in more than a few rows is in another unit: turned into a quaternion it would wrap round.
-void require_radians(const Signal& signal) {
-  constexpr double most_rad = 1.6, few = 0.01;
-  const Source& source = *signal.source;
-  const std::vector<double>& pitch = signal.values[1];
-  std::size_t beyond = 0, worst = 0;
-  std::vector<double> sizes;
-  for (std::size_t row = 0; row < pitch.size(); ++row) {
-    if (std::isfinite(pitch[row])) sizes.push_back(std::abs(pitch[row]));
-    if (!(std::abs(pitch[row]) > most_rad)) continue;
-    if (beyond++ == 0 || std::abs(pitch[row]) > std::abs(pitch[worst])) worst = row;
-  }
-  if (static_cast<double>(beyond) <= few * static_cast<double>(pitch.size())) return;
-  // as the log has it nearly always: the smallest unit by which that is at most a right angle
-  const auto usual = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sizes.size() - 1));
-  std::nth_element(sizes.begin(), usual, sizes.end());
-  const double in_si = *unit_in_si(Dimension::angle, source.unit.empty() ? "rad" : source.unit);
-  std::string advice;
-  for (const char* unit : {"deg", "ddeg", "cdeg"}) {
-    if (unit == source.unit || *usual / in_si * *unit_in_si(Dimension::angle, unit) > most_rad) continue;
-    advice = std::string(" (another unit? Then the mapping needs unit = \"") + unit + "\")";
-    break;
-  }
-  throw wrong_cell(*signal.topic, worst, source.columns[1].name, "a pitch of at most 90 degrees" + advice,
-                   number_text(pitch[worst]) + " rad, beyond in " + std::to_string(beyond) + " rows");
-}
-
-/// x, y, z of a unit quaternion as w, x, y, z, w >= 0; longer than one by rounding: w is 0.
-void make_scalar(std::vector<std::vector<double>>& values) {
-  std::vector<double> w(values[0].size());
-  for (std::size_t row = 0; row < w.size(); ++row) {
-    const double x = values[0][row], y = values[1][row], z = values[2][row], rest = 1 - (x * x + y * y + z * z);
-    w[row] = std::isnan(rest) ? rest : std::sqrt(std::max(0.0, rest));
-  }
-  values.insert(values.begin(), std::move(w));
-}
-
-/// Whole numbers up to 32767 are a quaternion of 16-bit integers (Betaflight's imuQuaternion).
-bool counts_to_32767(const std::vector<std::vector<double>>& values) {
-  double most = 0;
-  for (const std::vector<double>& column : values) {
-    for (const double value : column) {
-      if (!std::isfinite(value)) continue;
-      if (std::abs(value - std::round(value)) > 0 || std::abs(value) > 32768) return false;
-      most = std::max(most, std::abs(value));
-    }
-  }
-  return most > 2;
 }
 
 /// Commands beyond 0..1 in more than a few rows are another unit than the mapping says.
@@ -539,8 +416,8 @@ std::vector<double> times_of(const LogTopic& topic, const Source& source, const 
     for (std::size_t row = 0; row < time_s.size(); ++row) {
       time_s[row] /= ticks_per_s;
       // a sample's time that is 0, or wild, is that of its message
-      const bool wrong = topic_has && !(std::abs(time_s[row] - topic.time_s[row]) <= most_late_s);
-      if (wrong) time_s[row] = topic.time_s[row];
+      const bool right = time_s[row] > 0 && std::abs(time_s[row] - topic.time_s[row]) <= most_late_s;
+      if (topic_has && !right) time_s[row] = topic.time_s[row];
     }
   }
   if (std::abs(mapping.time_scale - 1) > 0) {

@@ -65,7 +65,8 @@ std::vector<std::string> mapped_topics(const Mapping& mapping);
 std::vector<double> times_of(const LogTopic& topic, const Source& source, const Mapping& mapping);
 
 /// Throws InputError, one line: a source that is not optional and not there, cells that are no numbers, quaternions
-/// that are no unit, another number of motors, torques that are no shares. Columns of the log that one source alone reads are empty afterwards.
+/// that are no unit, another number of motors, torques that are no shares. Columns of the log that one source alone
+/// reads are empty afterwards.
 BoundLog bind_log(FlightLog& log, const Mapping& mapping, const std::optional<NamedAirframe>& airframe);
 
 }  // namespace pinnquad::logs

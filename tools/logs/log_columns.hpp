@@ -21,8 +21,8 @@ const LogColumn* column_named(const LogTopic& topic, const std::string& name);
 std::vector<const LogColumn*> columns_in(const LogTopic& topic, const std::vector<NamedColumn>& wanted,
                                          const std::string& mapping_file, bool why);
 
-/// The factor to SI of the unit that the log says itself: behind the name, where the mapping left it out, or in a row of
-/// units, where the mapping says none. Empty: the mapping decides.
+/// The factor to SI of the unit that the log says itself: behind the name, where the mapping left it out, or in a row
+/// of units, where the mapping says none. Empty: the mapping decides.
 std::optional<double> own_unit(const LogColumn& column, const std::string& wanted, Dimension dimension,
                                bool mapping_says_unit);
 

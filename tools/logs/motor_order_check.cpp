@@ -69,10 +69,31 @@ OrderMoments order_moments(LagMoments moments) {
   return result;
 }
 
+/// The motors of a '+' frame: one each to the right, left, front and rear.
+struct PlusFrame {
+  std::array<std::size_t, rotor_count> motors{};  ///< right, left, front, rear
+  double explained = -2;                          ///< R^2 of roll and pitch, mean
+};
+
+/// Roll by right and left alone, pitch by front and rear alone.
+PlusFrame best_plus_frame(const OrderMoments& moments) {
+  PlusFrame best;
+  std::array<std::size_t, rotor_count> order = {0, 1, 2, 3};
+  do {
+    std::array<double, rotor_count> roll{}, pitch{};
+    roll[order[0]] = -1, roll[order[1]] = 1;
+    pitch[order[2]] = 1, pitch[order[3]] = -1;
+    const double explained = (moments.explained(0, roll) + moments.explained(1, pitch)) / 2;
+    if (explained > best.explained) best = {order, explained};
+  } while (std::next_permutation(order.begin(), order.end()));
+  return best;
+}
+
 }  // namespace
 
 MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const Airframe<double>& airframe) {
-  constexpr double least_explained = 0.05, stands = 0.75, alike = 0.8, yaw_explained = 0.1, corner_Hz = 8;
+  constexpr double least_explained = 0.05, plus_explained = 0.3, stands = 0.75, alike = 0.8, yaw_explained = 0.1,
+                   corner_Hz = 8;
   using Order = std::array<std::size_t, rotor_count>;
   const Order identity = {0, 1, 2, 3};
   const AllocationMatrix<double> rows = allocation(airframe);
@@ -84,6 +105,7 @@ MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const 
   MotorOrderCheck check;
   Order best = identity;
   double most = -2, second = -2, yaw = 0;
+  PlusFrame plus;
   const auto tilting = [&](const OrderMoments& moments, const Order& order) {
     return (moments.explained(0, weights(0, order)) + moments.explained(1, weights(1, order))) / 2;
   };
@@ -106,6 +128,7 @@ MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const 
     } while (std::next_permutation(order.begin(), order.end()));
     if (!(highest > most)) continue;
     most = highest;
+    plus = best_plus_frame(moments);
     second = next;
     best = first;
     check.explained = tilting(moments, identity);
@@ -114,6 +137,14 @@ MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const 
       check.turns_against[axis] = moments.explained(axis, weights(axis, identity)) < 0;
   }
   check.explained_permuted = most;
+  if (plus.explained > plus_explained && most < stands * plus.explained) {
+    const auto u = [&plus](std::size_t at) { return "u" + std::to_string(plus.motors[at] + 1); };
+    check.ambiguous = false;
+    check.finding = "roll follows two commands alone and pitch the other two: a '+' frame, " + u(0) + " right, " +
+                    u(1) + " left, " + u(2) + " front, " + u(3) + " rear, which explains " + percent(plus.explained) +
+                    " of roll and pitch acceleration, an X at best " + percent(std::max(0.0, most));
+    return check;
+  }
   check.ambiguous = !(most >= least_explained) || second > alike * most;
   const bool as_it_stands = best == identity;
   if (!check.ambiguous) check.yaw_reversed = yaw < -yaw_explained;

@@ -30,10 +30,11 @@ struct MotorOrderCheck {
 /// Of all 24 orders the one whose signed sums explain roll and pitch acceleration best, gains positive; yaw, which is
 /// weak, only tells whether the propellers turn as the airframe says. As they are, or below 8 Hz: gyro noise that comes
 /// back as commands hides the order in calm flights. A finding where that order is not the one that stands, which
-/// explains less than three quarters of it (R^2, mean of both axes). A crash, a knock or a catch by hand weighs no more
-/// than the liveliest of the other blocks of time. Segments on one uniform clock, lag-aligned
-/// (remove_lag()). Limits: body axes that are x forward, y left, z up look like motors exchanged front for rear, for
-/// the commands cannot tell the two apart: find_turning_mistake() can, and is to be asked first.
+/// explains less than three quarters of it (R^2, mean of both axes), or where a '+' frame explains the motion and no X
+/// three quarters as well. A crash, a knock or a catch by hand weighs no more than the liveliest of the other blocks of
+/// time. Segments on one uniform clock, lag-aligned (remove_lag()). Limits: body axes that are x forward, y left, z up
+/// look like motors exchanged front for rear, for the commands cannot tell the two apart: find_turning_mistake() can,
+/// and is to be asked first.
 MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const Airframe<double>& airframe);
 
 }  // namespace pinnquad::logs

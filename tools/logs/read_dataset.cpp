@@ -247,7 +247,7 @@ class Import {
     const std::size_t base = bound.of(Quantity::body_rates).clock->size();
     CommonRows rows = common_rows(bound, period_s_, settings_.hold_commands);
     if (!period_s_) period_s_ = rows.period_s;
-    check_signals(bound, rows, part.name);
+    check_signals(bound, rows, part);
     const std::size_t all = rows.rows();
     steps_.add("one clock", base, all,
                rows.own_rows ? "the table's own rows, every " + number_text(rows.period_s) + " s"
@@ -307,8 +307,15 @@ class Import {
     }
   }
 
-  void check_signals(const BoundLog& bound, const CommonRows& rows, const std::string& name) {
-    const bool px4 = mapping_.name == "px4";
+  /// True where PX4's logger is told to log faster already: bits 3 and 4.
+  static bool has_profile(const FlightLog& log) {
+    const auto profile = log.parameters.find("SDLOG_PROFILE");
+    return profile != log.parameters.end() && (static_cast<std::int64_t>(profile->second) & 24) == 24;
+  }
+
+  void check_signals(const BoundLog& bound, const CommonRows& rows, const LogPart& part) {
+    const std::string& name = part.name;
+    const bool px4 = mapping_.name == "px4" && !has_profile(part.log);
     for (const Quantity quantity : {Quantity::motors, Quantity::body_rates}) {
       const Signal& signal = bound.of(quantity);
       if (const auto slow = check_log_rate(signal.told, signal.period_s(), px4)) warn(name, slow);

@@ -179,7 +179,7 @@ Estimate clock_rate(const StepsOfFlight& steps, const ChangeAndIntegral& of) {
 /// A gyro's scale may be off, and an accelerometer's: a clock shows in two or more alike.
 void check_clock_rate(const Flight& flight, double period_s, bool has_velocity, bool has_altitude,
                       std::vector<SensorFinding>& findings) {
-  constexpr double step_s = 0.4, least_off = 0.006, told = 0.006;
+  constexpr double step_s = 0.2, least_off = 0.006, told = 0.006, alike = 0.002;
   const StepsOfFlight steps = steps_of(flight, period_s, step_s);
   const auto in_world = [&](std::size_t row, const Vector3<double>& v) {
     return body_to_world<double>(attitude(flight[row]), v);
@@ -218,7 +218,7 @@ void check_clock_rate(const Flight& flight, double period_s, bool has_velocity, 
       const auto off = [](const Estimate& rate) {
         return rate.half_width < told && is_beyond({rate.value - 1, rate.half_width}, least_off);
       };
-      const double wide = std::hypot(a.half_width, b.half_width);
+      const double wide = std::max(alike, std::hypot(a.half_width, b.half_width));
       if (!off(a) || !off(b) || std::abs(a.value - b.value) > wide) continue;
       const Estimate& best = a.half_width < b.half_width ? a : b;
       char scale[32];

@@ -20,11 +20,11 @@ struct SensorFinding {
 
 /// One for each thing that is off with its whole 95 % interval: rates by 0.04 rad/s on average (about z, where a
 /// heading may drift, 0.012 rad/s); rates 20 ms behind the attitude; rates or specific force turned by 5 degrees
-/// against the attitude, told to 5 degrees; a clock that is off by 0.6 %, in two of attitude by rates, velocity by force,
-/// altitude by velocity alike. `has_velocity`: without one the specific force is not asked; `has_altitude` likewise.
-/// Measured, ends of the intervals that lie nearest to zero, of 25 healthy flights: 0.025 (z: 0.004) rad/s, 14 ms, 3
-/// and 1 degrees. Limits: fewer than 16 steps decide nothing. An offset of the accelerometer of 0.9 m/s^2 looks like 5
-/// degrees. A specific force that was computed of the velocity agrees with it.
+/// against the attitude, told to 5 degrees; a clock that is off by 0.6 %, in two of attitude by rates, velocity by
+/// force, altitude by velocity alike. `has_velocity`: without one the specific force is not asked; `has_altitude`
+/// likewise. Measured, ends of the intervals that lie nearest to zero, of 25 healthy flights: 0.025 (z: 0.004) rad/s,
+/// 14 ms, 3 and 1 degrees. Limits: fewer than 16 steps decide nothing. An offset of the accelerometer of 0.9 m/s^2
+/// looks like 5 degrees. A specific force that was computed of the velocity agrees with it.
 std::vector<SensorFinding> check_sensors(const Flight& flight, bool has_velocity, bool has_altitude);
 
 }  // namespace pinnquad::logs

@@ -9,6 +9,7 @@ from ._core import (Airframe, Dataset, Error, Flight, FlightEnded, Identificatio
 from .conversion import convert, save_network
 from .effects import Effects
 from .environment import HoverEnv, VectorHoverEnv
+from . import tables as _tables  # noqa: F401: Flight.from_arrays, Dataset.from_dataframe
 from .flights import fly
 
 __all__ = ["Airframe", "Dataset", "Effects", "Error", "Flight", "FlightEnded", "HoverEnv", "Identification", "Model",

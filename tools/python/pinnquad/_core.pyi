@@ -110,6 +110,29 @@ class Flight:
     ) -> None: ...
     @staticmethod
     def read(path: Path) -> Flight: ...
+    @staticmethod
+    def from_arrays(
+        time_s: Any,
+        *,
+        world: str,
+        body: str,
+        body_rates_rad_s: Any,
+        commands: Any,
+        motor_order: str,
+        euler_rad: Any = None,
+        quaternion: Any = None,
+        quaternion_order: str | None = None,
+        specific_force_m_s2: Any = None,
+        velocity_m_s: Any = None,
+        velocity_axes: str | None = None,
+        position_m: Any = None,
+        altitude_m: Any = None,
+        columns: Sequence[tuple[str, str, Any]] = (),
+        name: str = "flight",
+        airframe: str = "",
+        lag_s: float | None = None,
+        keep_saturated: bool = False,
+    ) -> Flight: ...
     @property
     def name(self) -> str: ...
     @property
@@ -142,6 +165,16 @@ class Flight:
 
 class Dataset:
     def __init__(self, flights: Flights) -> None: ...
+    @staticmethod
+    def from_dataframe(
+        frame: Any,
+        mapping: str | os.PathLike[str],
+        *,
+        name: str = "table",
+        airframe: str = "",
+        lag_s: float | None = None,
+        keep_saturated: bool = False,
+    ) -> Dataset: ...
     @staticmethod
     def read(
         paths: Sequence[Path],
