@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "logs/csv_log.hpp"
+#include "logs/csv_head.hpp"
 #include "pinnquad/io/file_error.hpp"
 
 namespace pinnquad::logs {
