@@ -46,13 +46,15 @@ def write_predictions(rows, of):
 def test_a_set(pinnquad, flown):
     """The mean of the training commands scores as the program's own row of it; what is right scores 1."""
     Path("copy").mkdir()
-    for seed in 3, 4, 5:
-        shutil.copy(flown(f"--seed {seed} --samples 2400"), f"copy/flight{seed}.csv")
+    for seed in 3, 4, 5:  # by a clock that counts since 1970
+        header, *rows = Path(flown(f"--seed {seed} --samples 2400")).read_text().splitlines()
+        later = [f"{1_772_421_802 + float(row.split(',', 1)[0]):.3f},{row.split(',', 1)[1]}" for row in rows]
+        Path(f"copy/flight{seed}.csv").write_text("\n".join([header, *later]) + "\n")
     shutil.copy("copy/flight3.csv", "copy/twice.csv")
     Path("mapping.toml").write_text(MAPPING)
     Path("mine.toml").write_text(SET)
     done = benchmark("run", "mine.toml", "copy", "--program", str(pinnquad), "--out", "out")
-    assert "twice.csv: left out" in done.out
+    assert "twice.csv: left out" in done.out and "cannot write" not in done.err
     row = json.loads(Path("out/row.json").read_text())
     assert row["flights"] == 3 and row["held_out"] == ["flight5"] and row["r2"]["ridge"] > 0.9
     assert "imported before" in benchmark("run", "mine.toml", "copy", "--program", str(pinnquad), "--out", "out").out

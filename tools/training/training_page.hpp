@@ -16,6 +16,7 @@
 #include "training/drawings.hpp"
 #include "training/pictures.hpp"
 #include "training/training_report.hpp"
+#include "training/watched_flight.hpp"
 
 namespace programs {
 
@@ -233,7 +234,7 @@ inline nlohmann::json moments_json(const TrainingPage& in, const std::vector<std
     const pinnquad::Sample& sample = (*moment.flight)[moment.row];
     const auto watched = in.watched.find(moment.flight->name);
     char seconds[32];
-    std::snprintf(seconds, sizeof seconds, "%.2f", std::max(0.0, sample.time_s - 1));
+    std::snprintf(seconds, sizeof seconds, "%.2f", std::max(0.0, sample.time_s - watched_from_s(*moment.flight) - 1));
     nlohmann::json one = {{"flight", moment.flight->name},
                           {"time", shown::number(sample.time_s, 2)},
                           {"motor", "u" + std::to_string(moment.motor + 1)},

@@ -12,8 +12,12 @@
 
 namespace programs {
 
-/// Without a velocity the vehicle stays in its place and turns. Times are those of the flight: page.html#t=12.5 is its
-/// second 12.5.
+/// The page's second 0 on the flight's clock. A clock that counts for days, as since 1970, has no milliseconds in the
+/// page's float: there it is the flight's first row.
+inline double watched_from_s(const pinnquad::Flight& flight) { return flight[0].time_s > 1e5 ? flight[0].time_s : 0; }
+
+/// Without a velocity the vehicle stays in its place and turns. Times are those of the flight less watched_from_s():
+/// page.html#t=12.5 is its second 12.5.
 inline void write_watched_flight(const std::string& path, const pinnquad::Flight& flight,
                                  const pinnquad::logs::ImportedDataset& dataset,
                                  const pinnquad::Airframe<double>& airframe) {
@@ -23,7 +27,7 @@ inline void write_watched_flight(const std::string& path, const pinnquad::Flight
   pinnquad::Vector3<double> last_velocity = pinnquad::Vector3<double>::Zero();
   for (std::size_t row = 0; row < flight.size(); ++row) {
     const pinnquad::Sample& sample = flight[row];
-    vehicle.time_s = sample.time_s;
+    vehicle.time_s = sample.time_s - watched_from_s(flight);
     vehicle.body.attitude =
         pinnquad::from_euler(pinnquad::EulerAngles<double>{sample.roll_rad, sample.pitch_rad, sample.yaw_rad});
     vehicle.body.velocity_m_s = pinnquad::body_to_world(vehicle.body.attitude, sample.velocity_m_s);
