@@ -23,7 +23,7 @@
 #include "logs/mapping_texts.hpp"
 #include "logs/row_checks.hpp"
 #include "logs/sensor_check.hpp"
-#include "logs/specific_force.hpp"
+#include "logs/standing_columns.hpp"
 #include "logs/vehicle_check.hpp"
 #include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
@@ -188,6 +188,7 @@ class Import {
                rows.own_rows ? "the table's own rows, every " + number_text(rows.period_s) + " s"
                              : "all topics at " + number_text(std::round(1e3 / rows.period_s) / 1e3) + " Hz");
     let_go(part.log, bound);
+    const double begin_s = all > 0 ? rows.time_s.front() : 0;
     LogRows log_rows = rows_of_log(std::move(rows), bound, mapping_, part.log.source);
     for (const std::string& told : log_rows.told) add(dataset_.notes, told);
     const std::size_t whole = all - log_rows.incomplete;
@@ -204,11 +205,22 @@ class Import {
     Flight airborne = without(std::move(log_rows.flight), out);
     steps_.add("on the ground", before, airborne.size(),
                "landed by the log, lower than the mapping's [ground] says, borne by something");
+    airborne =
+        without_standing(std::move(airborne), {log_rows.has_velocity, log_rows.has_altitude}, part.name, begin_s);
     passage.segments = split_at_gaps(std::move(airborne), 1.5 * *period_s_);
     has_velocity_.push_back(log_rows.has_velocity);
     has_altitude_.push_back(log_rows.has_altitude);
-    check_motion(passage);
     passages_.push_back(std::move(passage));
+  }
+
+  Flight without_standing(Flight flight, const HasQuantities& has, const std::string& name, double begin_s) {
+    const StandingRows standing = standing_rows(flight, has, *period_s_, begin_s);
+    for (const std::string& told : standing.told) warn(name + ": " + told);
+    const std::size_t before = flight.size();
+    flight = without(std::move(flight), standing.out);
+    steps_.add("standing still", before, flight.size(),
+               "a column that repeats its value while what goes with it moves");
+    return flight;
   }
 
   /// The contents of the common rows: of a long log nothing is held twice.
@@ -256,24 +268,6 @@ class Import {
                                           {&q[0], &q[1], &q[2], &q[3]}, {&w[0], &w[1], &w[2]}, {&f[0], &f[1], &f[2]});
       warn(name, misread);
       if (misread) causes_[name] = *misread;
-    }
-  }
-
-  /// Of what is in the air, before the commands are moved.
-  void check_motion(const Passage& passage) {
-    constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
-    const auto series = [&passage](const auto& value_of) {
-      std::vector<double> values;
-      values.reserve(passage.rows());
-      for (const Flight& segment : passage.segments) {
-        for (const Sample& sample : segment) values.push_back(value_of(sample));
-      }
-      return values;
-    };
-    const std::vector<double> time_s = series([](const Sample& sample) { return sample.time_s; });
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const std::vector<double> rate = series([axis](const Sample& sample) { return sample.body_rates_rad_s[axis]; });
-      warn(passage.name, check_frozen(std::string("body rate ") + axes[static_cast<std::size_t>(axis)], time_s, rate));
     }
   }
 
@@ -406,7 +400,8 @@ class Import {
   /// With its cause: an attitude in another order makes rates that do not turn it, and accelerations that fit no
   /// velocity.
   void require_plausible_flight(const Flight& flight, const std::string& source) const {
-    const auto found = find_implausible(flight);
+    auto found = find_implausible(flight);
+    if (!found) found = find_standing_column(flight, {!dataset_.lacks("velocity"), !dataset_.lacks("altitude")});
     if (!found) return;
     const auto cause = causes_.find(flight.name);
     throw InputError(source, 0, 0, found->expected,
