@@ -125,6 +125,15 @@ def stopped(*columns):
     return plant
 
 
+def crashed(rows):
+    """The last half second: a gyro at its end, blows, motors from stop to stop."""
+    wild = random.Random(1)
+    for row in rows[-10:]:
+        row.update({name: wild.choice((-34.9, 34.9, wild.uniform(-30, 30))) for name in RATES})
+        row.update({name: wild.uniform(-150, 150) for name in FORCES})
+        row.update({name: wild.choice((0.0, 1.0)) for name in MOTORS})
+
+
 def late(seconds, *columns):
     def plant(rows):
         shift = round(seconds / (rows[1]["t"] - rows[0]["t"]))
@@ -219,6 +228,7 @@ FAULTS = {
     "one motor off": (each(lambda _: 0.4, "u3"), ALL, ("column u3", "the same in all"), 2),
     "motors off": (each(lambda _: 0.4, *MOTORS), ALL, ("u1, u2, u3, u4", "the same in all"), 2),
     "altitude off": (off("z"), ALL, ("column altitude", "the same in all"), 2),
+    "a crash at the end": (crashed, ONE, ("third: ", "0.45 s of tumbling at 59.5 s left out"), 0),
     "gyro stops": (stopped(*RATES), ALL, ("first: ", "w_x, w_y, w_z: the same for 19.", "left out"), 0),
     "r stops": (stopped("r"), ONE, ("third: ", "w_z: the same for 19.", "left out"), 0),
     "accelerometer stops": (stopped(*FORCES), ONE, ("third: ", "vdot_bz (specific force): the same for"), 0),
@@ -274,6 +284,16 @@ def test_good_flights_pass(pinnquad, logs):
     logs()
     assert told(pinnquad(f"import logs {MAPPED} --out dataset")) == []
     assert told(pinnquad(f"identify logs {MAPPED}")) == []
+
+
+def test_a_part_of_the_logs(pinnquad, logs):
+    logs(crashed, ONE)
+    done = pinnquad(f"import logs {MAPPED} --from 10 --to 40 --out dataset")
+    assert told(done) == [] and "before --from or after --to" in done.out
+    for flight in json.loads(Path("dataset/dataset.json").read_text())["flights"]:
+        assert 500 <= flight["rows"] <= 600, flight
+    pinnquad.refused(f"import logs {MAPPED} --from 40 --to 10 --out other", keyword="--from")
+    pinnquad.refused("identify dataset --from 10", keyword="--mapping")
 
 
 TRAIN = "train --models constant,linearized --hold-out first --seeds 1 --out trained"
