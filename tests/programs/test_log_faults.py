@@ -111,6 +111,29 @@ def half_range(rows):
     each(lambda u: 0.25 + u / 2, *MOTORS)(rows)
 
 
+def off(*columns):
+    return each(lambda _: 0.0, *columns)
+
+
+def stopped(*columns):
+    """From two thirds of the time on."""
+    def plant(rows):
+        last = rows[2 * len(rows) // 3]
+        for row in rows[2 * len(rows) // 3:]:
+            row.update({name: last[name] for name in columns})
+
+    return plant
+
+
+def crashed(rows):
+    """The last half second: a gyro at its end, blows, motors from stop to stop."""
+    wild = random.Random(1)
+    for row in rows[-10:]:
+        row.update({name: wild.choice((-34.9, 34.9, wild.uniform(-30, 30))) for name in RATES})
+        row.update({name: wild.uniform(-150, 150) for name in FORCES})
+        row.update({name: wild.choice((0.0, 1.0)) for name in MOTORS})
+
+
 def late(seconds, *columns):
     def plant(rows):
         shift = round(seconds / (rows[1]["t"] - rows[0]["t"]))
@@ -197,6 +220,23 @@ FAULTS = {
     "velocity late": (late(0.2, *VELOCITY), ALL, ("v_bx", "velocities 200 ms late"), 2),
     "frozen gyro": (each(lambda _: 0.01, *RATES), ALL, ("w_x, w_y, w_z", "the same in all"), 2),
     "frozen q": (each(lambda _: 0.01, "q"), ALL, ("w_y", "the same in all"), 2),
+    "accelerometer off": (off(*FORCES), ALL, ("vdot_bx, vdot_by, vdot_bz", "the same in all"), 2),
+    "accelerometer off along z": (off("fz"), ALL, ("vdot_bz", "the same in all"), 2),
+    "attitude off": (off(*ANGLES), ALL, ("roll, pitch, yaw", "the same in all"), 2),
+    "roll off": (off("roll"), ALL, ("column roll", "the same in all"), 2),
+    "velocity off": (off(*VELOCITY), ALL, ("v_bx, v_by, v_bz", "the same in all"), 2),
+    "one motor off": (each(lambda _: 0.4, "u3"), ALL, ("column u3", "the same in all"), 2),
+    "motors off": (each(lambda _: 0.4, *MOTORS), ALL, ("u1, u2, u3, u4", "the same in all"), 2),
+    "altitude off": (off("z"), ALL, ("column altitude", "the same in all"), 2),
+    "a crash at the end": (crashed, ONE, ("third: ", "0.45 s of tumbling at 59.5 s left out"), 0),
+    "gyro stops": (stopped(*RATES), ALL, ("first: ", "w_x, w_y, w_z: the same for 19.", "left out"), 0),
+    "r stops": (stopped("r"), ONE, ("third: ", "w_z: the same for 19.", "left out"), 0),
+    "accelerometer stops": (stopped(*FORCES), ONE, ("third: ", "vdot_bz (specific force): the same for"), 0),
+    "attitude stops": (stopped(*ANGLES), ONE, ("third: ", "roll, pitch, yaw: the same for", "left out"), 0),
+    "velocity stops": (stopped(*VELOCITY), ONE, ("third: ", "v_bx, v_by, v_bz: the same for", "left out"), 0),
+    "altitude stops": (stopped("z"), ONE, ("third: ", "altitude: the same for", "left out"), 0),
+    "a motor stops": (stopped("u2"), ONE, ("third: ", "u2: the same for", "left out"), 0),
+    "the logger repeats": (stopped(*COLUMNS[1:]), ONE, ("third: ", "roll, pitch, yaw: the same for", "left out"), 0),
     "motors swapped": (exchanged("u1", "u3"), ALL, ("u1 to u4", "u3, u2, u1, u4", "% of roll"), 0),
     "motors swapped in one": (exchanged("u1", "u3"), ONE, ("third: ", "u1 to u4", "u3, u2, u1, u4", "% of roll"), 0),
     "pwm range, slopes halved": (half_range, ALL, ("u1", "roll effectiveness is ", "has 40"), 0),
@@ -244,6 +284,16 @@ def test_good_flights_pass(pinnquad, logs):
     logs()
     assert told(pinnquad(f"import logs {MAPPED} --out dataset")) == []
     assert told(pinnquad(f"identify logs {MAPPED}")) == []
+
+
+def test_a_part_of_the_logs(pinnquad, logs):
+    logs(crashed, ONE)
+    done = pinnquad(f"import logs {MAPPED} --from 10 --to 40 --out dataset")
+    assert told(done) == [] and "before --from or after --to" in done.out
+    for flight in json.loads(Path("dataset/dataset.json").read_text())["flights"]:
+        assert 500 <= flight["rows"] <= 600, flight
+    pinnquad.refused(f"import logs {MAPPED} --from 40 --to 10 --out other", keyword="--from")
+    pinnquad.refused("identify dataset --from 10", keyword="--mapping")
 
 
 TRAIN = "train --models constant,linearized --hold-out first --seeds 1 --out trained"
@@ -345,7 +395,7 @@ def standing(rows):
         row.update({name: 0.06 + 1e-3 * (at % 5) for name in MOTORS}, fz=-GRAVITY)
 
 
-BAD = {"no excitation": (hovering, "roll effectiveness", 1), "on the ground": (standing, "in the air", 2),
+BAD = {"no excitation": (hovering, "u1, u2, u3, u4", 2), "on the ground": (standing, "in the air", 2),
        "frozen": (each(lambda _: 0.01, *RATES), "w_x", 2), "saturated": (each(lambda _: 1.0, "u3"), "u3", 2)}
 
 

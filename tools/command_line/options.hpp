@@ -97,6 +97,28 @@ inline void add_sources(CLI::App& app, std::vector<std::string>& flights, std::s
   app.add_option("--mapping", mapping, "what the columns of logs mean: see import")->type_name("NAME|FILE.toml");
 }
 
+/// The part of each log that counts, in a command's LogSettings or options.
+template <class Options>
+void add_time_range(CLI::App& app, Options& options) {
+  constexpr double longest_s = 1e6;
+  add_number(app, "--from", options.from_s, 0.0, longest_s,
+             "of each log, s from its first row: rows before are left out")
+      ->default_str("");
+  add_number(app, "--to", options.to_s, 0.0, longest_s, "and rows after")->default_str("");
+}
+
+/// Throws std::invalid_argument, one line, for a part of what is no log, and for an empty one.
+template <class Options>
+void require_time_range(const Options& options) {
+  const bool given = options.from_s > 0 || options.to_s;
+  if (given && options.mapping.empty()) {
+    throw std::invalid_argument("--from and --to go with logs and their --mapping");
+  }
+  if (options.to_s && *options.to_s <= options.from_s) {
+    throw std::invalid_argument("--to: expected more than --from");
+  }
+}
+
 /// Refuses an empty text wherever an option takes a value: it would be the root folder, every model, or nothing.
 inline void refuse_empty_values(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {

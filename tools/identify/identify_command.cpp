@@ -27,7 +27,8 @@ struct IdentifyOptions {
   std::vector<std::string> flights;
   std::string mapping, airframe, out;
   std::string name = "identified";
-  std::optional<double> curve, mass_kg, arm_m, rate_hz;
+  std::optional<double> curve, mass_kg, arm_m, rate_hz, to_s;
+  double from_s = 0;
   bool fit_curve = false;
   bool json = false;
 };
@@ -39,6 +40,8 @@ logs::ImportedDataset read(const IdentifyOptions& options) {
   settings.airframe = options.airframe;
   settings.rate_hz = options.rate_hz;
   settings.lag_s = 0;
+  settings.from_s = options.from_s;
+  settings.to_s = options.to_s;
   settings.keep_saturated = true;
   settings.on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
   logs::ImportedDataset dataset = logs::read_source(options.flights, settings);
@@ -130,6 +133,7 @@ Command identify_command(CLI::App& program) {
   add_sources(*line, options->flights, options->mapping);
   add_number(*line, "--rate", options->rate_hz, 10.0, 2000.0, "rows per second of logs (default: see import)")
       ->default_str("");
+  add_time_range(*line, *options);
   line->add_option("--airframe", options->airframe,
                    "gives mass, arms, motor order and propeller; else 1 kg, 0.2 m, PX4's order: a file, or one of: " +
                        airframe_names())
@@ -168,6 +172,7 @@ Command identify_command(CLI::App& program) {
             if (options->rate_hz && !are_logs) {
               throw std::invalid_argument("--rate goes with logs: other rows have their own");
             }
+            require_time_range(*options);
             return run(*options);
           }};
 }

@@ -23,7 +23,8 @@ struct ImportOptions {
   std::string mapping;
   std::string airframe;
   std::string out;
-  std::optional<double> rate_hz;
+  std::optional<double> rate_hz, to_s;
+  double from_s = 0;
   std::string lag = "auto";
   bool hold = false;
   bool json = false;
@@ -75,6 +76,8 @@ logs::LogSettings settings_of(const ImportOptions& options) {
   settings.rate_hz = options.rate_hz;
   settings.hold_commands = options.hold;
   settings.lag_s = programs::lag_of(options.lag);
+  settings.from_s = options.from_s;
+  settings.to_s = options.to_s;
   return settings;
 }
 
@@ -86,6 +89,7 @@ int run(const ImportOptions& options) {
   if (options.logs.empty())
     throw std::invalid_argument("expected a log: a .ulg, .bbl or .bin file, a .csv table, a folder of them");
   if (options.out.empty()) throw std::invalid_argument("expected --out DATASET: the folder to write");
+  programs::require_time_range(options);
   logs::LogSettings settings = settings_of(options);
   logs::require_dataset_place(options.out);
   programs::ProgressLine progress("importing");
@@ -122,6 +126,7 @@ Command import_command(CLI::App& program) {
   line->add_option("--lag", options->lag, "from command to motion, removed from the commands: estimated, or as given")
       ->type_name("auto|SECONDS")
       ->capture_default_str();
+  add_time_range(*line, *options);
   line->add_flag("--hold", options->hold, "commands hold until their next row, instead of lines between rows");
   line->add_flag("--json", options->json, "rows per step, flights and warnings as JSON, and nothing else, on stdout");
   line->add_flag("--list", options->list, "list the ready mappings");

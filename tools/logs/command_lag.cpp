@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "logs/specific_force.hpp"
+#include "pinnquad/data/plausibility.hpp"
 
 namespace pinnquad::logs {
 namespace {
@@ -43,7 +44,8 @@ std::size_t set_products(const std::vector<LagSeries>& all, std::size_t ahead, s
       for (const auto& series : one.commands) x[column++] = series[commanded];
       for (const auto& series : one.rates) x[column++] = series[row];
       for (const auto& series : one.motions) x[column++] = series[row];
-      for (std::size_t k = 0; k < Count; ++k) sums[k] += x[static_cast<Eigen::Index>(First + k)] * x;
+      const double weight = one.weights.empty() ? 1 : one.weights[row];
+      for (std::size_t k = 0; k < Count; ++k) sums[k] += weight * x[static_cast<Eigen::Index>(First + k)] * x;
       ++rows;
     }
   }
@@ -131,17 +133,46 @@ double sharpness_of(const std::vector<double>& curve, double step_s) noexcept {
   return peak > 0 ? 1 - better / peak : 0;
 }
 
+/// Gives rows weights by blocks of time, so that a catch by hand or a knock weighs no more than the liveliest of the
+/// others: by the motion that is wildest, each against its own usual energy.
+void weigh(std::vector<LagSeries>& all, double period_s) {
+  std::size_t rows = 0;
+  for (const LagSeries& one : all) rows += one.size();
+  const std::size_t blocks = detail::block_count(static_cast<double>(rows) * period_s);
+  const auto block_of = [&](std::size_t row) {
+    return std::min(blocks - 1, row * blocks / std::max<std::size_t>(1, rows));
+  };
+  std::vector<double> wildest(blocks, 0.0);
+  for (std::size_t m = 0; m < lag_motions; ++m) {
+    std::vector<double> energies(blocks, 0.0), values;
+    for (const LagSeries& one : all) values.insert(values.end(), one.motions[m].begin(), one.motions[m].end());
+    if (values.empty()) return;
+    const double usual = detail::median_of(values);
+    for (std::size_t row = 0; row < rows; ++row)
+      energies[block_of(row)] += (values[row] - usual) * (values[row] - usual);
+    const double middle = detail::median_of(energies);
+    if (!(middle > 0)) continue;
+    for (std::size_t k = 0; k < blocks; ++k) wildest[k] = std::max(wildest[k], energies[k] / middle);
+  }
+  const std::vector<double> weights = detail::block_weights(wildest);
+  std::size_t row = 0;
+  for (LagSeries& one : all) {
+    one.weights.resize(one.size());
+    for (double& weight : one.weights) weight = weights[block_of(row++)];
+  }
+}
+
 std::string milliseconds(double seconds) { return std::to_string(std::lround(seconds * 1e3)) + " ms"; }
 
 CommandLag command_lag_of(const std::vector<LagSeries>& series, const LagGrid& grid) {
-  constexpr double least_explained = 0.05, least_sharpness = 0.1;
+  constexpr double least_explained = 0.05, least_sharpness = 0.1, says_as_much = 0.6;
   CommandLag result;
   const std::vector<Explained> explained = explained_by_lag(series, grid, result.rows);
-  std::vector<double> together(explained.size(), 0.0);
-  std::array<double, lag_motions> weight{};
+  std::array<std::vector<double>, lag_motions> curves;
+  bool any_told = false;
   for (std::size_t m = 0; m < lag_motions; ++m) {
     MotionLag& motion = result.motions[m];
-    std::vector<double> curve;
+    std::vector<double>& curve = curves[m];
     for (const Explained& at : explained) curve.push_back(say(at[m]));
     const double peak = peak_at(curve);
     const auto top = static_cast<std::size_t>(std::lround(peak));
@@ -150,27 +181,37 @@ CommandLag command_lag_of(const std::vector<LagSeries>& series, const LagGrid& g
     motion.sharpness = sharpness_of(curve, grid.step_s());
     motion.found =
         motion.explained >= least_explained && motion.sharpness >= least_sharpness && top > 0 && top + 1 < curve.size();
-    if (!motion.found) continue;
-    weight[m] = curve[top];
-    result.found = true;
-    for (std::size_t i = 0; i < curve.size(); ++i) together[i] += curve[i];
+    result.found = result.found || motion.found;
+    any_told = any_told || motion.told();
   }
   if (!result.found) return result;
+  // what disturbs a motion comes back through the controller: where some motions are told, they alone count
+  const auto counts = [&](const MotionLag& motion) { return any_told ? motion.told() : motion.found; };
+  std::vector<double> together(explained.size(), 0.0);
+  double most = 0;
+  for (std::size_t m = 0; m < lag_motions; ++m) {
+    if (!counts(result.motions[m])) continue;
+    for (std::size_t i = 0; i < together.size(); ++i) together[i] += curves[m][i];
+    most = std::max(most, say(result.motions[m].explained) * result.motions[m].sharpness);
+  }
   result.lag_s = grid.lag_s(peak_at(together));
   result.confidence = sharpness_of(together, grid.step_s());
-  const double most = *std::max_element(weight.begin(), weight.end());
-  for (std::size_t m = 0; m < lag_motions; ++m) {
-    if (weight[m] < 0.5 * most) continue;
-    result.spread_s = std::max(result.spread_s, std::abs(result.motions[m].lag_s - result.lag_s));
+  for (const MotionLag& motion : result.motions) {
+    if (!counts(motion) || say(motion.explained) * motion.sharpness < says_as_much * most) continue;
+    result.spread_s = std::max(result.spread_s, std::abs(motion.lag_s - result.lag_s));
   }
+  result.told = any_told;
   return result;
 }
 
-/// The weight of all motions found, at their best: it prefers one band to another.
+/// The weight of all motions that count, at their best: it prefers one band to another, first of all one that tells.
 double total_say(const CommandLag& lag) noexcept {
+  constexpr double told = 100;
   double total = 0;
-  for (const MotionLag& motion : lag.motions) total += motion.found ? say(motion.explained) : 0;
-  return total;
+  for (const MotionLag& motion : lag.motions) {
+    if (lag.told ? motion.told() : motion.found) total += say(motion.explained);
+  }
+  return total + (lag.told ? told : 0);
 }
 
 }  // namespace
@@ -218,7 +259,8 @@ void take_out(LagMoments& moments, std::size_t k, double least) {
 }
 
 CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s, const LagRange& range) {
-  const std::vector<LagSeries> series = lag_series(segments);
+  std::vector<LagSeries> series = lag_series(segments);
+  weigh(series, period_s);
   const LagGrid grid(period_s, range);
   CommandLag best = command_lag_of(series, grid);
   for (const double corner_Hz : {15.0, 8.0}) {
@@ -227,21 +269,25 @@ CommandLag estimate_command_lag(const std::vector<Flight>& segments, double peri
     other.low_pass_Hz = corner_Hz;
     if (total_say(other) > total_say(best)) best = other;
   }
-  if (!best.found) {
-    best.lag_s = 0;
-    best.warning = best.rows == 0
-                       ? "no stretch of the flight is long enough to look for a lag"
-                       : "no lag stands out: the commands explain the motion alike whenever they act; fly more agile "
-                         "manoeuvres, or state the lag";
-  } else if (best.lag_s < -0.5 * grid.step_s()) {
-    best.warning = "the motion comes " + milliseconds(-best.lag_s) +
-                   " before the commands: the clocks of the two differ, or the commands are those of a later stage";
+  if (!best.found) best.lag_s = 0;
+  if (best.known()) {
+    if (best.lag_s < -0.5 * grid.step_s()) {
+      best.warning = "the motion comes " + milliseconds(-best.lag_s) +
+                     " before the commands: the clocks of the two differ, or the commands are those of a later stage";
+    }
+  } else if (best.rows == 0) {
+    best.warning = "no stretch of the flight is long enough to look for a lag";
+  } else if (!best.found) {
+    best.warning = "no lag stands out: the commands explain the motion alike whenever they act";
+  } else if (!best.told) {
+    best.warning =
+        "the commands explain too little of the motion: what else moves the vehicle (gusts, a gyro's noise) comes back "
+        "through the controller as commands, and looks like a lag of " +
+        milliseconds(best.lag_s);
   } else if (best.spread_s > CommandLag::spread_of_doubt_s) {
     best.warning = "the motions disagree about the lag by " + milliseconds(best.spread_s);
-  } else if (best.confidence < CommandLag::confidence_of_doubt) {
-    best.warning =
-        "the lag hardly stands out: one that is 50 ms away explains the motion nearly as well; fly more agile "
-        "manoeuvres, or state the lag";
+  } else {
+    best.warning = "the lag hardly stands out: one that is 50 ms away explains the motion nearly as well";
   }
   return best;
 }

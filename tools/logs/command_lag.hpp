@@ -18,6 +18,7 @@ struct LagSeries {
   std::array<std::vector<double>, rotor_count> commands;
   std::array<std::vector<double>, 3> rates;
   std::array<std::vector<double>, lag_motions> motions;
+  std::vector<double> weights;  ///< of rows in the sums; empty: 1
 
   std::size_t size() const noexcept { return rates[0].size(); }
 };
@@ -45,6 +46,13 @@ struct MotionLag {
   double explained = 0;  ///< R^2 by the commands at the lag, beyond what a constant and the body rates explain
   double sharpness = 0;  ///< how much of -log(1 - R^2) is lost 50 ms away on the better side, 0..1
   bool found = false;    ///< a maximum inside the range, above and sharper than chance
+
+  /// The commands leave too little unexplained to move the maximum, or the maximum is too sharp to be moved; a
+  /// sharp one before the command is the controller's answer to a gyro's noise.
+  bool told() const noexcept {
+    constexpr double nearly_all = 0.8, sharp = 0.78, least = 0.1;
+    return found && (explained >= nearly_all || (sharpness >= sharp && explained >= least && lag_s > 0));
+  }
 };
 
 struct CommandLag {
@@ -54,13 +62,14 @@ struct CommandLag {
   double confidence = 0;   ///< sharpness of all found together, 0..1
   double low_pass_Hz = 0;  ///< up to where commands and motion were compared; 0: as they are
   bool found = false;      ///< otherwise lag_s is 0 and nothing should be removed
-  std::string warning;     ///< why it is not found, or not to be trusted; empty for none
+  bool told = false;       ///< by a motion that tells it: lag_s is of those
+  std::string warning;     ///< why it is not known, or that it is negative; empty for none
   std::size_t rows = 0;
 
-  static constexpr double spread_of_doubt_s = 0.03, confidence_of_doubt = 0.25;
-  /// All motions found tell the same lag, and one 50 ms away explains clearly less.
-  bool stands_out() const noexcept {
-    return found && spread_s <= spread_of_doubt_s && confidence >= confidence_of_doubt;
+  static constexpr double spread_of_doubt_s = 0.01, confidence_of_doubt = 0.2;
+  /// Told by a motion, the same by all that tell one, and one 50 ms away explains clearly less.
+  bool known() const noexcept {
+    return found && told && spread_s <= spread_of_doubt_s && confidence >= confidence_of_doubt;
   }
 };
 
@@ -74,7 +83,9 @@ struct LagRange {
 /// correlation, so that neither the order of the motors nor the battery has to be known; a constant and the body rates
 /// (damping) explain what they can first. Both sides are compared as they are, up to 15 Hz and up to 8 Hz, without
 /// phase, and the band in which most is explained is taken: gyro noise that comes back through the controller as
-/// commands pulls the plain correlation to shorter lags, by tens of milliseconds in calm flights.
+/// commands pulls the plain correlation to shorter lags, by tens of milliseconds in calm flights. So do gusts, to
+/// longer ones, by as much: a lag is known only by motions that tell it (MotionLag::told()). Blocks of time count as
+/// those of motion_pair.hpp: a catch by hand or a knock doesn't decide.
 /// Segments of one log, each on a uniform clock of `period_s`, commands as they were logged, idle and ground left out.
 /// Limits: a motor behaves like a first-order lag, of which the best pure delay depends on how fast the commands
 /// change: 36 to 40 ms for a time constant of 50 ms. A filter's delay in what was measured counts as lag.

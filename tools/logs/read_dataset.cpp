@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "logs/attitude_convention.hpp"
@@ -24,7 +25,8 @@
 #include "logs/offered_mapping.hpp"
 #include "logs/row_checks.hpp"
 #include "logs/sensor_check.hpp"
-#include "logs/specific_force.hpp"
+#include "logs/standing_columns.hpp"
+#include "logs/tumbling.hpp"
 #include "logs/vehicle_check.hpp"
 #include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
@@ -253,10 +255,12 @@ class Import {
                rows.own_rows ? "the table's own rows, every " + number_text(rows.period_s) + " s"
                              : "all topics at " + number_text(std::round(1e3 / rows.period_s) / 1e3) + " Hz");
     let_go(part.log, bound);
+    const double begin_s = all > 0 ? rows.time_s.front() : 0;
+    const std::size_t left_out = leave_out_rows(rows, part.name);
     LogRows log_rows = rows_of_log(std::move(rows), bound, mapping_, part.log.source);
     for (const std::string& told : log_rows.told) add(dataset_.notes, told);
     const std::size_t whole = all - log_rows.incomplete;
-    steps_.add("incomplete rows", all, whole,
+    steps_.add("incomplete rows", all - left_out, whole,
                "a cell without a number, a gap in a topic, rebuilt commands beyond 0..1");
     steps_.add("ends of derivatives", whole, log_rows.flight.size(),
                "Savitzky-Golay windows that reach beyond the rows");
@@ -270,11 +274,44 @@ class Import {
     Flight airborne = without(std::move(log_rows.flight), out);
     steps_.add("on the ground", before, airborne.size(),
                "landed by the log, lower than the mapping's [ground] says, borne by something");
+    airborne =
+        without_standing(std::move(airborne), {log_rows.has_velocity, log_rows.has_altitude}, part.name, begin_s);
     passage.segments = split_at_gaps(std::move(airborne), 1.5 * *period_s_);
     has_velocity_.push_back(log_rows.has_velocity);
     has_altitude_.push_back(log_rows.has_altitude);
-    check_motion(passage);
     passages_.push_back(std::move(passage));
+  }
+
+  /// Leaves out the rows that are not asked for, and crashes. How many.
+  std::size_t leave_out_rows(CommonRows& rows, const std::string& name) {
+    std::size_t left = rows.rows();
+    RowMask outside(left, false);
+    for (std::size_t row = 0; row < outside.size(); ++row) {
+      const double at_s = rows.time_s[row] - rows.time_s.front();
+      outside[row] = at_s < settings_.from_s || at_s > settings_.to_s.value_or(at_s);
+    }
+    const auto leave = [&](const std::string& step, const RowMask& out, const std::string& told) {
+      const std::size_t before = left;
+      left -= static_cast<std::size_t>(std::count(out.begin(), out.end(), true));
+      steps_.add(step, before, left, told);
+      leave_out(rows, out);
+    };
+    if (settings_.from_s > 0 || settings_.to_s)
+      leave("another part of the log", outside, "before --from or after --to");
+    const Tumbling tumbling = find_tumbling(rows);
+    for (const std::string& told : tumbling.told) warn(name + ": " + told + " left out");
+    leave("tumbling", tumbling.out, "a gyro at the end of its range, a force that no rotor makes");
+    return rows.rows() - left;
+  }
+
+  Flight without_standing(Flight flight, const HasQuantities& has, const std::string& name, double begin_s) {
+    const StandingRows standing = standing_rows(flight, has, *period_s_, begin_s);
+    for (const std::string& told : standing.told) warn(name + ": " + told);
+    const std::size_t before = flight.size();
+    flight = without(std::move(flight), standing.out);
+    steps_.add("standing still", before, flight.size(),
+               "a column that repeats its value while what goes with it moves");
+    return flight;
   }
 
   /// The contents of the common rows: of a long log nothing is held twice.
@@ -332,24 +369,6 @@ class Import {
     }
   }
 
-  /// Of what is in the air, before the commands are moved.
-  void check_motion(const Passage& passage) {
-    constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
-    const auto series = [&passage](const auto& value_of) {
-      std::vector<double> values;
-      values.reserve(passage.rows());
-      for (const Flight& segment : passage.segments) {
-        for (const Sample& sample : segment) values.push_back(value_of(sample));
-      }
-      return values;
-    };
-    const std::vector<double> time_s = series([](const Sample& sample) { return sample.time_s; });
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const std::vector<double> rate = series([axis](const Sample& sample) { return sample.body_rates_rad_s[axis]; });
-      warn(passage.name, check_frozen(std::string("body rate ") + axes[static_cast<std::size_t>(axis)], time_s, rate));
-    }
-  }
-
   void settle_absent() {
     const auto lacks = [](const std::vector<bool>& has) {
       return std::find(has.begin(), has.end(), false) != has.end();
@@ -368,6 +387,17 @@ class Import {
     }
   }
 
+  /// The lag to remove where the flights do not tell it, and why.
+  std::pair<double, std::string> usual_lag() const {
+    constexpr double usual_s = 0.03;
+    const bool speeds = std::any_of(mapping_.sources.begin(), mapping_.sources.end(), [](const Source& source) {
+      return source.quantity == Quantity::motors && source.numbers == MotorNumbers::speed;
+    });
+    if (speeds) return {0, "of rotor speeds none"};
+    if (airframe_) return {airframe_->value.rotor_time_constant_s, "the rotor lag of " + airframe_->name};
+    return {usual_s, "as usual for quadrotors"};
+  }
+
   void remove_lag() {
     std::optional<double> lag_s = settings_.lag_s ? settings_.lag_s : mapping_.lag_s;
     std::string told = lag_s ? "as given" : "";
@@ -376,9 +406,15 @@ class Import {
       report("estimating the lag", 0);
       CommandLag lag;
       with_all_segments([&](const std::vector<Flight>& segments) { lag = estimate_command_lag(segments, *period_s_); });
-      if (!lag.warning.empty()) dataset_.warnings.push_back("lag: " + lag.warning);
-      lag_s = lag.found ? lag.lag_s : 0;
-      told = lag.found ? "estimated, confidence " + number_text(std::round(lag.confidence * 100) / 100) : "none found";
+      if (lag.known()) {
+        if (!lag.warning.empty()) warn("lag: " + lag.warning);
+        lag_s = lag.lag_s;
+        told = "estimated, confidence " + number_text(std::round(lag.confidence * 100) / 100);
+      } else {
+        std::tie(lag_s, told) = usual_lag();
+        warn("lag not known: " + lag.warning + "; " + number_text(std::round(*lag_s * 1e3)) + " ms are removed, " +
+             told + ": give --lag SECONDS, or log quick small rolls and pitches in still air");
+      }
     }
     dataset_.lag_removed_s = std::round(*lag_s * 1e6) / 1e6;
     if (dataset_.lag_removed_s < 0) {
@@ -482,7 +518,8 @@ class Import {
   /// With its cause: an attitude in another order makes rates that do not turn it, and accelerations that fit no
   /// velocity.
   void require_plausible_flight(const Flight& flight, const std::string& source) const {
-    const auto found = find_implausible(flight);
+    auto found = find_implausible(flight);
+    if (!found) found = find_standing_column(flight, {!dataset_.lacks("velocity"), !dataset_.lacks("altitude")});
     if (!found) return;
     const auto cause = causes_.find(flight.name);
     throw InputError(source, 0, 0, found->expected,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "logs/log_parts.hpp"
+#include "logs/standing_columns.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
@@ -123,6 +124,11 @@ Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_
     bytes_read += bytes_of(path);
     Flight flight = read_flight_csv(path, one ? minimum_rows : minimum_flight_rows, extra);
     require_plausible(path, flight);
+    const bool moves = std::any_of(flight.begin(), flight.end(),
+                                   [](const Sample& sample) { return sample.velocity_m_s.squaredNorm() > 0; });
+    const HasQuantities has{moves, moves, false};  // trainings and identifications ask for commands that change
+    if (const auto found = find_standing_column(flight, has))
+      throw InputError(path, 0, 0, found->expected, found->found);
     flight.name = free_name(dataset, printable(std::filesystem::path(path).filename().string()));
     dataset.add(std::move(flight));
   }

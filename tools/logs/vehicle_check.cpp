@@ -64,23 +64,23 @@ struct Judged {
   double highest_command = 0;
   double lag_s = 0;  ///< from the commands as they were logged
   bool has_lag = false;
-  bool lag_found = false;  ///< with confidence
+  bool lag_found = false;  ///< known, see CommandLag
 };
 
 /// Within what motors and links make, unless commands that are off by much more explain roll and pitch far better.
 CommandLag widest_lag(const std::vector<Flight>& segments, double period_s) {
-  constexpr double far_better = 1.25, confident = 0.25, well = 0.3;
+  constexpr double far_better = 1.25, well = 0.3;
   const auto explained = [](const CommandLag& lag) {
     return lag.found ? lag.motions[0].explained + lag.motions[1].explained : 0;
   };
   CommandLag lag = estimate_command_lag(segments, period_s);
   CommandLag wide = estimate_command_lag(segments, period_s, {-0.4, 0.4});
-  const bool better = wide.confidence >= confident && explained(wide) > std::max(well, far_better * explained(lag));
+  const bool better = wide.known() && explained(wide) > std::max(well, far_better * explained(lag));
   return better ? wide : lag;
 }
 
 Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_removed_s) {
-  constexpr double most_s = 300, least_confidence = 0.25;
+  constexpr double most_s = 300;
   Judged judged;
   judged.name = flight.name;
   const double period_s = sample_period_s(RowSet(flight, {0, flight.size()}));
@@ -111,7 +111,7 @@ Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_
     judged.highest_command = std::max(judged.highest_command, *std::max_element(u.begin(), u.end()));
   }
   const CommandLag lag = widest_lag(judged.aligned, period_s);
-  judged.lag_found = lag.found && lag.confidence >= least_confidence;
+  judged.lag_found = lag.known();
   judged.lag_s = lag.lag_s + lag_removed_s;
   for (Flight& segment : judged.aligned) segment = remove_lag(std::move(segment), period_s, lag.found ? lag.lag_s : 0);
   judged.has_lag = lag.found;

@@ -38,7 +38,7 @@ inline std::string milliseconds(double seconds) {
 
 }  // namespace detail
 
-/// Moves the commands by `given`, or by the whole rows of latency that the flights show where it stands out; what was
+/// Moves the commands by `given`, or by the whole rows of latency that the flights show where it is known; what was
 /// done becomes a step of the dataset. Flights without latency stay as they are, to the bit.
 inline void remove_latency(pinnquad::logs::ImportedDataset& dataset, const pinnquad::Airframe<double>& airframe,
                            const std::optional<double>& given) {
@@ -54,7 +54,7 @@ inline void remove_latency(pinnquad::logs::ImportedDataset& dataset, const pinnq
   }
   if (!given) {
     const pinnquad::logs::CommandLag lag = pinnquad::logs::estimate_command_lag(all, period_s);
-    if (!lag.stands_out()) return;
+    if (!lag.known()) return;
     const double rotor_s = detail::slowest_rotor_s(airframe);
     lag_s = period_s * std::round(detail::latency_s(lag.lag_s, rotor_s) / period_s);
     told = "whole rows of " + detail::milliseconds(lag.lag_s) + ", estimated, less the rotors' " +

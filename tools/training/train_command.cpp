@@ -69,12 +69,10 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   using programs::add_number, programs::add_path;
   app.footer(
       "Examples:\n"
-      "  pinnquad train d1.csv --out my_model\n"
       "  pinnquad train a.csv b.csv c.csv --airframe mine.toml --models best_pearson\n"
       "  pinnquad train logs --mapping px4 --hold-out flight7 --out my_model\n"
       "  pinnquad train my_logs --hold-out-each trajectory --out my_model\n"
-      "More of each option: docs/train.md, docs/log_training.md.\n"
-      "Exit codes: 0; 1 nothing exported; 2 bad input or a file that can't be read or written;\n"
+      "More: docs/train.md, docs/log_training.md. Exit codes: 0; 1 nothing exported; 2 bad input;\n"
       "130 interrupted: the same command goes on from there.");
   add_flights(app, options);
   app.add_option("--airframe", words.airframe, "what flew: see airframe list")
@@ -83,6 +81,7 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   app.add_option("--lag", words.lag, "from command to motion, to remove from the commands")
       ->type_name("auto|SECONDS")
       ->capture_default_str();
+  programs::add_time_range(app, options);
   add_path(app, "--out", options.out, "DIR", "folder for results, report and the exported header")
       ->default_str(options.out);
   add_kinds(app, options, words);
@@ -122,6 +121,7 @@ Command train_command(CLI::App& program) {
             TrainOptions& options = asked->options;
             const GivenWords& words = asked->words;
             options.lag_s = programs::lag_of(words.lag);
+            programs::require_time_range(options);
             programs::take_source(options);
             require_one_way(*line, options);
             const auto given = [line](const char* name) { return line->count(name) > 0; };

@@ -153,6 +153,8 @@ inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options,
   settings.mapping = options.mapping;
   settings.airframe = options.airframe;
   settings.lag_s = options.lag_s;
+  settings.from_s = options.from_s;
+  settings.to_s = options.to_s;
   settings.on_progress = on_progress;
   return pinnquad::logs::read_dataset(options.logs, settings);
 }

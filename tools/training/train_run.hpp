@@ -22,6 +22,8 @@ struct TrainOptions {
   std::optional<bool> altitude;       ///< of the structured kinds, as what follows; none: validation says
   bool pinned_slopes = false;
   std::string airframe;         ///< empty: none was given
+  double from_s = 0;            ///< of each log, from its first row
+  std::optional<double> to_s;   ///< and to there
   std::optional<double> lag_s;  ///< of flights and logs, from command to motion; none: estimated
   std::string out = "demo_out";
   std::string model_name = "TrainedQuadModel";

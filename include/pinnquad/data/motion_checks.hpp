@@ -51,17 +51,30 @@ inline std::string late_text(double late_s) { return number_text(std::round(std:
 /// Units and axes that a log may have in place of a flight's: which of roll, pitch and yaw are in degrees, the unit of
 /// the rates, and what these are.
 struct TurningReading {
-  enum Rates { of_body, of_world, of_enu_world, of_flu_body, of_angles, reversed };
+  enum Rates {
+    of_body,
+    of_world,
+    of_enu_world,
+    of_world_as_flu,
+    of_enu_world_as_flu,
+    of_flu_body,
+    of_angles,
+    of_angles_as_flu,
+    reversed
+  };
   std::array<bool, 3> degrees{};
   double rates_unit = 1;
   Rates rates = of_body;
 };
-inline constexpr std::array<const char*, 6> turning_rate_texts = {
+inline constexpr std::array<const char*, 9> turning_rate_texts = {
     "",
     "rates in the world's axes (turn them by the attitude into the body, R^T w, or log the gyro)",
     "rates in the world's axes east, north, up (turn them into the body)",
+    "rates in the world's axes, read as x forward, y left, z up (turn them by the attitude into the body)",
+    "rates in the world's axes east, north, up, read as x forward, y left, z up (turn them into the body)",
     "rates in x forward, y left, z up (w_y and w_z are negated, or pitch and yaw)",
     "derivatives of roll, pitch and yaw (turn them into p, q, r)",
+    "derivatives of roll, pitch and yaw, the latter two negated (turn them into p, q, r)",
     "rates that the attitude turns against: it is that of the world in the body (conjugate the quaternion), or all "
     "rates are negated"};
 
@@ -83,15 +96,19 @@ std::optional<detail::Implausible> find_turning_mistake(const Flight& flight);
 
 namespace detail {
 
-/// Accelerations that logs hold in the place of the derivative of the body-frame velocity, turned into that.
-inline constexpr std::size_t acceleration_kinds = 4;
-inline constexpr std::array<const char*, acceleration_kinds> acceleration_kind_texts = {
-    "", "the world's acceleration in the body's axes (subtract w x v)",
-    "what an accelerometer reads (add gravity in the body's axes, subtract w x v)",
-    "the world's acceleration in axes north, east, down (turn it into the body, subtract w x v)"};
-/// Changes of the velocity in the world against the world's acceleration, both of the body's columns, which are to be
-/// turned so often: once, unless a log's were taken for the other's.
-MotionPair world_velocity_pair(const Flight& flight, int turns = 1);
+/// A vector that was read in axes of a kind, in the axes that it should have been read in: 0 as it stands; 1 ENU for NED;
+/// 2 x forward, y left, z up for FRD; 3 and 4 both, in either order.
+inline constexpr std::size_t axes_kinds = 5;
+Vector3<double> in_axes(const Vector3<double>& v, std::size_t kind);
+
+/// How the velocity in the world comes from a flight's columns.
+struct VelocityReading {
+  int turns = 1;  ///< by the attitude: 0 of columns in the world's axes, 2 of what was turned once too often
+  std::size_t of_columns = 0;  ///< in_axes() before the first turn
+  std::size_t of_world = 0;    ///< and after it
+};
+/// Changes of the velocity in the world against the world's acceleration, both of the body's columns.
+MotionPair world_velocity_pair(const Flight& flight, const VelocityReading& reading = {});
 
 }  // namespace detail
 

@@ -82,6 +82,59 @@ TEST_CASE("segments are not joined: a lag is looked for inside each") {
   CHECK(std::abs(many.lag_s - one.lag_s) < 0.003);
 }
 
+namespace {
+
+/// A loop about x with rotors of 20 ms: gusts turn the vehicle, or steps of the wanted rate alone.
+Flight looped(double gust_rad_s2, double steps_rad_s) {
+  constexpr double period_s = 0.005, rotor_s = 0.02, gust_s = 0.3, effectiveness = 100, gain = 12, integral_gain = 30;
+  std::mt19937_64 engine(3);
+  double rate = 0, motor = 0, gust = 0, sum = 0, wanted = 0;
+  Flight flight;
+  for (int row = 0; row < 8000; ++row) {
+    if (row % 60 == 0) wanted = steps_rad_s * pinnquad::standard_normal(engine);
+    gust +=
+        -period_s / gust_s * gust + gust_rad_s2 * std::sqrt(2 * period_s / gust_s) * pinnquad::standard_normal(engine);
+    sum += period_s * (wanted - rate);
+    const double command = (gain * (wanted - rate) + integral_gain * sum) / effectiveness;
+    motor += (1 - std::exp(-period_s / rotor_s)) * (command - motor);
+    pinnquad::Sample sample;
+    sample.time_s = row * period_s;
+    sample.commands = {0.4 - command / 4, 0.4 + command / 4, 0.4 + command / 4, 0.4 - command / 4};
+    sample.body_rates_rad_s[0] = rate;
+    sample.angular_acceleration_rad_s2[0] = effectiveness * motor + gust;
+    sample.linear_acceleration_m_s2 = {0, 0, 0};
+    rate += period_s * sample.angular_acceleration_rad_s2[0];
+    flight.push_back(sample);
+  }
+  return flight;
+}
+
+}  // namespace
+
+TEST_CASE("gusts come back through the controller, and make no lag") {
+  const CommandLag quiet = estimate_command_lag({looped(0, 1)}, 0.005),
+                   gusts = estimate_command_lag({looped(8, 0)}, 0.005);
+  REQUIRE(quiet.known());
+  CHECK(std::abs(quiet.lag_s - 0.02) < 0.005);
+  CHECK((!gusts.known() || std::abs(gusts.lag_s - 0.02) < 0.005));
+  CHECK((gusts.known() || gusts.warning.find("through the controller") != std::string::npos));
+}
+
+TEST_CASE("a wild hundredth of a flight does not decide its lag") {
+  Flight flight = synthetic_flight();
+  const CommandLag before = estimate_command_lag({flight}, 0.01);
+  std::mt19937_64 engine(5);
+  for (std::size_t row = flight.size() - 60; row < flight.size(); ++row) {
+    for (int axis = 0; axis < 3; ++axis) {
+      flight[row].angular_acceleration_rad_s2[axis] += 300 * pinnquad::standard_normal(engine);
+      flight[row].linear_acceleration_m_s2[axis] += 50 * pinnquad::standard_normal(engine);
+    }
+  }
+  const CommandLag after = estimate_command_lag({flight}, 0.01);
+  REQUIRE(before.known());
+  CHECK((!after.known() || std::abs(after.lag_s - before.lag_s) < 0.005));
+}
+
 TEST_CASE("removing a lag moves a line by it, in whole and part rows, both ways") {
   std::vector<double> line;
   for (int row = 0; row < 20; ++row) line.push_back(2.0 * row);

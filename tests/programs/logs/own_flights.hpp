@@ -267,6 +267,10 @@ inline std::vector<PlantedFault> planted_faults() {
   const auto angles_of = [](const Row& row) {
     return pinnquad::from_euler(pinnquad::EulerAngles<double>{row.angles[0], row.angles[1], row.angles[2]});
   };
+  const auto gravity_of = [angles_of](const Row& row) {
+    return pinnquad::world_to_body(angles_of(row),
+                                   pinnquad::Vector3<double>(0, 0, pinnquad::standard_gravity_m_s2<double>));
+  };
   const auto scale_angles = [](double by) {
     return [by](Row& row) {
       for (double& angle : row.angles) angle *= by;
@@ -298,40 +302,53 @@ inline std::vector<PlantedFault> planted_faults() {
     };
   };
   using Vector = pinnquad::Vector3<double>;
-  return {{"attitude in degrees", scale_angles(pinnquad::degrees_per_radian)},
-          {"attitude in radians, read as degrees", scale_angles(1 / pinnquad::degrees_per_radian)},
-          {"rates in deg/s", scale_rates(pinnquad::degrees_per_radian)},
-          {"rates 57 times too small", scale_rates(1 / pinnquad::degrees_per_radian)},
-          {"roll negated", negate_angle(0)},
-          {"pitch negated", negate_angle(1)},
-          {"yaw negated", negate_angle(2)},
-          {"w_x negated", negate_rate(0)},
-          {"w_y negated", negate_rate(1)},
-          {"w_z negated", negate_rate(2)},
-          {"roll and pitch exchanged", [](Row& row) { std::swap(row.angles[0], row.angles[1]); }},
-          {"w_x and w_y exchanged", exchange_rates(0, 1)},
-          {"w_y and w_z exchanged", exchange_rates(1, 2)},
-          {"rates in the world's axes", turn_rates([angles_of](const Row& row, const Vector& v) {
-             return pinnquad::body_to_world(angles_of(row), v);
-           })},
-          {"rates in FLU", turn_rates([](const Row&, const Vector& v) { return pinnquad::swap_flu_frd(v); })},
-          {"a conjugated attitude",
-           [angles_of](Row& row) {
-             const auto euler = pinnquad::to_euler(pinnquad::conjugate(angles_of(row)));
-             row.angles = {euler.roll_rad, euler.pitch_rad, euler.yaw_rad};
-           }},
-          {"derivatives of rates negated", [](Row& row) { row.derivatives *= -1; }},
-          {"derivatives of rates exchanged", [](Row& row) { std::swap(row.derivatives[0], row.derivatives[1]); }},
-          {"a gyro that has stopped",
-           [](Row& row) {
-             row.rates = Vector(0.01, 0.01, 0.01);
-             row.derivatives.setZero();
-           }},
-          {"velocity in km/h", [](Row& row) { row.velocity *= 3.6; }},
-          {"velocity in the body's axes",
-           [angles_of](Row& row) { row.velocity = pinnquad::world_to_body(angles_of(row), row.velocity); }},
-          {"velocity negated along down", [](Row& row) { row.velocity[2] *= -1; }},
-          {"altitude negated", [](Row& row) { row.altitude *= -1; }}};
+  return {
+      {"attitude in degrees", scale_angles(pinnquad::degrees_per_radian)},
+      {"attitude in radians, read as degrees", scale_angles(1 / pinnquad::degrees_per_radian)},
+      {"rates in deg/s", scale_rates(pinnquad::degrees_per_radian)},
+      {"rates 57 times too small", scale_rates(1 / pinnquad::degrees_per_radian)},
+      {"roll negated", negate_angle(0)},
+      {"pitch negated", negate_angle(1)},
+      {"yaw negated", negate_angle(2)},
+      {"w_x negated", negate_rate(0)},
+      {"w_y negated", negate_rate(1)},
+      {"w_z negated", negate_rate(2)},
+      {"roll and pitch exchanged", [](Row& row) { std::swap(row.angles[0], row.angles[1]); }},
+      {"w_x and w_y exchanged", exchange_rates(0, 1)},
+      {"w_y and w_z exchanged", exchange_rates(1, 2)},
+      {"rates in the world's axes",
+       turn_rates([angles_of](const Row& row, const Vector& v) { return pinnquad::body_to_world(angles_of(row), v); })},
+      {"rates in the world's axes east, north, up, read as FLU",
+       turn_rates([angles_of](const Row& row, const Vector& v) {
+         return pinnquad::swap_flu_frd(pinnquad::swap_enu_ned(pinnquad::body_to_world(angles_of(row), v)));
+       })},
+      {"specific force in the world's axes",
+       [angles_of](Row& row) { row.force = pinnquad::body_to_world(angles_of(row), row.force); }},
+      {"specific force in the world's axes east, north, up, read as FLU",
+       [angles_of](Row& row) {
+         row.force = pinnquad::swap_flu_frd(pinnquad::swap_enu_ned(pinnquad::body_to_world(angles_of(row), row.force)));
+       }},
+      {"specific force without gravity", [gravity_of](Row& row) { row.force += gravity_of(row); }},
+      {"velocity in the world's axes east, north, up",
+       [](Row& row) { row.velocity = pinnquad::swap_enu_ned(row.velocity); }},
+      {"rates in FLU", turn_rates([](const Row&, const Vector& v) { return pinnquad::swap_flu_frd(v); })},
+      {"a conjugated attitude",
+       [angles_of](Row& row) {
+         const auto euler = pinnquad::to_euler(pinnquad::conjugate(angles_of(row)));
+         row.angles = {euler.roll_rad, euler.pitch_rad, euler.yaw_rad};
+       }},
+      {"derivatives of rates negated", [](Row& row) { row.derivatives *= -1; }},
+      {"derivatives of rates exchanged", [](Row& row) { std::swap(row.derivatives[0], row.derivatives[1]); }},
+      {"a gyro that has stopped",
+       [](Row& row) {
+         row.rates = Vector(0.01, 0.01, 0.01);
+         row.derivatives.setZero();
+       }},
+      {"velocity in km/h", [](Row& row) { row.velocity *= 3.6; }},
+      {"velocity in the body's axes",
+       [angles_of](Row& row) { row.velocity = pinnquad::world_to_body(angles_of(row), row.velocity); }},
+      {"velocity negated along down", [](Row& row) { row.velocity[2] *= -1; }},
+      {"altitude negated", [](Row& row) { row.altitude *= -1; }}};
 }
 
 /// The flight with the fault in all rows.

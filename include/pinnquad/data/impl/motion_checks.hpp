@@ -43,10 +43,14 @@ PINNQUAD_BODY MotionPair turning_pair(const Flight& flight, const TurningReading
     switch (reading.rates) {
       case TurningReading::of_world: return body_to_world(q, turn);
       case TurningReading::of_enu_world: return swap_enu_ned(body_to_world(q, turn));
+      case TurningReading::of_world_as_flu: return swap_flu_frd(body_to_world(q, turn));
+      case TurningReading::of_enu_world_as_flu: return swap_flu_frd(swap_enu_ned(body_to_world(q, turn)));
+      case TurningReading::of_angles_as_flu:
       case TurningReading::of_angles: {
         const double across = sr * turn[1] + cr * turn[2];
-        return {turn[0] + std::tan(begin.pitch_rad) * across, cr * turn[1] - sr * turn[2],
-                across / std::cos(begin.pitch_rad)};
+        const Vector3<double> angles(turn[0] + std::tan(begin.pitch_rad) * across, cr * turn[1] - sr * turn[2],
+                                     across / std::cos(begin.pitch_rad));
+        return reading.rates == TurningReading::of_angles ? angles : swap_flu_frd(angles);
       }
       case TurningReading::of_flu_body: return swap_flu_frd(turn);
       case TurningReading::reversed: return -turn;
@@ -128,32 +132,42 @@ PINNQUAD_BODY Implausible wrong_rate(const MotionBlocks& sums, const AxisMistake
 PINNQUAD_BODY std::optional<detail::Implausible> find_turning_mistake(const Flight& flight) {
   using namespace detail;
   constexpr double follows = 0.6, clearly = 0.4;
+  constexpr double nearly = 0.97;  // of small angles, whose derivatives are nearly the body's rates
   const MotionPair pair = turning_pair(flight, {});
   const MotionBlocks sums = pair.sums(turning_step_s);
   const std::array<bool, 3> moving = sums.moving();
   const double as_it_stands = sums.agreement(moving);
   if (as_it_stands < agrees) {
     if (auto stopped = find_stopped_rate(flight, sums)) return stopped;
-    double most = as_it_stands;
-    TurningReading best;
-    const auto judge = [&](const TurningReading& reading) {
-      const MotionBlocks so = turning_pair(flight, reading).sums(turning_step_s);
-      const double agreement = so.agreement(moving);
-      if (!(agreement > most) || !sums.agrees_less_than(so, moving)) return;
-      most = agreement;
-      best = reading;
-    };
+  }
+  double most = as_it_stands;
+  TurningReading best;
+  const auto judge = [&](const TurningReading& reading) {
+    const MotionBlocks so = turning_pair(flight, reading).sums(turning_step_s);
+    const double agreement = so.agreement(moving);
+    if (!(agreement > most) || !sums.agrees_less_than(so, moving)) return;
+    most = agreement;
+    best = reading;
+  };
+  if (as_it_stands < nearly) {
+    for (const auto rates : {TurningReading::of_angles, TurningReading::of_angles_as_flu}) judge({{}, 1, rates});
+  }
+  if (as_it_stands < agrees) {
     for (unsigned choice = 1; choice < 16; ++choice) {
       judge(
           {{(choice & 1u) != 0, (choice & 2u) != 0, (choice & 4u) != 0}, (choice & 8u) != 0 ? degrees_per_radian : 1});
     }
-    for (const auto rates : {TurningReading::of_world, TurningReading::of_enu_world, TurningReading::of_flu_body,
-                             TurningReading::of_angles, TurningReading::reversed}) {
+    for (const auto rates :
+         {TurningReading::of_world, TurningReading::of_enu_world, TurningReading::of_flu_body, TurningReading::reversed,
+          TurningReading::of_world_as_flu, TurningReading::of_enu_world_as_flu}) {
       judge({{}, 1, rates});
     }
-    if (most > related && 1 - most < far_better * (1 - as_it_stands))
-      return misread_turning(best,
-                             "; agreement " + hundredths(as_it_stands) + " as it stands, " + hundredths(most) + " so");
+  }
+  if (most > related && 1 - most < far_better * (1 - as_it_stands)) {
+    return misread_turning(best,
+                           "; agreement " + hundredths(as_it_stands) + " as it stands, " + hundredths(most) + " so");
+  }
+  if (as_it_stands < agrees) {
     if (const auto mistake = find_axis_mistake(sums, follows, clearly)) {
       if (mistake->axis != mistake->column || mistake->negated) return wrong_rate(sums, *mistake);
       constexpr double about = 1.5;
@@ -192,19 +206,64 @@ PINNQUAD_BODY std::optional<Implausible> wrong_axis(const MotionBlocks& sums, st
                      found + ", by how rates and velocity change from row to row"};
 }
 
-PINNQUAD_BODY std::array<Vector3<double>, acceleration_kinds> as_body_derivative(const Sample& sample) {
-  const Vector3<double> given = sample.linear_acceleration_m_s2;
-  const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
-  const Quaternion<double> q = from_euler(angles_of(sample));
-  const Vector3<double> gravity = world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>));
-  return {given, given - turning, given + gravity - turning, world_to_body(q, given) - turning};
+PINNQUAD_BODY Vector3<double> in_axes(const Vector3<double>& v, std::size_t kind) {
+  switch (kind) {
+    case 1: return swap_enu_ned(v);
+    case 2: return swap_flu_frd(v);
+    case 3: return swap_enu_ned(swap_flu_frd(v));
+    case 4: return swap_flu_frd(swap_enu_ned(v));
+    default: return v;
+  }
 }
 
-PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, int turns) {
+/// A reading of the columns that should hold the derivative of the body-frame velocity.
+struct AccelerationReading {
+  enum Kind { kinematic, without_turning, world_derivative, world, world_force, no_gravity, accelerometer };
+  Kind kind = kinematic;
+  std::size_t axes = 0;  ///< of a vector of the world: axes_kinds
+
+  std::string text() const {
+    const std::string in_world = axes == 0   ? " in axes north, east, down"
+                                 : axes == 1 ? " in axes east, north, up"
+                                             : " in axes of another convention (ENU, or z up)";
+    switch (kind) {
+      case without_turning: return "the world's acceleration in the body's axes (subtract w x v)";
+      case world_derivative:
+      case world: return "the world's acceleration" + in_world + " (turn it into the body, subtract w x v)";
+      case world_force: return "the specific force" + in_world + " of the world (turn it into the body)";
+      case no_gravity: return "that with gravity added once too often (an accelerometer's without gravity?)";
+      case accelerometer: return "what an accelerometer reads (add gravity in the body's axes, subtract w x v)";
+      case kinematic: break;
+    }
+    return "";
+  }
+
+  Vector3<double> body_derivative(const Sample& sample) const {
+    const Vector3<double> given = sample.linear_acceleration_m_s2;
+    const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
+    const Quaternion<double> q = from_euler(angles_of(sample));
+    const Vector3<double> gravity = world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>));
+    switch (kind) {
+      case without_turning: return given - turning;
+      case world_derivative: return world_to_body(q, in_axes(given, axes)) - turning;
+      case world: return world_to_body(q, in_axes(given + turning, axes)) - turning;
+      case world_force: return world_to_body(q, in_axes(given + turning - gravity, axes)) + gravity - turning;
+      case no_gravity: return given - gravity;
+      case accelerometer: return given + gravity - turning;
+      case kinematic: break;
+    }
+    return given;
+  }
+};
+
+PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const VelocityReading& reading) {
   const auto velocity = [&](std::size_t row) {
     const Quaternion<double> q = from_euler(angles_of(flight[row]));
-    Vector3<double> result = flight[row].velocity_m_s;
-    for (int turn = 0; turn < turns; ++turn) result = body_to_world(q, result);
+    Vector3<double> result = in_axes(flight[row].velocity_m_s, reading.of_columns);
+    for (int turn = 0; turn < reading.turns; ++turn) {
+      result = body_to_world(q, result);
+      if (turn == 0) result = in_axes(result, reading.of_world);
+    }
     return result;
   };
   return {flight.size(), [&](std::size_t row) { return flight[row].time_s; },
@@ -220,6 +279,7 @@ PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, int turns) {
 /// Velocities that are negated along one axis of the world, of another unit, or late.
 PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& flight) {
   constexpr double follows = 0.8, better = 0.25, straight = 0.9, alike = 1.3;
+  constexpr double fits = 0.95;  // an acceleration in other axes agrees with such a velocity by less
   constexpr std::array<const char*, 3> along = {"north", "east", "down"};
   const MotionPair pair = world_velocity_pair(flight);
   const MotionBlocks sums = pair.sums(turning_step_s);
@@ -243,14 +303,28 @@ PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& fli
   }
   const std::array<bool, 3> moving = sums.moving();
   const double as_it_stands = sums.agreement(moving);
-  for (const auto& [turns, text] : {std::pair{0, "velocities in the world's axes (turn them into the body)"},
-                                    {2, "velocities in the body's axes that were turned into them once more"}}) {
-    if (!(as_it_stands < agrees)) break;
-    const MotionBlocks turned = world_velocity_pair(flight, turns).sums(turning_step_s);
-    const double so = turned.agreement(moving);
-    if (!(so > related && 1 - so < far_better * (1 - as_it_stands) && sums.agrees_less_than(turned, moving))) continue;
+  double most = as_it_stands;
+  std::string best;
+  const auto judge = [&](const VelocityReading& reading, const char* text) {
+    const MotionBlocks read = world_velocity_pair(flight, reading).sums(turning_step_s);
+    const double so = read.agreement(moving);
+    const double enough = reading.of_columns + reading.of_world > 0 ? fits : related;
+    if (!(so > most && so > enough && 1 - so < far_better * (1 - as_it_stands))) return;
+    if (!sums.agrees_less_than(read, moving)) return;
+    most = so;
+    best = text;
+  };
+  if (as_it_stands < agrees) {
+    for (std::size_t axes = 0; axes < axes_kinds; ++axes) {
+      judge({0, axes, 0}, "velocities in the world's axes (turn them into the body)");
+      judge({2, 0, axes}, "velocities in the body's axes that were turned into them once more");
+      if (axes > 0) judge({1, 0, axes}, "velocities in another world's axes (ENU for NED, or z up)");
+      if (axes > 0) judge({1, axes, 0}, "velocities in other axes of the body (x forward, y left, z up for FRD)");
+    }
+  }
+  if (!best.empty()) {
     return Implausible{0, velocity_field, expected,
-                       text + ("; agreement " + hundredths(as_it_stands)) + " as it stands, " + hundredths(so) + " so"};
+                       best + "; agreement " + hundredths(as_it_stands) + " as it stands, " + hundredths(most) + " so"};
   }
   if (const auto late_s = pair.lateness_s(turning_step_s)) {
     return Implausible{0, *late_s > 0 ? velocity_field : linear_field, expected,
@@ -282,7 +356,7 @@ PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& fli
 
 PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
   using namespace detail;
-  constexpr double unexplained = 0.3, better = 0.25;
+  constexpr double unexplained = 0.1, better = 0.25;
   const auto sums = [&](const auto& value, const auto& rate) {
     return MotionPair(
                flight.size(), [&](std::size_t row) { return flight[row].time_s; },
@@ -295,25 +369,39 @@ PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const
   if (auto mistake = wrong_axis(angular, angular_field, rates_field)) return mistake;
   if (auto mistake = find_velocity_mistake(flight)) return mistake;
   if (auto mistake = find_altitude_mistake(flight)) return mistake;
-  std::vector<MotionBlocks> linear;
-  std::array<double, acceleration_kinds> left{};
   const auto left_of = [](const MotionSums& block) {
     return block.changes.sum() + block.integrals.sum() - 2 * block.products.trace();
   };
-  for (std::size_t kind = 0; kind < acceleration_kinds; ++kind) {
-    linear.push_back(sums([](const Sample& sample) { return sample.velocity_m_s; },
-                          [kind](const Sample& sample) { return as_body_derivative(sample)[kind]; }));
-    left[kind] = left_of(linear[kind]);
+  const auto read_as = [&](const AccelerationReading& reading) {
+    return sums([](const Sample& sample) { return sample.velocity_m_s; },
+                [&reading](const Sample& sample) { return reading.body_derivative(sample); });
+  };
+  const MotionBlocks linear = read_as({});
+  const double left = left_of(linear);
+  if (left > unexplained * linear.changes.sum()) {
+    using Reading = AccelerationReading;
+    double least = std::min(better * left, related * linear.changes.sum());
+    std::string best;
+    const auto judge = [&](const Reading& reading) {
+      const MotionBlocks read = read_as(reading);
+      const double left_so = left_of(read);
+      std::vector<double> gains = linear.each(left_of);
+      for (std::size_t block = 0; block < gains.size(); ++block) gains[block] -= left_of(read.blocks[block]);
+      if (!(left_so < least) || !is_plain(gains)) return;
+      least = left_so;
+      best = reading.text();
+    };
+    for (const auto kind : {Reading::without_turning, Reading::no_gravity, Reading::accelerometer}) judge({kind, 0});
+    for (std::size_t axes = 0; axes < axes_kinds; ++axes) {
+      for (const auto kind : {Reading::world_derivative, Reading::world, Reading::world_force}) judge({kind, axes});
+    }
+    if (!best.empty()) {
+      return Implausible{0, linear_field,
+                         "the derivative of the velocity in the body's axes in column " + field_name(linear_field, 0),
+                         best + ", by how rates and velocity change from row to row"};
+    }
   }
-  const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
-  std::vector<double> gains = linear[0].each(left_of);
-  for (std::size_t block = 0; block < gains.size(); ++block) gains[block] -= left_of(linear[best].blocks[block]);
-  if (left[0] > unexplained * linear[0].changes.sum() && left[best] < better * left[0] && is_plain(gains)) {
-    return Implausible{
-        0, linear_field, "the derivative of the velocity in the body's axes in column " + field_name(linear_field, 0),
-        std::string(acceleration_kind_texts[best]) + ", by how rates and velocity change from row to row"};
-  }
-  return wrong_axis(linear[0], linear_field, velocity_field);
+  return wrong_axis(linear, linear_field, velocity_field);
 }
 
 }  // namespace pinnquad
