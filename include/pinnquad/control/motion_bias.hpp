@@ -129,7 +129,7 @@ class MotionBias {
   constexpr void time_constants(const SignedSums<Scalar>& times_s) noexcept { settings_.time_constants_s = times_s; }
   constexpr const SignedSums<Scalar>& sums() const noexcept { return sums_; }
   const Vector3<Scalar>& across_m_s2() const noexcept { return across_; }
-  /// What made its time constants longer.
+  /// The noise that makes its time constants longer.
   const BiasNoise<Scalar>& noise() const noexcept { return noise_; }
   /// `ok`: it learns. `limited`: at a bound. `warming_up`: nothing has been learnt yet, or for longer than `hold_s`.
   /// `not_finite`: the last residual was no number.

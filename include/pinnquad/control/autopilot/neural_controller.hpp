@@ -174,10 +174,8 @@ class NeuralController {
       if (has_output(report.status)) {
         last_commands_ = desaturate(vehicle_.rotors(), answer, range());
         const float lift = take_off_.lift();
-        if (lift < 1.0f) {
-          const float idle = settings_.lowest_command;
-          for (float& u : last_commands_) u = idle + lift * (u - idle);
-        }
+        const float idle = settings_.lowest_command;
+        for (float& u : last_commands_) u = lift < 1.0f ? idle + lift * (u - idle) : u;
         answered(now_us);
       } else {
         reaction = Reaction::keeps_commands;
