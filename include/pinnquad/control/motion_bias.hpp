@@ -129,7 +129,7 @@ class MotionBias {
   constexpr void time_constants(const SignedSums<Scalar>& times_s) noexcept { settings_.time_constants_s = times_s; }
   constexpr const SignedSums<Scalar>& sums() const noexcept { return sums_; }
   const Vector3<Scalar>& across_m_s2() const noexcept { return across_; }
-  /// The noise that makes its time constants longer.
+  /// The noise that makes its time constants longer; 0 where the settings let it make none.
   const BiasNoise<Scalar>& noise() const noexcept { return noise_; }
   /// `ok`: it learns. `limited`: at a bound. `warming_up`: nothing has been learnt yet, or for longer than `hold_s`.
   /// `not_finite`: the last residual was no number.
@@ -173,7 +173,9 @@ class MotionBias {
     const bool sound = all_finite(residual) && all_finite(across_m_s2) && is_finite(period_s) && period_s > Scalar(0);
     if (!sound) return status_ = Status::not_finite;
     const Vector3<Scalar> beside = across_m_s2 - across_;
-    listen(residual, beside, period_s);
+    if (settings_.roll_pitch_by_noise_s > Scalar(0) || settings_.across_by_noise_s3_m > Scalar(0)) {
+      listen(residual, beside, period_s);
+    }
     const Scalar roll_pitch_s = by_noise(settings_.roll_pitch_by_noise_s * noise_.roll_pitch);
     bool bound = false;
     for (std::size_t k = 0; k < sums_.size(); ++k) {
