@@ -20,7 +20,7 @@ inline constexpr ParameterRange parameter_ranges[] = {
     {"PQ_G_VEL", 0.5f, 8.0f, true},       {"PQ_G_TILT", 2.0f, 20.0f, true},    {"PQ_G_YAW", 0.5f, 8.0f, true},
     {"PQ_G_RATE", 5.0f, 60.0f, true},     {"PQ_G_YAWRATE", 1.0f, 30.0f, true}, {"PQ_V_XY", 1.0f, 20.0f, true},
     {"PQ_V_UP", 0.5f, 8.0f, true},        {"PQ_V_DN", 0.5f, 5.0f, true},       {"PQ_TKO_T", 0.1f, 5.0f, true},
-    {"PQ_BIAS_T", 0.0f, 5.0f, true},      {"PQ_BIAS_T_ROT", 0.0f, 5.0f, true}, {"PQ_BIAS_MAX", 0.0f, 1.6f, true},
+    {"PQ_BIAS_T", 0.0f, 5.0f, true},      {"PQ_BIAS_T_ROT", 0.0f, 5.0f, true}, {"PQ_BIAS_MAX", 0.0f, 2.4f, true},
     {"PQ_BIAS_ACC", 0.0f, 5.0f, true},    {"PQ_BIAS_DELAY", 0.0f, 0.1f, true}, {"PQ_RECORD", 0.0f, 1.0f, false},
     {"PQ_STK_XY", 0.5f, 12.0f, false},    {"PQ_STK_Z", 0.2f, 5.0f, false},     {"PQ_STK_YAW", 0.1f, 3.0f, false},
     {"PQ_AIR_RHO", 0.7f, 1.6f, true},     {"PQ_THR_CURVE", -1.0f, 1.0f, true}, {"PQ_BAT_SCALE", 0.0f, 1.0f, false}};

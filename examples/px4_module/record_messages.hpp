@@ -34,6 +34,9 @@ void copy_record(const pinnquad::autopilot::CoreRecord& from, Message& to) {
   memcpy(to.bias_sums, from.bias_sums, sizeof to.bias_sums);
   memcpy(to.analytic_bias_sums, from.analytic_bias_sums, sizeof to.analytic_bias_sums);
   memcpy(to.bias_across_m_s2, from.bias_across_m_s2, sizeof to.bias_across_m_s2);
+  to.bias_noise = from.bias_noise;
+  to.analytic_bias_noise = from.analytic_bias_noise;
+  to.bias_across_noise_m_s2 = from.bias_across_noise_m_s2;
   to.bias_waited_s = from.bias_waited_s;
   to.analytic_bias_waited_s = from.analytic_bias_waited_s;
   memcpy(to.jump_position_m, from.jump_position_m, sizeof to.jump_position_m);

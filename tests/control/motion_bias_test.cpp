@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -88,17 +89,68 @@ TEST_CASE("the settings of a model: its own time constants, else the usual ones;
   CHECK(bias_settings<double>(facts).time_constants_s == SignedSums<double>{2, 2, 2, 2});
 }
 
-TEST_CASE("where lag and delay are told no time constant is above 25 ms; a sum without a bias has none") {
+TEST_CASE("where lag and delay are told a bias is quick; a sum without a bias has none") {
   BiasSettings<double> settings;
-  settings.time_constants_s = {0.2, infinity, 0.01, 0};
-  const BiasSettings<double> quick = quick_where_told(settings);
-  CHECK(quick.time_constants_s == SignedSums<double>{0.025, infinity, 0.01, 0});
-  CHECK(quick.across_time_constant_s == 0.025);
+  settings.time_constants_s = {0.2, infinity, 0.01, 0.45};
+  BiasSettings<double> quick = quick_where_told(settings);
+  CHECK(quick.time_constants_s == SignedSums<double>{0.0025, infinity, 0.0025, 0.1});
+  CHECK(quick.across_time_constant_s == 0.01);
   CHECK(quick.most == settings.most);
+  quick.time_constants_s[0] = 0;
+  CHECK(quick_where_told(quick).time_constants_s == quick.time_constants_s);
+}
+
+TEST_CASE("noise makes the time constants of roll, pitch and across longer, to an end; a constant residual does not") {
+  const BiasSettings<double> quick = quick_where_told(BiasSettings<double>{});
+  const auto share = [](double time_s) { return period_s / (period_s + time_s); };
+  Bias bias(airframe, quick);
+  for (int i = 0; i < 2000; ++i) REQUIRE(bias.learn({0.1, 0.05, -0.05, 0}, {1, 0, 0}, period_s) == Status::ok);
+  CHECK(bias.noise().roll_pitch <= 1e-9);
+  CHECK(bias.noise().across_m_s2 <= 1e-9);
+  // from a residual that stands, one step: what it takes of it is the share of its time constant
+  const auto step_after = [&](double noise) {
+    Bias noisy(airframe, quick);
+    for (int i = 0; i < 4000; ++i) {
+      const double now = i % 2 == 0 ? noise : -noise;
+      static_cast<void>(noisy.learn({now, now, now, now}, {100 * now, 0, 0}, period_s));
+    }
+    Bias next(airframe, quick);
+    next.resume({}, none, noisy.noise(), 0, Status::ok);
+    REQUIRE(next.learn({0.1, 0.1, 0.1, 0.1}, {1, 0, 0}, period_s) == Status::ok);
+    CHECK(next.sums()[0] == doctest::Approx(0.1 * share(0.0025)));
+    CHECK(next.sums()[3] == doctest::Approx(0.1 * share(0.1)));
+    CHECK(next.sums()[1] == doctest::Approx(next.sums()[2]));
+    return std::array<double, 2>{next.sums()[1] / 0.1, next.across_m_s2()[0]};
+  };
+  const auto calm = step_after(1e-3), noisy = step_after(0.03), loud = step_after(0.3);
+  CHECK(calm[0] > noisy[0]);
+  CHECK(noisy[0] > 1.5 * loud[0]);
+  CHECK(calm[1] == doctest::Approx(share(0.01)));
+  CHECK(noisy[1] < 0.7 * calm[1]);
+  for (const double least : loud) CHECK(least == doctest::Approx(share(Bias(airframe).settings().longest_by_noise_s)));
+}
+
+TEST_CASE("it goes on from a logged noise, to the bit, and refuses one that is no number") {
+  const BiasSettings<double> quick = quick_where_told(BiasSettings<double>{});
+  Bias flown(airframe, quick), replayed(airframe, quick);
+  const auto next = [](Bias& bias, int i) {
+    const double now = 0.05 * ((i * 7) % 11 - 5);
+    static_cast<void>(bias.learn({now, now, -now, now}, {10 * now, now, 0}, period_s));
+  };
+  for (int i = 0; i < 50; ++i) next(flown, i);
+  replayed.resume(flown.sums(), flown.across_m_s2(), flown.noise(), flown.waited_s(), flown.status());
+  replayed.resume({}, none, {no_number, 0}, 0, Status::ok);
+  replayed.resume({}, none, {0, infinity}, 0, Status::ok);
+  for (int i = 50; i < 100; ++i) {
+    next(flown, i);
+    next(replayed, i);
+    REQUIRE(replayed.sums() == flown.sums());
+    REQUIRE(replayed.across_m_s2() == flown.across_m_s2());
+  }
 }
 
 TEST_CASE("the most that it changes a command: of an X a quarter of the bounds' sum") {
-  for (const double most : largest_bias(airframe)) CHECK(most == doctest::Approx(0.25 * (0.8 + 3 * 0.4)));
+  for (const double most : largest_bias(airframe)) CHECK(most == doctest::Approx(0.25 * (1.2 + 3 * 0.4)));
   BiasSettings<double> bounded;
   bounded.most = {0.1, 0, 0.2, 0};
   for (const double most : largest_bias(airframe, bounded)) CHECK(most == doctest::Approx(0.075));
@@ -170,7 +222,7 @@ TEST_CASE("it goes on from what was logged, within its bounds, and forgets when 
   Bias flown(airframe, settings()), replayed(airframe, settings());
   for (int i = 0; i < 20; ++i) static_cast<void>(flown.learn({0.3, -0.1, 0.02, 0}, {1, 2, 0}, period_s));
   flown.wait(0.3);
-  replayed.resume(flown.sums(), flown.across_m_s2(), flown.waited_s(), flown.status());
+  replayed.resume(flown.sums(), flown.across_m_s2(), flown.noise(), flown.waited_s(), flown.status());
   for (int i = 0; i < 20; ++i) {
     flown.wait(0.05);
     replayed.wait(0.05);
@@ -178,9 +230,9 @@ TEST_CASE("it goes on from what was logged, within its bounds, and forgets when 
     CHECK(replayed.across_m_s2() == flown.across_m_s2());
   }
   const SignedSums<double> before = replayed.sums();
-  replayed.resume({no_number, 0, 0, 0}, none, 0, Status::ok);
-  replayed.resume({0, 0, 0, 0}, {no_number, 0, 0}, 0, Status::ok);
-  replayed.resume({0, 0, 0, 0}, none, no_number, Status::ok);
+  replayed.resume({no_number, 0, 0, 0}, none, {}, 0, Status::ok);
+  replayed.resume({0, 0, 0, 0}, {no_number, 0, 0}, {}, 0, Status::ok);
+  replayed.resume({0, 0, 0, 0}, none, {}, no_number, Status::ok);
   CHECK(replayed.sums() == before);
   replayed.reset();
   CHECK(replayed.sums() == SignedSums<double>{});

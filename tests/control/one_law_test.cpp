@@ -45,9 +45,10 @@ struct Both {
   autopilot::StepReport report;
   Status status = Status::ok;
 
-  static autopilot::CoreSettings settings() {
+  static autopilot::CoreSettings settings(float delay_s) {
     autopilot::CoreSettings result;
     result.lowest_command = 0;  // a loop's rotors may stand still
+    result.state_delay_s = delay_s;
     return result;
   }
   static View opened(const test::BlockBytes& block) {
@@ -55,17 +56,23 @@ struct Both {
     REQUIRE(View::open(block.data(), block.size(), view) == Status::ok);
     return view;
   }
-  static Learning learning(const View& view, const Core::Vehicle& vehicle) {
+  static Learning learning(const View& view, const Core::Vehicle& vehicle, float delay_s) {
     const Airframe<float>& airframe = vehicle.airframe();
-    return {Network({view, {}}), airframe, bias_settings<StructuredQuadModel>(),
-            FlownMotion<float>({25'000, airframe.rise_time_constant_s(0), 0.0f}), Analytic{Core::Analytic(vehicle)}};
+    BiasSettings<float> bias = bias_settings<StructuredQuadModel>();
+    const float across_s = bias.across_time_constant_s;
+    if (delay_s > 0) bias = quick_where_told(bias);
+    bias.across_time_constant_s = across_s;
+    return {Network({view, {}}), airframe, bias,
+            FlownMotion<float>({25'000, airframe.rise_time_constant_s(0), delay_s}), Analytic{Core::Analytic(vehicle)}};
   }
-  Both()
+  /// `delay_s`: of the states; told, the bias is quick and follows the noise.
+  explicit Both(float delay_s = 0)
       : view(opened(block)),
-        core(settings()),
+        core(settings(delay_s)),
         loop(core.vehicle().airframe(),
-             autopilot::detail::outer_loop(settings(), core.vehicle().airframe(), core.vehicle().site().gravity_m_s2),
-             learning(view, core.vehicle())) {
+             autopilot::detail::outer_loop(settings(delay_s), core.vehicle().airframe(),
+                                           core.vehicle().site().gravity_m_s2),
+             learning(view, core.vehicle(), delay_s)) {
     REQUIRE(core.offer_model(block.data(), block.size()) == Status::ok);
   }
 
@@ -89,6 +96,8 @@ struct Both {
   static void check_same(const MotionBias<float>& one, const MotionBias<float>& other) {
     REQUIRE(one.sums() == other.sums());
     REQUIRE(one.across_m_s2() == other.across_m_s2());
+    REQUIRE(one.noise().roll_pitch <= other.noise().roll_pitch);
+    REQUIRE(one.noise().roll_pitch >= other.noise().roll_pitch);
     REQUIRE(one.status() == other.status());
     REQUIRE(one.waited_s() <= other.waited_s());
     REQUIRE(one.waited_s() >= other.waited_s());
@@ -135,7 +144,10 @@ TEST_CASE(
   const Vehicle light(loaded, paper_site<double>(), {}, {});
   loaded.mass_kg *= 1.2;
   const Vehicle heavy(loaded, paper_site<double>(), {}, {});
-  Both both;
+  float delay_s = 0;
+  SUBCASE("slow, of a delay that is not told") {}
+  SUBCASE("quick, of one that is") { delay_s = 0.004f; }
+  Both both(delay_s);
   both.core.situation({true, false});
   FigureEight<double> eight;
   eight.center_m = {0, 0, -20};

@@ -33,7 +33,12 @@ struct PolicyParts {
       slower.time_constants_s[i] = 0.05 / gains.learning;
     }
     bias.across_time_constant_s /= gains.learning;
+    bias.roll_pitch_by_noise_s /= gains.learning;
+    bias.across_by_noise_s3_m /= gains.learning;
     at_once.across_time_constant_s = 0;
+    for (pinnquad::BiasSettings<double>* plain : {&at_once, &slower}) {
+      plain->roll_pitch_by_noise_s = plain->across_by_noise_s3_m = 0;
+    }
     slower.across_time_constant_s = 0.05 / gains.learning;
   }
 
@@ -41,7 +46,7 @@ struct PolicyParts {
   auto adaptive(const Inverse& inverse, const Reserve&... reserve) const {
     using Motion = pinnquad::FlownMotion<double>;
     return pinnquad::AdaptiveInverse<double, Inverse, Motion, Reserve...>(
-        inverse, known.vehicle.airframe(), bias, Motion({25'000, lag_s, known.delay_s}), reserve...);
+        inverse, known.vehicle.airframe(), bias, Motion({pinnquad::quick_period_us, lag_s, known.delay_s}), reserve...);
   }
   template <class Inverse, class... Reserve>
   auto incremental(const pinnquad::BiasSettings<double>& settings, const Inverse& inverse,

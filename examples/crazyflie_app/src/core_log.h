@@ -32,6 +32,9 @@
   MANY(4, float, bias_sums)                   \
   MANY(4, float, analytic_bias_sums)          \
   MANY(3, float, bias_across_m_s2)            \
+  ONE(float, bias_noise)                      \
+  ONE(float, analytic_bias_noise)             \
+  ONE(float, bias_across_noise_m_s2)          \
   ONE(float, bias_waited_s)                   \
   ONE(float, analytic_bias_waited_s)          \
   ONE(float, lift)                            \

@@ -42,10 +42,10 @@ class FlownMotion {
   /// period does not count, nor one that repeats the one before to the bit, unless it is 0, a vehicle at rest: a sensor
   /// that is late or frozen has none.
   void velocity(std::uint64_t time_us, const Vector3<Scalar>& m_s) noexcept {
-    take(time_us, m_s, velocity_m_s_, now_.has_velocity);
+    take(time_us, m_s, velocity_m_s_, now_.has_velocity, velocity_of_);
   }
   void body_rates(std::uint64_t time_us, const Vector3<Scalar>& rad_s) noexcept {
-    take(time_us, rad_s, rates_rad_s_, now_.has_rates);
+    take(time_us, rad_s, rates_rad_s_, now_.has_rates, rates_of_);
   }
 
   /// Drops the open periods: other commands flew, or the estimator was reset.
@@ -68,6 +68,8 @@ class FlownMotion {
       before_ = now_;
       now_ = {};
       number_ = number;
+      now_.has_velocity = velocity_of_ == number;
+      now_.has_rates = rates_of_ == number;
       now_.whole = follows && now_us - number * settings_.period_us <= longest_tick_us();
     }
     if (follows) weigh(now_us, Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_), state, commands);
@@ -122,10 +124,14 @@ class FlownMotion {
     Scalar weight() const noexcept { return rising.weight + falling.weight; }
   };
 
-  void take(std::uint64_t time_us, const Vector3<Scalar>& value, Vector3<Scalar>& before, bool& has) noexcept {
+  /// `of`: the period of the last one. A sample comes before the tick that opens its period.
+  void take(std::uint64_t time_us, const Vector3<Scalar>& value, Vector3<Scalar>& before, bool& has,
+            std::uint64_t& of) noexcept {
     const bool repeated = value == before && !value.isZero(Scalar(0));
     before = value;
-    if (!repeated && time_us / settings_.period_us == number_) has = true;
+    if (repeated) return;
+    of = time_us / settings_.period_us;
+    if (of == number_) has = true;
   }
 
   void weigh(std::uint64_t now_us, Scalar step_s, const State<Scalar>& state,
@@ -166,6 +172,7 @@ class FlownMotion {
   Scalar period_s_;
   std::uint64_t before_us_ = 0;
   std::uint64_t number_ = 0;  ///< of the period
+  std::uint64_t velocity_of_ = 0, rates_of_ = 0;
   Period before_, now_;
   RotorFollower<Scalar> rotors_;
   Vector3<Scalar> velocity_m_s_ = Vector3<Scalar>::Zero(), rates_rad_s_ = Vector3<Scalar>::Zero();  ///< came last

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "pinnquad/core/finite.hpp"
@@ -25,11 +26,23 @@ using SignedSums = std::array<Scalar, 4>;
 template <class Scalar>
 struct BiasSettings {
   SignedSums<Scalar> time_constants_s{Scalar(0.2), Scalar(0.45), Scalar(0.45), Scalar(0.45)};
-  SignedSums<Scalar> most{Scalar(0.8), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way; 0: no bias
+  SignedSums<Scalar> most{Scalar(1.2), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way; 0: no bias
   Scalar across_time_constant_s = Scalar(0.2);
   Scalar most_across_m_s2 = Scalar(3);  ///< its length; 0: none
-  Scalar hold_s = Scalar(0.5);          ///< without a residual it stays this long, then fades
-  Scalar fade_s = Scalar(2);            ///< time constant of fading
+  // noise makes time constants longer: at least so many s for each unit of BiasNoise, up to longest_by_noise_s; 0: none
+  Scalar roll_pitch_by_noise_s = Scalar(0);
+  Scalar across_by_noise_s3_m = Scalar(0);
+  static constexpr Scalar longest_by_noise_s = Scalar(0.1);
+  Scalar hold_s = Scalar(0.5);  ///< without a residual it stays this long, then fades
+  Scalar fade_s = Scalar(2);    ///< time constant of fading
+};
+
+/// The innovations' mean lengths over a second: what is left of a residual beside its bias is mostly noise, and, where
+/// the loop swings, the swing.
+template <class Scalar>
+struct BiasNoise {
+  Scalar roll_pitch{0};   ///< of the two sums' residuals, |roll| + |pitch|
+  Scalar across_m_s2{0};  ///< of the acceleration across the thrust, |x| + |y| + |z|
 };
 
 namespace detail {
@@ -61,15 +74,23 @@ constexpr BiasSettings<Scalar> bias_settings(const ModelFacts& facts) noexcept {
   return facts.has_bias ? detail::bias_settings_of<Scalar>(facts.bias_time_constants_s) : BiasSettings<Scalar>{};
 }
 
-/// For a loop that is told the rotors' lag and the delay of its states: no time constant above 25 ms, a period of
-/// FlownMotion. Told neither, such a bias follows its own answer (docs/adaptive.md).
+/// Period of the FlownMotion of a loop that has a new state in each tick, where the bias is quick_where_told().
+inline constexpr std::uint32_t quick_period_us = 14'000;
+
+/// For a loop that is told the rotors' lag and the delay of its states: as quick as the noise lets it be. The thrust is
+/// quick whatever the noise, the yaw slow, which costs no position. Told neither, such a bias follows its own answer
+/// (docs/adaptive.md).
 template <class Scalar>
 constexpr BiasSettings<Scalar> quick_where_told(BiasSettings<Scalar> settings) noexcept {
-  constexpr Scalar most_s = Scalar(0.025);
-  for (Scalar& time_s : settings.time_constants_s) {
-    if (time_s > most_s && time_s <= std::numeric_limits<Scalar>::max()) time_s = most_s;
+  constexpr SignedSums<Scalar> most_s{Scalar(0.0025), Scalar(0.0025), Scalar(0.0025), Scalar(0.1)};
+  constexpr Scalar most_across_s = Scalar(0.01);
+  for (std::size_t k = 0; k < most_s.size(); ++k) {
+    Scalar& time_s = settings.time_constants_s[k];
+    if (time_s > most_s[k] && time_s <= std::numeric_limits<Scalar>::max()) time_s = most_s[k];
   }
-  if (settings.across_time_constant_s > most_s) settings.across_time_constant_s = most_s;
+  if (settings.across_time_constant_s > most_across_s) settings.across_time_constant_s = most_across_s;
+  settings.roll_pitch_by_noise_s = Scalar(0.35);
+  settings.across_by_noise_s3_m = Scalar(0.008);
   return settings;
 }
 
@@ -88,7 +109,8 @@ constexpr Commands<Scalar> largest_bias(const Airframe<Scalar>& airframe,
   return largest;
 }
 
-/// b <- b + T / (T + time constant) (r - b) of each signed sum of commands, |b| <= most. T: the period of r.
+/// b <- b + T / (T + c) (r - b) of each signed sum of commands, |b| <= most. T: the period of r. c: the time constant,
+/// for roll, pitch and across longer in noise.
 /// r: the residual, commands flown - commands that the inverse gives for the motion flown.
 /// The same of d, the acceleration across the thrust (NED, m/s^2) that no rotor makes.
 /// A b is added to the inverse's commands; A: the inverse of the signs. A time constant of 0 is the last residual, an
@@ -107,6 +129,8 @@ class MotionBias {
   constexpr void time_constants(const SignedSums<Scalar>& times_s) noexcept { settings_.time_constants_s = times_s; }
   constexpr const SignedSums<Scalar>& sums() const noexcept { return sums_; }
   const Vector3<Scalar>& across_m_s2() const noexcept { return across_; }
+  /// The noise that makes its time constants longer; 0 where the settings let it make none.
+  const BiasNoise<Scalar>& noise() const noexcept { return noise_; }
   /// `ok`: it learns. `limited`: at a bound. `warming_up`: nothing has been learnt yet, or for longer than `hold_s`.
   /// `not_finite`: the last residual was no number.
   Status status() const noexcept { return status_; }
@@ -114,8 +138,7 @@ class MotionBias {
   Scalar share_of_bound() const noexcept {
     Scalar greatest(0);
     for (std::size_t k = 0; k < sums_.size(); ++k) {
-      const Scalar length = sums_[k] < Scalar(0) ? -sums_[k] : sums_[k];
-      if (length > greatest * settings_.most[k]) greatest = length / settings_.most[k];
+      if (length(sums_[k]) > greatest * settings_.most[k]) greatest = length(sums_[k]) / settings_.most[k];
     }
     return greatest;
   }
@@ -149,14 +172,22 @@ class MotionBias {
   Status learn(const SignedSums<Scalar>& residual, const Vector3<Scalar>& across_m_s2, Scalar period_s) noexcept {
     const bool sound = all_finite(residual) && all_finite(across_m_s2) && is_finite(period_s) && period_s > Scalar(0);
     if (!sound) return status_ = Status::not_finite;
+    const Vector3<Scalar> beside = across_m_s2 - across_;
+    if (settings_.roll_pitch_by_noise_s > Scalar(0) || settings_.across_by_noise_s3_m > Scalar(0)) {
+      listen(residual, beside, period_s);
+    }
+    const Scalar roll_pitch_s = by_noise(settings_.roll_pitch_by_noise_s * noise_.roll_pitch);
     bool bound = false;
     for (std::size_t k = 0; k < sums_.size(); ++k) {
-      bound |= move(k, share(settings_.time_constants_s[k], period_s) * (residual[k] - sums_[k]));
+      const Scalar least_s = k == 1 || k == 2 ? roll_pitch_s : Scalar(0), own_s = settings_.time_constants_s[k];
+      bound |= move(k, share(own_s < least_s ? least_s : own_s, period_s) * (residual[k] - sums_[k]));
     }
-    across_ += share(settings_.across_time_constant_s, period_s) * (across_m_s2 - across_);
-    const Scalar length = across_.norm();
-    if (length > settings_.most_across_m_s2) {
-      across_ *= settings_.most_across_m_s2 / length;
+    const Scalar least_s = by_noise(settings_.across_by_noise_s3_m * noise_.across_m_s2);
+    const Scalar own_s = settings_.across_time_constant_s;
+    across_ += share(own_s < least_s ? least_s : own_s, period_s) * beside;
+    const Scalar norm = across_.norm();
+    if (norm > settings_.most_across_m_s2) {
+      across_ *= settings_.most_across_m_s2 / norm;
       bound = true;
     }
     waited_s_ = Scalar(0);
@@ -186,15 +217,18 @@ class MotionBias {
   void reset() noexcept {
     sums_ = {};
     across_.setZero();
+    noise_ = {};
     waited_s_ = Scalar(0);
     status_ = Status::warming_up;
   }
   /// Goes on from what was logged.
-  void resume(const SignedSums<Scalar>& sums, const Vector3<Scalar>& across_m_s2, Scalar waited_s,
-              Status status) noexcept {
+  void resume(const SignedSums<Scalar>& sums, const Vector3<Scalar>& across_m_s2, const BiasNoise<Scalar>& noise,
+              Scalar waited_s, Status status) noexcept {
     if (!(all_finite(sums) && all_finite(across_m_s2) && is_finite(waited_s))) return;
+    if (!(is_finite(noise.roll_pitch) && is_finite(noise.across_m_s2))) return;
     sums_ = sums;
     across_ = across_m_s2;
+    noise_ = noise;
     waited_s_ = waited_s;
     status_ = status;
   }
@@ -210,11 +244,25 @@ class MotionBias {
   static Scalar share(Scalar time_constant_s, Scalar period_s) noexcept {
     return period_s / (period_s + time_constant_s);
   }
+  static Scalar by_noise(Scalar time_s) noexcept {
+    return time_s < BiasSettings<Scalar>::longest_by_noise_s ? time_s : BiasSettings<Scalar>::longest_by_noise_s;
+  }
+  static Scalar length(Scalar value) noexcept { return value < Scalar(0) ? -value : value; }
+
+  /// Slowly: a time constant that changes from motion to motion lets through what cancels from one to the next.
+  void listen(const SignedSums<Scalar>& residual, const Vector3<Scalar>& beside, Scalar period_s) noexcept {
+    const Scalar by = share(Scalar(1), period_s);
+    const Scalar roll_pitch = length(residual[1] - sums_[1]) + length(residual[2] - sums_[2]);
+    noise_.roll_pitch += by * (roll_pitch - noise_.roll_pitch);
+    const Scalar across = length(beside[0]) + length(beside[1]) + length(beside[2]);
+    noise_.across_m_s2 += by * (across - noise_.across_m_s2);
+  }
 
   BiasSettings<Scalar> settings_;
   detail::SignedMix<Scalar> mix_;
   SignedSums<Scalar> sums_{};
   Vector3<Scalar> across_ = Vector3<Scalar>::Zero();
+  BiasNoise<Scalar> noise_{};
   Scalar waited_s_{0};
   Status status_{Status::warming_up};
 };

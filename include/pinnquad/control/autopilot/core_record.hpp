@@ -18,7 +18,8 @@ namespace pinnquad::autopilot {
 struct CoreRecord {
   static constexpr const char* topic = "pinnquad_record";
   /// Fields that earlier logs lack.
-  static constexpr std::array<const char*, 2> added = {"voltage_us", "battery_voltage"};
+  static constexpr std::array<const char*, 5> added = {"voltage_us", "battery_voltage", "bias_noise",
+                                                       "analytic_bias_noise", "bias_across_noise_m_s2"};
   /// A field of the cores before, whose bias was an acceleration: this one does not answer as they did.
   static constexpr const char* removed = "bias_m_s2";
 
@@ -45,7 +46,10 @@ struct CoreRecord {
   float bias_sums[4]{};           ///< of the network: MotionBias::sums(), as the tick reckoned with, as all of these
   float analytic_bias_sums[4]{};  ///< of the analytic inverse
   float bias_across_m_s2[3]{};    ///< NED, of both
-  float bias_waited_s{0};         ///< time in which nothing could be learnt
+  float bias_noise{0};            ///< BiasNoise of roll and pitch, of the network
+  float analytic_bias_noise{0};   ///< of the analytic inverse
+  float bias_across_noise_m_s2{0};
+  float bias_waited_s{0};  ///< time in which nothing could be learnt
   float analytic_bias_waited_s{0};
   float jump_position_m[3]{};  ///< step of the estimator before this tick, NED; 0: none
   float jump_velocity_m_s[3]{};
@@ -94,6 +98,9 @@ struct CoreRecord {
     visit("bias_sums", "1", self.bias_sums);
     visit("analytic_bias_sums", "1", self.analytic_bias_sums);
     visit("bias_across_m_s2", "m/s^2", self.bias_across_m_s2);
+    visit("bias_noise", "1", self.bias_noise);
+    visit("analytic_bias_noise", "1", self.analytic_bias_noise);
+    visit("bias_across_noise_m_s2", "m/s^2", self.bias_across_noise_m_s2);
     visit("bias_waited_s", "s", self.bias_waited_s);
     visit("analytic_bias_waited_s", "s", self.analytic_bias_waited_s);
     visit("jump_position_m", "m", self.jump_position_m);
@@ -157,7 +164,8 @@ struct CoreSettings {
   float most_across_m_s2{BiasSettings<float>{}.most_across_m_s2};
   float bias_hold_s{BiasSettings<float>{}.hold_s};
   float bias_fade_s{BiasSettings<float>{}.fade_s};
-  float state_delay_s{0};  ///< by which a state comes late beside the commands; told (above 0), the biases are quick
+  float state_delay_s{
+      0};  ///< by which a state comes late beside the commands; told (above 0), the biases are quick_where_told()
   // effects of the analytic inverse's vehicle
   std::uint32_t effects{0};
   float drag_n_s_m{0};          ///< of LinearDamping

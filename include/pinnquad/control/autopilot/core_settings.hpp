@@ -38,6 +38,7 @@ inline SignedSums<float> bias_time_constants_s(const CoreSettings& settings,
 /// The settings of both biases until a model says time constants of its own.
 inline BiasSettings<float> bias_settings(const CoreSettings& settings) noexcept {
   BiasSettings<float> result;
+  if (settings.state_delay_s > 0) result = quick_where_told(result);
   result.time_constants_s = bias_time_constants_s(settings);
   for (std::size_t k = 0; k < result.most.size(); ++k) result.most[k] = settings.most_bias[k];
   result.across_time_constant_s = settings.across_time_constant_s;

@@ -174,10 +174,8 @@ class NeuralController {
       if (has_output(report.status)) {
         last_commands_ = desaturate(vehicle_.rotors(), answer, range());
         const float lift = take_off_.lift();
-        if (lift < 1.0f) {
-          const float idle = settings_.lowest_command;
-          for (float& u : last_commands_) u = idle + lift * (u - idle);
-        }
+        const float idle = settings_.lowest_command;
+        for (float& u : last_commands_) u = lift < 1.0f ? idle + lift * (u - idle) : u;
         answered(now_us);
       } else {
         reaction = Reaction::keeps_commands;
@@ -262,9 +260,10 @@ class NeuralController {
   void resume_biases(const CoreRecord& logged) noexcept {
     const auto sums = [](const float(&b)[4]) noexcept { return SignedSums<float>{b[0], b[1], b[2], b[3]}; };
     const Vector3<float> across(logged.bias_across_m_s2);
-    learner_.own().resume(sums(logged.bias_sums), across, logged.bias_waited_s,
-                          static_cast<Status>(logged.bias_status));
-    learner_.last().resume(sums(logged.analytic_bias_sums), across, logged.analytic_bias_waited_s,
+    learner_.own().resume(sums(logged.bias_sums), across, {logged.bias_noise, logged.bias_across_noise_m_s2},
+                          logged.bias_waited_s, static_cast<Status>(logged.bias_status));
+    learner_.last().resume(sums(logged.analytic_bias_sums), across,
+                           {logged.analytic_bias_noise, logged.bias_across_noise_m_s2}, logged.analytic_bias_waited_s,
                            static_cast<Status>(logged.analytic_bias_status));
   }
 

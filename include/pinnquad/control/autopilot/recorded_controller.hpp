@@ -120,6 +120,9 @@ class Recorded : public Controller {
       record_.analytic_bias_sums[k] = analytic.sums()[k];
     }
     copy(analytic.across_m_s2(), record_.bias_across_m_s2);
+    record_.bias_noise = own.noise().roll_pitch;
+    record_.analytic_bias_noise = analytic.noise().roll_pitch;
+    record_.bias_across_noise_m_s2 = analytic.noise().across_m_s2;
     record_.bias_waited_s = own.waited_s();
     record_.analytic_bias_waited_s = analytic.waited_s();
     record_.bias_status = static_cast<std::uint8_t>(own.status());
