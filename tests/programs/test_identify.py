@@ -183,7 +183,7 @@ def test_too_short(pinnquad, flown):
 
 
 @pytest.mark.parametrize("words, keyword", [
-    ("", "expected FLIGHTS"), ("a raw.csv", "one dataset"), ("raw.csv", "without a mapping"),
+    ("", "expected FLIGHTS"), ("a raw.csv", "one dataset"), ("raw.csv", "does not tell which"),
     ("--log raw.csv", "identify ... LOGS"),
     ("b.csv --rate 100", "--rate"), ("b.csv --out vehicle.hpp", ".toml"),
     ("b.csv --mass 0", "--mass"), ("nowhere.csv", "nowhere.csv")])

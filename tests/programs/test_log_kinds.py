@@ -299,6 +299,10 @@ def test_torque_in_si(pinnquad):
     shares = [sum(float(row.split(",")[header.index(f"u{i}")]) for i in (1, 2, 3, 4)) for row in rows[1:]]
     assert 0.27 / max(shares) == pytest.approx(0.27 / min(shares), rel=0.1)
     pinnquad.refused("import log.csv --mapping units.toml --out bad", at="units.toml:10:*", keyword="--airframe")
+    write("large.csv", [[*NAMES[:10], "tx", "ty", "tz", "thrust"]],
+          [[*row_at(n)[:10], 0.2 * sin(n), 0.2 * cos(n), 0.02, 15 + sin(n / 50)] for n in range(ROWS)])
+    pinnquad.refused("import large.csv --mapping shares.toml --airframe crazyflie_2_1 --out bad", at="shares.toml:10:*",
+                     keyword="thrust_unit")
     Path("half.toml").write_text(begin + 'torque_unit = "N m"\n')
     pinnquad.refused("import log.csv --mapping half.toml --out bad", keyword="thrust_unit")
 
@@ -340,8 +344,9 @@ def ulog(path, topics, parameters=()):
     for number, (name, columns, values) in enumerate(topics):
         data += message(b"A", struct.pack("<BH", 0, number) + name.encode())
         kinds = "".join("Q" if column.startswith("timestamp") else "d" for column in columns)
-        rows += [(stamp, struct.pack("<HQ" + kinds, number, stamp, *cells)) for stamp, cells in values]
-    data += b"".join(message(b"D", row) for _, row in sorted(rows, key=lambda row: row[0] % 2**40))
+        rows += [(place / len(values), struct.pack("<HQ" + kinds, number, stamp, *cells))
+                 for place, (stamp, cells) in enumerate(values)]  # in the order in which they were written
+    data += b"".join(message(b"D", row) for _, row in sorted(rows))
     Path(path).write_bytes(data)
 
 
@@ -394,12 +399,14 @@ optional = true
 
 @pytest.mark.parametrize("how, warned", [
     ({}, False), ({"sample": lambda stamp: 0}, False), ({"battery": lambda s: 2**63 if s == 5 * 10**6 else s}, True),
-    ({"sample": lambda s: 2**63 if s == 5 * 10**6 else s}, False)])
+    ({"sample": lambda s: 2**63 if s == 5 * 10**6 else s}, False),
+    ({"battery": lambda s: s - 5 * 10**6 if s > 10**7 else s}, "its time begins again")])
 def test_ulog_stamps(pinnquad, how, warned):
     """A sample's time that is 0 or wild is that of its message; a wild message is left out."""
     px4_log("log.ulg", **how)
     said = comes_out(pinnquad, "log.ulg", mapping=PX4, rounding=1e-4)
-    assert ("1 row has a stamp" in said) == warned, said
+    assert ("1 row has a stamp" in said) == (warned is True) and (not isinstance(warned, str) or warned in said), said
+    assert ("battery_voltage" in flight_in("out").read_text().split("\n")[0]) == (not isinstance(warned, str))
 
 
 def test_profile_that_is_set(pinnquad):
@@ -427,3 +434,12 @@ def test_plus_frame(pinnquad):
     assert re.search("a '[+]' frame, u2 right, u3 left, u1 front, u4 rear", said), said
     plain("x.csv")
     assert "frame" not in imported(pinnquad, "x.csv", "--mapping", "table.toml", *LAG, out="x")
+
+
+def test_force_that_was_read_as_said(pinnquad):
+    """A force along +z: the advice is the body that the mapping does not say."""
+    for body, fz, advice in (("frd", -1, "z up (FLU)"), ("flu", 1, "z down (FRD)")):
+        plain("log.csv", change=lambda row: [*row[:9], fz * row[9], *row[10:]])
+        Path("table.toml").write_text(TABLE.replace('"fz"]', f'"fz"]\nbody = "{body}"'))
+        done = pinnquad("import log.csv --mapping table.toml --lag 0.04 --out out", code=(0, 2))
+        assert advice in done.out + done.err, done

@@ -117,7 +117,7 @@ std::optional<std::string> check_attitude(double period_s, const AttitudeConvent
          ", by how it turns with the body rates and where it points the specific force";
 }
 
-std::optional<std::string> check_thrust_direction(const std::vector<double>& specific_force_z_m_s2) {
+std::optional<std::string> check_thrust_direction(const std::vector<double>& specific_force_z_m_s2, bool read_as_flu) {
   constexpr double clearly = 0.3;
   double sum = 0;
   std::size_t count = 0;
@@ -128,8 +128,8 @@ std::optional<std::string> check_thrust_direction(const std::vector<double>& spe
   }
   const double mean = count > 0 ? sum / (static_cast<double>(count) * standard_gravity_m_s2<double>) : 0;
   if (mean < clearly) return std::nullopt;
-  return "the specific force points along +z of the body, which is down: the log's body is x forward, y left, z up "
-         "(FLU), or its accelerometer has the other sign";
+  return std::string("the specific force points along +z of the body, which is down: the log's body is x forward, y ") +
+         (read_as_flu ? "right, z down (FRD)" : "left, z up (FLU)") + ", or its accelerometer has the other sign";
 }
 
 }  // namespace pinnquad::logs

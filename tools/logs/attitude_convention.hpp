@@ -38,6 +38,8 @@ std::optional<std::string> check_attitude(double period_s, const AttitudeConvent
                                           const std::array<const std::vector<double>*, 3>& specific_force_m_s2);
 
 /// Rotors push along -z of FRD: a mean specific force along +z is that of another body frame. number: the mean in g.
-std::optional<std::string> check_thrust_direction(const std::vector<double>& specific_force_z_m_s2);
+/// `read_as_flu`: the mapping's body, which a finding does not advise again.
+std::optional<std::string> check_thrust_direction(const std::vector<double>& specific_force_z_m_s2,
+                                                  bool read_as_flu = false);
 
 }  // namespace pinnquad::logs

@@ -334,7 +334,7 @@ class Reader {
       case 'P': complete_main(letter, place); break;
       case 'H':
         home_ = next_home_;
-        has_home_ = true;
+        has_home_ = !home_.empty();
         break;
       case 'G': complete_gps(place); break;
       case 'S': row(slow_, slow_.last, last_time_, place); break;
@@ -389,6 +389,7 @@ class Reader {
   }
 
   void complete_gps(std::size_t place) {
+    if (gps_.last.empty()) return;  // a letter where no frame is
     const std::vector<Field>& fields = *header_.fields('G');
     const bool needs_home =
         std::any_of(fields.begin(), fields.end(), [](const Field& field) { return field.predictor == home; });

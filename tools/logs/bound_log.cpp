@@ -288,10 +288,12 @@ Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& s
   if (source.quantity == Quantity::torque_and_thrust) {
     if (!source.wrench && are_no_shares(signal.values)) {
       if (!why) return {};
-      throw InputError(mapping.file, source.place.line, source.place.column,
-                       "torques as shares of 1 (in N m? Then [torque_and_thrust] needs torque_unit = \"N m\" and "
-                       "thrust_unit = \"N\", and the import the airframe)",
-                       "none above 0.01 beside a thrust of up to " + number_text(largest(signal.values[3])));
+      throw InputError(
+          mapping.file, source.place.line, source.place.column,
+          "torques and a thrust as shares of 1 (in N m? Then [torque_and_thrust] needs torque_unit = \"N m\" and "
+          "thrust_unit = \"N\", and the import the airframe)",
+          "torques of up to " + number_text(largest_torque(signal.values)) + " beside a thrust of up to " +
+              number_text(largest(signal.values[3])));
     }
     if (source.wrench && !airframe) {
       throw InputError(mapping.file, source.place.line, source.place.column,

@@ -61,7 +61,7 @@ std::vector<bool> longest_chain(const std::vector<double>& time_s, const std::ve
 /// Rows whose time is more than a second off all rows around them that follow each other, or hours behind all others:
 /// not among `rows` afterwards where they are few.
 void leave_out_wild(const std::vector<double>& time_s, std::vector<std::size_t>& rows, ClockReport& report) {
-  constexpr std::size_t most_percent = 1, most_at_end = 2;
+  constexpr std::size_t most_at_end = 2;
   constexpr double hours_s = 3 * 3600;
   const auto at = [&](std::size_t i) { return time_s[rows[i]]; };
   std::vector<bool> in(rows.size(), true);
@@ -84,7 +84,8 @@ void leave_out_wild(const std::vector<double>& time_s, std::vector<std::size_t>&
     (in[i] || near ? left : wild).push_back(rows[i]);
     if (in[i]) before = at(i);
   }
-  if (wild.empty() || wild.size() * 100 > std::max<std::size_t>(100, most_percent * rows.size())) return;
+  const std::size_t few = std::min(rows.size() / 10, std::max<std::size_t>(3, rows.size() / 100));
+  if (wild.empty() || wild.size() > std::max<std::size_t>(1, few)) return;
   report.wild = wild.size();
   report.first_wild_s = time_s[wild.front()];
   rows = std::move(left);

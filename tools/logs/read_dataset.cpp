@@ -197,9 +197,10 @@ class Import {
     if (finding) warn(of + ": " + *finding);
   }
 
-  void count_topics(const BoundLog& bound, const std::string& name) {
-    std::vector<const LogTopic*> counted;
-    const auto count = [&](const Signal& signal) {
+  /// Optional topics whose clock begins again are none afterwards.
+  void count_topics(BoundLog& bound, const std::string& name) {
+    std::vector<const LogTopic*> counted, restarted;
+    const auto count = [&](Signal& signal) {
       if (!signal.present()) return;
       if (!signal.note.empty()) add(dataset_.notes, signal.note);
       const bool known = std::find(counted.begin(), counted.end(), signal.topic) != counted.end();
@@ -223,10 +224,23 @@ class Import {
              " rows had the time of another; the last of the file stays");
       }
       for (const std::string& finding : check_clock(topic, report)) warn(finding);
-      if (report.restarts > 0) refuse_restart(signal);
+      if (report.restarts > 0) restarted.push_back(signal.topic);
     };
-    for (const Signal& signal : bound.signals) count(signal);
-    for (const BoundExtra& extra : bound.extras) count(extra.signal);
+    for (Signal& signal : bound.signals) count(signal);
+    for (BoundExtra& extra : bound.extras) count(extra.signal);
+    const auto is_left_out = [&](Signal& signal) {
+      if (!signal.present() || std::find(restarted.begin(), restarted.end(), signal.topic) == restarted.end())
+        return false;
+      if (!signal.source->optional) refuse_restart(signal);
+      warn(name + ", " + topic_words(signal.topic->name, signal.topic->instance) +
+           ": left out, for its time begins again");
+      signal = {};
+      return true;
+    };
+    for (Signal& signal : bound.signals) is_left_out(signal);
+    bound.extras.erase(std::remove_if(bound.extras.begin(), bound.extras.end(),
+                                      [&](BoundExtra& extra) { return is_left_out(extra.signal); }),
+                       bound.extras.end());
   }
 
   /// Two recordings in one table would be mixed by sorting.
@@ -361,7 +375,8 @@ class Import {
       const auto& q = rows.attitude;
       const auto& w = rows.body_rates;
       const auto& f = rows.specific_force;
-      warn(name, check_thrust_direction(f[2]));
+      const Signal& force = bound.of(Quantity::specific_force);
+      warn(name, check_thrust_direction(f[2], force.present() && force.source->body == BodyFrame::flu));
       const auto misread = check_attitude(rows.period_s, convention_of(*bound.of(Quantity::attitude).source),
                                           {&q[0], &q[1], &q[2], &q[3]}, {&w[0], &w[1], &w[2]}, {&f[0], &f[1], &f[2]});
       warn(name, misread);

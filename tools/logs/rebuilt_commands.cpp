@@ -49,11 +49,19 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
+double largest_torque(const std::vector<std::vector<double>>& values) {
+  return std::max({largest(values[0]), largest(values[1]), largest(values[2])});
+}
+
 bool are_no_shares(const std::vector<std::vector<double>>& values) {
-  constexpr double least_torque = 0.01, least_thrust = 0.05;
+  constexpr double least_torque = 0.01, least_thrust = 0.05, most_thrust = 1.05;
   constexpr std::size_t fewest_rows = 64;
-  const double torque = std::max({largest(values[0]), largest(values[1]), largest(values[2])});
-  return values[3].size() >= fewest_rows && torque < least_torque && largest(values[3]) > least_thrust;
+  const std::vector<double>& thrust = values[3];
+  const auto above =
+      std::count_if(thrust.begin(), thrust.end(), [](double value) { return std::abs(value) > most_thrust; });
+  if (thrust.size() < fewest_rows) return false;
+  return (largest_torque(values) < least_torque && largest(thrust) > least_thrust) ||
+         2 * static_cast<std::size_t>(above) > thrust.size();
 }
 
 void rebuild_commands(const Source& source, const std::optional<NamedAirframe>& airframe,

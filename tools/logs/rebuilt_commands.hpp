@@ -15,10 +15,12 @@ namespace pinnquad::logs {
 void rebuild_commands(const Source& source, const std::optional<NamedAirframe>& airframe,
                       std::vector<std::vector<double>>& values);
 
-/// Torques that never reach 1 % beside a thrust: no controller that flies asks for so little.
+/// Torques that never reach 1 % beside a thrust: no controller that flies asks for so little. Or a thrust that is above
+/// 1 in half of the rows.
 bool are_no_shares(const std::vector<std::vector<double>>& values);
 
 /// The size of the largest number; 0 where there is none.
 double largest(const std::vector<double>& values);
+double largest_torque(const std::vector<std::vector<double>>& values);
 
 }  // namespace pinnquad::logs

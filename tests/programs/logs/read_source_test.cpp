@@ -49,7 +49,8 @@ TEST_CASE("a log of PX4 becomes the flight that was logged") {
   const TemporaryFolder folder;
   const std::string log = folder.write("flight.ulg", pinnquad_test::synthetic_ulog());
   CHECK(kind_of_source(log) == SourceKind::logs);
-  CHECK(refusal({log}).find("flight.ulg: expected a flight, a dataset, or a mapping of its columns (arpl, ") !=
+  CHECK(read_source({log}).taken == std::vector<std::string>{"mapping px4 taken: a ULog file with PX4's topics"});
+  CHECK(refusal({folder.write("other.csv", "a,b\n1,2\n")}).find("found a log that does not tell which") !=
         std::string::npos);
   LogSettings settings;
   settings.mapping = "px4";
