@@ -33,7 +33,7 @@ awk -v out="$parts" -v name="$document" -f "$here/extract.awk" "$path" || faults
 # (demo_out, study) is not linked: a block would write into it.
 tree=$work/tree
 mkdir -p "$tree/build"
-for entry in bench cmake docs examples include scripts tests tools CMakeLists.txt CMakePresets.json CHANGELOG.md CONTRIBUTING.md LICENSE README.md; do
+for entry in bench cmake docs examples findings include scripts tests tools CMakeLists.txt CMakePresets.json CHANGELOG.md CONTRIBUTING.md LICENSE README.md; do
   ln -s "$root/$entry" "$tree/"
 done
 printf '#include "pinnquad/flight.hpp"\nint main() {}\n' >"$tree/main.cpp" # the reader's own program
