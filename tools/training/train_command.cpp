@@ -2,7 +2,7 @@
 // The options of `train`, and which of them do not go together.
 //   pinnquad train flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
 //   pinnquad train DIR --hold-out-each trajectory --seeds 5 --out OUT
-//   pinnquad train DIR --mapping px4 --hold-out flight7 --out OUT
+//   pinnquad train DIR --hold-out flight7 --out OUT
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -71,7 +71,7 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
       "Examples:\n"
       "  pinnquad train d1.csv --out my_model\n"
       "  pinnquad train a.csv b.csv c.csv --airframe mine.toml --models best_pearson\n"
-      "  pinnquad train logs --mapping px4 --hold-out flight7 --out my_model\n"
+      "  pinnquad train logs --hold-out flight7 --out my_model\n"
       "  pinnquad train my_logs --hold-out-each trajectory --out my_model\n"
       "More of each option: docs/train.md, docs/log_training.md.\n"
       "Exit codes: 0; 1 nothing exported; 2 bad input or a file that can't be read or written;\n"
