@@ -100,7 +100,7 @@ class Reader {
     Numbers last;
   };
 
-  /// What a letter's frame did: its end, and whether it makes sense so far.
+  /// The end of a decoded frame.
   struct Outcome {
     std::size_t end = 0;
     bool cut = false;  ///< the log ended within it

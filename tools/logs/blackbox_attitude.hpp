@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An attitude for logs that hold none: the gyroscope turns it, and what the accelerometer shows pulls it slowly upright,
+// An attitude for logs that hold none: the gyroscope turns it, and the accelerometer pulls it slowly upright,
 // since a vehicle that goes nowhere for ever has a specific force of -g on average. Good for tilt to a few degrees;
 // heading counts from where the log began, and drifts.
 #pragma once

@@ -79,6 +79,7 @@ class HeaderLines {
     if (letters.find(letter) == std::string_view::npos) return;
     const std::vector<std::string_view> parts = parts_of(value, ',');
     std::vector<Field>& own = header_.frames[letter];
+    if (what == "name" && letter == 'P') return;  // they are those of I
     if (what == "name") {
       if (parts.empty() || parts.size() > most_fields) {
         refuse("1 to 512 fields of a frame " + std::string(1, letter), std::to_string(parts.size()));

@@ -15,7 +15,7 @@ namespace pinnquad::logs::blackbox {
 /// The first line of every flight's log; a file of several flights has it several times.
 inline constexpr std::string_view magic = "H Product:Blackbox flight data recorder by Nicholas Sherlock\n";
 
-/// What is added to a field's number: the number in a header's "Field X predictor".
+/// The number added to a field's number: the number in a header's "Field X predictor".
 enum Predictor : int {
   zero = 0,
   previous = 1,

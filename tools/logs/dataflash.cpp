@@ -27,7 +27,7 @@ constexpr std::string_view head{"\xa3\x95", 2};
 constexpr std::size_t head_size = 3;  ///< and the message's type
 constexpr unsigned char format_type = 0x80;
 constexpr std::size_t format_size = 89;
-/// What every such log begins with: the format of formats.
+/// The begin of every such log: the format of formats.
 constexpr std::string_view magic{
     "\xa3\x95\x80\x80\x59"
     "FMT",
@@ -35,7 +35,7 @@ constexpr std::string_view magic{
 
 enum class Kind { number, half, text, none };
 
-/// What a letter of a format stands for.
+/// The meaning of a letter of a format.
 struct Letter {
   char letter;
   std::size_t size;

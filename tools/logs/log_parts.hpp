@@ -28,8 +28,9 @@ struct LogPlace {
 /// A file that a vehicle's logger wrote, by its content: no table.
 bool is_vehicles_log(const std::string& path);
 
-/// Files as they are, each flight of a blackbox log; of a folder its logs by their content, or its CSV tables where the mapping says which column is their clock,
-/// or the logs that ulog2csv wrote into it. Throws InputError: a folder without.
+/// Files as they are, each flight of a blackbox log; of a folder its logs by their content, or its CSV tables where the
+/// mapping says which column is their clock, or the logs that ulog2csv wrote into it. Throws InputError: a folder
+/// without.
 std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock);
 
 /// True for what blackbox_decode writes beside a log, by its name: *.gps.csv, *.gps.gpx, *.headers.csv, *.event.

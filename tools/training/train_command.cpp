@@ -2,7 +2,7 @@
 // The options of `train`, and which of them do not go together.
 //   pinnquad train flight.csv --airframe paper_quadrotor --seeds 5 --epochs 300 --out DIR
 //   pinnquad train DIR --hold-out-each trajectory --seeds 5 --out OUT
-//   pinnquad train DIR --mapping px4 --hold-out flight7 --out OUT
+//   pinnquad train DIR --hold-out flight7 --out OUT
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -70,7 +70,7 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   app.footer(
       "Examples:\n"
       "  pinnquad train a.csv b.csv c.csv --airframe mine.toml --models best_pearson\n"
-      "  pinnquad train logs --mapping px4 --hold-out flight7 --out my_model\n"
+      "  pinnquad train logs --hold-out flight7 --out my_model\n"
       "  pinnquad train my_logs --hold-out-each trajectory --out my_model\n"
       "More: docs/train.md, docs/log_training.md. Exit codes: 0; 1 nothing exported; 2 bad input;\n"
       "130 interrupted: the same command goes on from there.");

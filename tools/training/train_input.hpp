@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -156,7 +157,9 @@ inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options,
   settings.from_s = options.from_s;
   settings.to_s = options.to_s;
   settings.on_progress = on_progress;
-  return pinnquad::logs::read_dataset(options.logs, settings);
+  pinnquad::logs::ImportedDataset dataset = pinnquad::logs::read_dataset(options.logs, settings);
+  for (const std::string& taken : dataset.taken) std::printf("%s\n", taken.c_str());
+  return dataset;
 }
 
 /// The rows that a row's bias may be of. Rows of logs have derivatives that an import's filter made, which look ahead.
