@@ -210,6 +210,7 @@ TEST_CASE(
     "a bias learns at the motors' ends, stays while it may stand, fades in other hands, is forgotten on the ground") {
   CoreSettings little;
   little.highest_command = 0.8f;
+  little.most_bias[0] = 0.8f;
   Standing standing(little);
   const auto& bias = standing.controller.bias();
   const auto steps = [&](int count) {
