@@ -128,7 +128,6 @@ PINNQUAD_BODY Implausible wrong_rate(const MotionBlocks& sums, const AxisMistake
 }
 
 }  // namespace detail
-
 PINNQUAD_BODY std::optional<detail::Implausible> find_turning_mistake(const Flight& flight) {
   using namespace detail;
   constexpr double follows = 0.6, clearly = 0.4;
@@ -205,7 +204,6 @@ PINNQUAD_BODY std::optional<Implausible> wrong_axis(const MotionBlocks& sums, st
                          field_name(first_field, mistake->column),
                      found + ", by how rates and velocity change from row to row"};
 }
-
 PINNQUAD_BODY Vector3<double> in_axes(const Vector3<double>& v, std::size_t kind) {
   switch (kind) {
     case 1: return swap_enu_ned(v);
@@ -255,7 +253,6 @@ struct AccelerationReading {
     return given;
   }
 };
-
 PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const VelocityReading& reading) {
   const auto velocity = [&](std::size_t row) {
     const Quaternion<double> q = from_euler(angles_of(flight[row]));
@@ -353,7 +350,6 @@ PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& fli
 }
 
 }  // namespace detail
-
 PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
   using namespace detail;
   constexpr double unexplained = 0.1, better = 0.25;
