@@ -164,9 +164,10 @@ void weigh(std::vector<LagSeries>& all, double period_s) {
 
 std::string milliseconds(double seconds) { return std::to_string(std::lround(seconds * 1e3)) + " ms"; }
 
-CommandLag command_lag_of(const std::vector<LagSeries>& series, const LagGrid& grid) {
+CommandLag command_lag_of(const std::vector<LagSeries>& series, const LagGrid& grid, double low_pass_Hz) {
   constexpr double least_explained = 0.05, least_sharpness = 0.1, says_as_much = 0.6;
   CommandLag result;
+  result.low_pass_Hz = low_pass_Hz;
   const std::vector<Explained> explained = explained_by_lag(series, grid, result.rows);
   std::array<std::vector<double>, lag_motions> curves;
   bool any_told = false;
@@ -178,6 +179,7 @@ CommandLag command_lag_of(const std::vector<LagSeries>& series, const LagGrid& g
     const auto top = static_cast<std::size_t>(std::lround(peak));
     motion.lag_s = grid.lag_s(peak);
     motion.explained = explained[top][m];
+    motion.low_passed = low_pass_Hz > 0;
     motion.sharpness = sharpness_of(curve, grid.step_s());
     motion.found =
         motion.explained >= least_explained && motion.sharpness >= least_sharpness && top > 0 && top + 1 < curve.size();
@@ -262,11 +264,10 @@ CommandLag estimate_command_lag(const std::vector<Flight>& segments, double peri
   std::vector<LagSeries> series = lag_series(segments);
   weigh(series, period_s);
   const LagGrid grid(period_s, range);
-  CommandLag best = command_lag_of(series, grid);
+  CommandLag best = command_lag_of(series, grid, 0);
   for (const double corner_Hz : {15.0, 8.0}) {
     if (corner_Hz * period_s > 0.4) continue;
-    CommandLag other = command_lag_of(low_passed(series, period_s, corner_Hz), grid);
-    other.low_pass_Hz = corner_Hz;
+    CommandLag other = command_lag_of(low_passed(series, period_s, corner_Hz), grid, corner_Hz);
     if (total_say(other) > total_say(best)) best = other;
   }
   if (!best.found) best.lag_s = 0;

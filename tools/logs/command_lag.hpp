@@ -43,15 +43,17 @@ void take_out(LagMoments& moments, std::size_t k, double least);
 /// Of one motion: angular acceleration about x, y, z, or specific force along z.
 struct MotionLag {
   double lag_s = 0;
-  double explained = 0;  ///< R^2 by the commands at the lag, beyond what a constant and the body rates explain
-  double sharpness = 0;  ///< how much of -log(1 - R^2) is lost 50 ms away on the better side, 0..1
-  bool found = false;    ///< a maximum inside the range, above and sharper than chance
+  double explained = 0;     ///< R^2 by the commands at the lag, beyond what a constant and the body rates explain
+  double sharpness = 0;     ///< how much of -log(1 - R^2) is lost 50 ms away on the better side, 0..1
+  bool found = false;       ///< a maximum inside the range, above and sharper than chance
+  bool low_passed = false;  ///< a filter makes a blow as sharp as it is wide
 
   /// The commands leave too little unexplained to move the maximum, or the maximum is too sharp to be moved; a
   /// sharp one before the command is the controller's answer to a gyro's noise.
   bool told() const noexcept {
-    constexpr double nearly_all = 0.8, sharp = 0.78, least = 0.1;
-    return found && (explained >= nearly_all || (sharpness >= sharp && explained >= least && lag_s > 0));
+    constexpr double nearly_all = 0.8, sharp = 0.78, most = 0.6, least = 0.1, shortest_s = 0.008;
+    const bool enough = explained >= most || (!low_passed && explained >= least);
+    return found && (explained >= nearly_all || (sharpness >= sharp && enough && lag_s > shortest_s));
   }
 };
 

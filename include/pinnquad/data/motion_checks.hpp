@@ -96,8 +96,8 @@ std::optional<detail::Implausible> find_turning_mistake(const Flight& flight);
 
 namespace detail {
 
-/// A vector that was read in axes of a kind, in the axes that it should have been read in: 0 as it stands; 1 ENU for NED;
-/// 2 x forward, y left, z up for FRD; 3 and 4 both, in either order.
+/// A vector that was read in axes of a kind, in the axes that it should have been read in: 0 as it stands; 1 ENU for
+/// NED; 2 x forward, y left, z up for FRD; 3 and 4 both, in either order.
 inline constexpr std::size_t axes_kinds = 5;
 Vector3<double> in_axes(const Vector3<double>& v, std::size_t kind);
 

@@ -61,7 +61,6 @@ PINNQUAD_BODY MotionPair turning_pair(const Flight& flight, const TurningReading
   return {flight.size(), [&](std::size_t row) { return flight[row].time_s; }, change,
           [&](std::size_t row) -> const Vector3<double>& { return flight[row].body_rates_rad_s; }};
 }
-
 /// The sentence of a reading that is not the flight's: angles and rates share the blame for a factor of 57.
 PINNQUAD_BODY Implausible misread_turning(const TurningReading& reading, const std::string& evidence) {
   for (std::size_t angle = 0; angle < 3; ++angle) {
@@ -81,7 +80,6 @@ PINNQUAD_BODY Implausible misread_turning(const TurningReading& reading, const s
   return {0, rates_field, "rates in the body's axes in columns w_x, w_y, w_z",
           turning_rate_texts[reading.rates] + evidence};
 }
-
 /// True where this body rate stands still: a sensor that has stopped fits no attitude, whatever its unit.
 PINNQUAD_BODY bool is_frozen_rate(const Flight& flight, Eigen::Index axis) {
   const double first = flight.front().body_rates_rad_s[axis];
@@ -89,7 +87,6 @@ PINNQUAD_BODY bool is_frozen_rate(const Flight& flight, Eigen::Index axis) {
     return !(sample.body_rates_rad_s[axis] < first) && !(sample.body_rates_rad_s[axis] > first);
   });
 }
-
 /// Rates that have stopped, if one of them should not have.
 PINNQUAD_BODY std::optional<Implausible> find_stopped_rate(const Flight& flight, const MotionBlocks& sums) {
   constexpr double turns = 0.5, least = 1e-3;  // rad over a step
@@ -110,7 +107,6 @@ PINNQUAD_BODY std::optional<Implausible> find_stopped_rate(const Flight& flight,
   return Implausible{0, first, "body rates that change, as the attitude does, in columns " + stopped,
                      "the same in all " + std::to_string(flight.size()) + " rows"};
 }
-
 /// A rate that turns the attitude about another axis, or the other way.
 PINNQUAD_BODY Implausible wrong_rate(const MotionBlocks& sums, const AxisMistake& mistake) {
   const std::size_t field = rates_field + static_cast<std::size_t>(mistake.column);
@@ -128,7 +124,6 @@ PINNQUAD_BODY Implausible wrong_rate(const MotionBlocks& sums, const AxisMistake
 }
 
 }  // namespace detail
-
 PINNQUAD_BODY std::optional<detail::Implausible> find_turning_mistake(const Flight& flight) {
   using namespace detail;
   constexpr double follows = 0.6, clearly = 0.4;
@@ -205,7 +200,6 @@ PINNQUAD_BODY std::optional<Implausible> wrong_axis(const MotionBlocks& sums, st
                          field_name(first_field, mistake->column),
                      found + ", by how rates and velocity change from row to row"};
 }
-
 PINNQUAD_BODY Vector3<double> in_axes(const Vector3<double>& v, std::size_t kind) {
   switch (kind) {
     case 1: return swap_enu_ned(v);
@@ -255,7 +249,6 @@ struct AccelerationReading {
     return given;
   }
 };
-
 PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const VelocityReading& reading) {
   const auto velocity = [&](std::size_t row) {
     const Quaternion<double> q = from_euler(angles_of(flight[row]));
@@ -353,7 +346,6 @@ PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& fli
 }
 
 }  // namespace detail
-
 PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
   using namespace detail;
   constexpr double unexplained = 0.1, better = 0.25;
