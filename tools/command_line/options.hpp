@@ -94,7 +94,8 @@ inline CLI::Option* add_paths(CLI::App& app, const std::string& name, std::vecto
 inline void add_sources(CLI::App& app, std::vector<std::string>& flights, std::string& mapping,
                         const std::string& name = "flights") {
   add_paths(app, name, flights, "FLIGHTS", "recorded flights (CSV), a dataset of import, or logs");
-  app.add_option("--mapping", mapping, "what the columns of logs mean, where their content does not tell: see import")->type_name("NAME|FILE.toml");
+  app.add_option("--mapping", mapping, "what the columns of logs mean, where their content does not tell: see import")
+      ->type_name("NAME|FILE.toml");
 }
 
 /// The part of each log that counts, in a command's LogSettings or options.
