@@ -33,7 +33,8 @@ struct VehicleFinding {
 };
 
 constexpr const char* another_range =
-    ": another range of the commands (least and most of the mapping), or another vehicle";
+    ": another range of the commands (least and most of the mapping), a throttle, whose curve pinnquad identify "
+    "--thrust-curve fit finds (thrust_curve of the mapping), or another vehicle";
 constexpr double told_share = 0.15;  // of a number that is compared
 
 bool is_told(const Estimate& estimate) {

@@ -138,7 +138,8 @@ def table(rows):
              "|" + "---|" * (4 + len(kinds) + len(others))]
     for row in rows:
         lag = "given" if row["lag_s"] is None else f"{1000 * row['lag_s']:.0f}"
-        cells = [row["set"], f"{row['flights']}, {row['rows']}", ", ".join(row["held_out"]), lag]
+        held_out = ", ".join(row["held_out"]) if len(row["held_out"]) < 3 else f"{len(row['held_out'])} flights"
+        cells = [row["set"], f"{row['flights']}, {row['rows']}", held_out, lag]
         for kind in kinds:
             value = f"{row['r2'][kind]:.3f}" if kind in row["r2"] else ""
             cells.append(f"**{value}**" if kind == row["exported"] else value)
