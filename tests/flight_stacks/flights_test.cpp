@@ -106,7 +106,8 @@ void carries_a_payload() {
     if (late) late_error_m = std::max(late_error_m, std::abs(below_m));
   });
   std::printf(
-      "%s, half as heavy again under a model of too low commands: the analytic inverse flies from %.2f s after to %.2f s "
+      "%s, half as heavy again under a model of too low commands: the analytic inverse flies from %.2f s after to %.2f "
+      "s "
       "after the load is "
       "gone; "
       "%.2f m "
