@@ -38,10 +38,10 @@ inline double choosing_error(const FitPlan& plan, const JudgedKind& kind) {
   return pinnquad::summarize(errors).mean;
 }
 
-/// The kinds that may be exported, indices of judged.kinds, best first; none if nothing fits the choice. Errors within a
-/// hundredth of the least decide nothing: of these the best structured model goes first, whose slopes are the vehicle's.
-/// One whose signs are not proven is exported by its name alone. Throws std::invalid_argument for the key of a kind that was not
-/// judged.
+/// The kinds that may be exported, indices of judged.kinds, best first; none if nothing fits the choice. Errors within
+/// half a percent of the least decide nothing: of these the best structured model goes first, whose slopes are the
+/// vehicle's. One whose signs are not proven is exported by its name alone. Throws std::invalid_argument for the key of
+/// a kind that was not judged.
 inline std::vector<std::size_t> kinds_to_export(const FitPlan& plan, const JudgedKinds& judged,
                                                 const std::string& choice) {
   for (std::size_t k = 0; k < judged.kinds.size(); ++k) {
@@ -58,7 +58,7 @@ inline std::vector<std::size_t> kinds_to_export(const FitPlan& plan, const Judge
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return error_of(a) < error_of(b); });
   const auto tied = std::find_if(order.begin(), order.end(), [&](std::size_t k) {
     return std::string_view(judged.kinds[k].kind.key).substr(0, 10) == "structured" &&
-           error_of(k) <= 1.01 * error_of(order.front());
+           error_of(k) <= 1.005 * error_of(order.front());
   });
   if (tied != order.end()) std::rotate(order.begin(), tied, tied + 1);
   return order;
