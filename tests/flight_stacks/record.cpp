@@ -29,7 +29,7 @@ void write(const std::string& path, const Block& block) {
 
 constexpr std::array<Fault, 2> payload = {
     {{0.1, 100, FaultKind::model_low, 0, "a model of too low commands", Reaction::flies},
-     {6, 8, FaultKind::payload, 1.3, "30 % heavier", Reaction::flies}}};
+     {6, 8, FaultKind::payload, 1.5, "half as heavy again", Reaction::flies}}};
 
 template <class Stack>
 std::vector<Fault> faults_of() {

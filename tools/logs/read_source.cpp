@@ -143,6 +143,7 @@ Dataset read_flights(const std::vector<std::string>& paths, std::size_t minimum_
 SourceKind kind_of_source(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::exists(std::filesystem::path(path) / dataset_file_name, ignored)) return SourceKind::dataset;
+  if (!std::filesystem::exists(path, ignored)) return SourceKind::flights;  // its reader says so
   if (kind_of_log(path) != LogKind::csv) return SourceKind::logs;
   const std::vector<std::string> cells = detail::csv_header(path);
   if (cells.empty()) return SourceKind::flights;  // empty, as its reader says

@@ -54,7 +54,7 @@ double largest_torque(const std::vector<std::vector<double>>& values) {
 }
 
 bool are_no_shares(const std::vector<std::vector<double>>& values) {
-  constexpr double least_torque = 0.01, least_thrust = 0.05, most_thrust = 1.05;
+  constexpr double least_torque = 0.0015, least_thrust = 0.05, most_thrust = 1.05;
   constexpr std::size_t fewest_rows = 64;
   const std::vector<double>& thrust = values[3];
   const auto above =

@@ -15,7 +15,7 @@ namespace pinnquad::logs {
 void rebuild_commands(const Source& source, const std::optional<NamedAirframe>& airframe,
                       std::vector<std::vector<double>>& values);
 
-/// Torques that never reach 1 % beside a thrust: no controller that flies asks for so little. Or a thrust that is above
+/// Torques that never reach 0.15 % beside a thrust: PX4 asks for 0.2 % in a calm hover. Or a thrust that is above
 /// 1 in half of the rows.
 bool are_no_shares(const std::vector<std::vector<double>>& values);
 
