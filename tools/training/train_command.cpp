@@ -69,11 +69,10 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   using programs::add_number, programs::add_path;
   app.footer(
       "Examples:\n"
-      "  pinnquad train a.csv b.csv c.csv --airframe mine.toml --models best_pearson\n"
       "  pinnquad train logs --hold-out flight7 --out my_model\n"
       "  pinnquad train my_logs --hold-out-each trajectory --out my_model\n"
-      "More: docs/train.md, docs/log_training.md. Exit codes: 0; 1 nothing exported; 2 bad input;\n"
-      "130 interrupted: the same command goes on from there.");
+      "More: docs/train.md, docs/log_training.md.\n"
+      "Exit codes: 0; 1 nothing exported; 2 bad input; 130 interrupted: it goes on from there.");
   add_flights(app, options);
   app.add_option("--airframe", words.airframe, "what flew: see airframe list")
       ->type_name("NAME|FILE.toml")
