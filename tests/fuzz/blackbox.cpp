@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fuzz/fuzzing.hpp"
+#include "fuzz/log_rules.hpp"
 #include "logs/blackbox.hpp"
 #include "logs/dataflash.hpp"
 #include "pinnquad/io/file_error.hpp"
@@ -18,23 +19,8 @@ namespace {
 
 using pinnquad::logs::FlightLog;
 using pinnquad::logs::LogSelection;
-using pinnquad_test::expect;
 
 pinnquad_test::Tally tally;
-
-void check(const FlightLog& log, std::size_t size) {
-  for (const auto& topic : log.topics) {
-    const std::size_t rows = topic.size();
-    expect(rows > 0, "a topic has a row");
-    expect(topic.place.size() == rows, "every row has a place");
-    expect(std::is_sorted(topic.place.begin(), topic.place.end()), "rows stand in the file's order");
-    expect(topic.place.back() < size, "places are in the file");
-    for (const auto& column : topic.columns) expect(column.values.size() == rows, "columns are as long as the clock");
-    for (const auto& text : topic.texts) expect(text.values.size() == rows, "texts are as long as the clock");
-  }
-  for (const std::string& warning : log.warnings) pinnquad_test::expect_one_line(warning);
-  expect(log.warnings.size() <= 22, "warnings are few");
-}
 
 }  // namespace
 
@@ -48,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (; selection.flight < std::min<std::size_t>(flights, 3); ++selection.flight) {
       const FlightLog log = is_dataflash ? pinnquad::logs::parse_dataflash(bytes, "x.bin", selection)
                                          : pinnquad::logs::parse_blackbox(bytes, "x.bbl", selection);
-      check(log, size);
+      pinnquad_test::expect_sound(log, size);
       ++tally.count[log.topics.empty() ? "no row" : log.warnings.empty() ? "ok" : "with a warning"];
     }
   } catch (const pinnquad::InputError& error) {

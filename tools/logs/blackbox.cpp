@@ -34,7 +34,7 @@ std::int64_t sum(std::int64_t a, std::int64_t b) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
 }
 
-/// Of "158,2047"; none where one of them is no number, or there is one alone.
+/// The two numbers of "158,2047"; none where one of them is no number, or there is one alone.
 std::vector<double> numbers_of(std::string_view text) {
   std::vector<double> numbers;
   for (std::size_t begin = 0, end = 0; end != std::string_view::npos; begin = end + 1) {

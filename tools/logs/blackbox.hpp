@@ -14,7 +14,7 @@
 
 namespace pinnquad::logs {
 
-/// Of a file's first bytes: flash that was read out may have others before the first log.
+/// Whether a file's first bytes hold a blackbox log: flash that was read out may have others before it.
 bool is_blackbox_log(std::string_view begin);
 
 /// The byte at which each flight's log of a file begins.

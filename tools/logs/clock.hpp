@@ -44,7 +44,7 @@ struct CleanClock {
 inline constexpr double restart_step_s = 1.0;
 
 /// Puts a topic's clock right; a few stamps (1 %, or three) more than a second off the rows around them are left out.
-/// Of several rows with one time the last stays (a publisher that corrects itself does so later). Never throws: a topic
+/// The last of several rows with one time stays (a publisher that corrects itself does so later). Never throws: a topic
 /// without one usable row has an empty clock.
 CleanClock clean_clock(const std::vector<double>& time_s);
 

@@ -11,7 +11,7 @@
 
 namespace pinnquad::logs {
 
-/// Of a file's first bytes.
+/// Whether a file begins as a DataFlash log; its first bytes tell.
 bool is_dataflash_log(std::string_view begin);
 
 /// A log that stands in memory; `name` is what messages call it. Bytes that are no message, and messages whose

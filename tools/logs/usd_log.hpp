@@ -10,7 +10,7 @@
 
 namespace pinnquad::logs {
 
-/// Of a file's first bytes.
+/// Whether a file begins as a uSD log; its first bytes tell.
 bool is_usd_log(std::string_view begin);
 
 /// A topic for each kind of event. What is whole of a log that ends early is read, and `warnings` say so. Throws
