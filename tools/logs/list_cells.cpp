@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "logs/csv_head.hpp"
+#include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/io/file_error.hpp"
 
 namespace pinnquad::logs {

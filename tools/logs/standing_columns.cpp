@@ -9,6 +9,8 @@
 
 #include "logs/log_checks.hpp"
 #include "logs/specific_force.hpp"
+#include "pinnquad/data/plausibility.hpp"
+#include "pinnquad/data/row_set.hpp"
 
 namespace pinnquad::logs {
 namespace {
