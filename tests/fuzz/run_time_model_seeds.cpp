@@ -40,6 +40,8 @@ int main(int argument_count, char** arguments) {
                                                                                                              "window");
     write<ModelOf<Network<float, InputSize<16>, Clip, Dense<6>>, PaperFeatures, AccelerationOutputs>>(folder, "six");
     write<ModelOf<MonotonePredictor<Physics, Residual>, Physics, AxisCommandOutputs>>(folder, "monotone");
+    write<ModelOf<Network<float, InputSize<16>, LayerNorm<9>, Dense<8>, Glu<3>, RmsNorm<5>, Dense<4>>, PaperFeatures>>(
+        folder, "norms");
     write<ModelOf<PathBoundedPredictor<Physics, Seeing>, Physics, SignedSumsOn<RigidBodyBase>>>(folder, "paths");
   } catch (const pinnquad::OutputError& error) {
     std::fprintf(stderr, "run_time_model_seeds: %s\n", error.what());

@@ -33,7 +33,7 @@ inline bool has_path_bound(const RunTimeNetwork& network, const RunTimePart& par
     if (i % 2 == 0) {
       if (layer.outputs == 0 || !layer.has_bias) return false;
       widths[i / 2] = layer.outputs;
-    } else if (layer.outputs != 0 || !detail::run_time_activations<double>[layer.activation].slopes_from_0_to_1) {
+    } else if (layer.activation < 0 || !detail::run_time_activations<double>[layer.activation].slopes_from_0_to_1) {
       return false;
     }
   }
