@@ -6,8 +6,13 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "pinnquad/core/rotation.hpp"
+#include "pinnquad/logs/flight_log.hpp"
 
 namespace pinnquad::logs {
 
@@ -63,5 +68,33 @@ class IntegratedAttitude {
   double last_s_ = 0;
   bool begun_ = false;
 };
+
+/// Columns roll, pitch and heading, in degrees, of a gyroscope (deg/s) and a specific force (`g_per_unit` g) along x
+/// forward, y left, z up: roll about x, pitch about y, heading clockwise. None where a column is missing.
+inline void add_integrated_attitude(LogTopic& topic, const std::array<std::string, 3>& gyro_names,
+                                    const std::array<std::string, 3>& force_names, double g_per_unit) {
+  constexpr double degree = 3.14159265358979323846 / 180;
+  std::array<const LogColumn*, 3> gyro{}, force{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    gyro[i] = topic.column(gyro_names[i]);
+    force[i] = topic.column(force_names[i]);
+    if (gyro[i] == nullptr || force[i] == nullptr) return;
+  }
+  IntegratedAttitude attitude;
+  std::array<std::vector<double>, 3> angles;
+  for (std::size_t row = 0; row < topic.size(); ++row) {
+    IntegratedAttitude::Vector w{}, f{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      w[i] = (i == 0 ? degree : -degree) * gyro[i]->values[row];
+      f[i] = (i == 0 ? g_per_unit : -g_per_unit) * force[i]->values[row];
+    }
+    const EulerAngles<double> euler = to_euler(attitude.next(topic.time_s[row], w, f));
+    angles[0].push_back(euler.roll_rad / degree);
+    angles[1].push_back(-euler.pitch_rad / degree);
+    angles[2].push_back(euler.yaw_rad / degree);
+  }
+  constexpr std::array<const char*, 3> names = {"roll", "pitch", "heading"};
+  for (std::size_t i = 0; i < 3; ++i) topic.columns.push_back({names[i], std::move(angles[i]), {}});
+}
 
 }  // namespace pinnquad::logs
