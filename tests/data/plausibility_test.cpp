@@ -336,10 +336,7 @@ TEST_CASE("gyro noise that drowns the motion decides nothing; where some is left
     RecorderErrors errors = noisy_gyro_errors();
     errors.gyro_noise_rad_s = noise_rad_s;
     const NoisyRecorder<std::mt19937_64> recorder(std::mt19937_64(5), errors);
-    const Flight flight =
-        fly(
-            vehicle, AgileFlight::pilot(vehicle, std::mt19937_64(2)), plan, [](const auto&) {}, recorder)
-            .flight;
+    const Flight flight = fly(vehicle, AgileFlight::pilot(vehicle, std::mt19937_64(2)), plan, recorder).flight;
     CHECK(!find_acceleration_mistake(flight));
     CHECK(find_acceleration_mistake(with_accelerations(flight, -unchanged, unchanged)).has_value() ==
           (noise_rad_s < 0.1));

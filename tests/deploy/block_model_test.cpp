@@ -120,13 +120,14 @@ TEST_CASE("a residual that sees the angular acceleration, without a bound of its
   CHECK_FALSE(block_of(Seeing{}).certificate().has_value());
 }
 
-TEST_CASE("commands are affine in outputs that are commands; a rotor's thrust is the square of its speed") {
+TEST_CASE("commands are affine in outputs that are commands or a wrench; a rotor's thrust is the square of its speed") {
   const auto is_affine = [](auto outputs) {
     using Affine = Network<float, InputSize<PaperFeatures::size>, Dense<4>>;
     using Model = test::ModelOf<Affine, PaperFeatures, decltype(outputs)>;
     return BlockModel("drawn.block", test::drawn_block(test::drawn_model<Model>(4))).has_affine_schema();
   };
   CHECK(is_affine(CommandOutputs{}));
+  CHECK(is_affine(WrenchOutputs{}));
   CHECK_FALSE(is_affine(RotorSpeedOutputs{}));
 }
 

@@ -44,8 +44,7 @@ Flight recorded(const std::string& folder, double start_V, std::uint64_t seed) {
                                            quadrotor.site().ground_z_m);
   VoltageRecorder recorder;
   recorder.pack.start_V = start_V;
-  const RecordedFlight flown = fly(
-      quadrotor, pilot, plan, [](const auto&) {}, recorder);
+  const RecordedFlight flown = fly(quadrotor, pilot, plan, recorder);
   const std::string path = folder + "/flight_" + std::to_string(seed) + ".csv";
   write_flight_csv(path, flown.flight);
   Flight flight = read_flight_csv(path, minimum_flight_rows, wanted_columns<Past>());

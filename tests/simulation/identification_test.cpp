@@ -78,8 +78,8 @@ Flight recorded(const DrawnVehicle& drawn, std::mt19937_64& engine, int ticks, d
   errors.attitude_noise_rad = 0.01;
   errors.command_latency_s = latency_s;
   const auto pilot = AgileFlight::pilot(vehicle, std::mt19937_64(engine()));
-  const RecordedFlight flown = fly(
-      vehicle, pilot, plan, [](const auto&) {}, NoisyRecorder<std::mt19937_64>(std::mt19937_64(engine()), errors));
+  const RecordedFlight flown =
+      fly(vehicle, pilot, plan, NoisyRecorder<std::mt19937_64>(std::mt19937_64(engine()), errors));
   REQUIRE(flown.report.end == FlightEnd::completed);
   return flown.flight;
 }
@@ -255,8 +255,7 @@ TEST_CASE("of commands that were filtered before they were logged no lag is told
   errors.gyro_noise_rad_s = 0.02;
   errors.velocity_noise_m_s = 0.03;
   errors.attitude_noise_rad = 0.005;
-  Flight rows = fly(
-                    vehicle, AgileFlight::pilot(vehicle, engine), plan, [](const auto&) {},
+  Flight rows = fly(vehicle, AgileFlight::pilot(vehicle, engine), plan,
                     NoisyRecorder<std::mt19937_64>(std::mt19937_64(5), errors))
                     .flight;
   constexpr double filter_s = 0.1;

@@ -87,9 +87,7 @@ TEST_CASE("without errors the rows are those of the exact recorder") {
   FlightPlan plan;
   plan.samples = 200;
   const Flight exact = fly(quadrotor, pilot(quadrotor, 1), plan).flight;
-  const Flight noisy = fly(
-                           quadrotor, pilot(quadrotor, 1), plan, [](const auto&) {}, Recorder(Engine(9)))
-                           .flight;
+  const Flight noisy = fly(quadrotor, pilot(quadrotor, 1), plan, Recorder(Engine(9))).flight;
   REQUIRE(noisy.size() == exact.size());
   for (std::size_t i = 0; i < exact.size(); ++i) REQUIRE(to_values(noisy[i]) == to_values(exact[i]));
 }
@@ -239,8 +237,7 @@ TEST_CASE("Fig. 2: exact rows correlate above 0.95, the two stated errors bring 
                             {},
                             Recorder(Engine(seed + 100), noisy_gyro_errors()),
                             Recorder(Engine(seed + 200), late_command_errors())};
-    fly(
-        quadrotor, pilot(quadrotor, seed), FlightPlan{}, [](const auto&) {}, together);
+    fly(quadrotor, pilot(quadrotor, seed), FlightPlan{}, together);
     std::array<double, recorders> correlation{};
     for (std::size_t i = 0; i < recorders; ++i) {
       std::vector<double> sums, accelerations;

@@ -58,8 +58,7 @@ TEST_CASE("a recording of every tick, written, read and flown: the same flight, 
   plan.samples = 400;
   const auto pilot = AgileFlight::pilot(vehicle, std::mt19937_64(6));
   StickRecording written;
-  const auto observe_nothing = [](const auto&) {};
-  const Flight first = fly(vehicle, written_down(pilot, written), plan, observe_nothing).flight;
+  const Flight first = fly(vehicle, written_down(pilot, written), plan).flight;
   CHECK(content_hash(first) == content_hash(fly(vehicle, pilot, plan).flight));  // who writes flies as who does not
   REQUIRE(written.size() == 400 * 25);
 
@@ -75,10 +74,8 @@ TEST_CASE("a recording of every 20 ms flies nearly the same") {
   FlightPlan plan = AgileFlight::plan();
   plan.samples = 400;
   StickRecording written;
-  const auto observe_nothing = [](const auto&) {};
   const Flight first =
-      fly(vehicle, written_down(AgileFlight::pilot(vehicle, std::mt19937_64(6)), written, 0.02), plan, observe_nothing)
-          .flight;
+      fly(vehicle, written_down(AgileFlight::pilot(vehicle, std::mt19937_64(6)), written, 0.02), plan).flight;
   CHECK(written.size() == 1000);
   const Flight again = fly(vehicle, RecordedSticks(written), plan).flight;
   constexpr double velocity_m_s = 0.15;  // of up to 8: stick frames between the rows are lost

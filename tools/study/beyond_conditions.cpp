@@ -174,8 +174,7 @@ Flight fly_for_beyond(const programs::StudyFlight& id) {
   // the noise is drawn from a stream of its own: the flight is that of the same seed
   constexpr std::uint64_t noise_stream = 0x9e3779b97f4a7c15u;
   const pinnquad::NoisyRecorder<std::mt19937_64> recorder(std::mt19937_64(id.seed ^ noise_stream), errors);
-  pinnquad::RecordedFlight recorded = pinnquad::fly(
-      vehicle, flight.pilot(vehicle, id.seed, {}), flight.plan, [](const auto&) {}, recorder);
+  pinnquad::RecordedFlight recorded = pinnquad::fly(vehicle, flight.pilot(vehicle, id.seed, {}), flight.plan, recorder);
   require_completed(id, recorded.report);
   return std::move(recorded.flight);
 }

@@ -87,16 +87,16 @@ class RunTimeOutputs {
 
   int size() const noexcept { return size_; }
   bool is_axis_commands() const noexcept { return axis_commands_; }
-  /// True where commands are an affine map of outputs and features: not of rotor speeds, nor where a rotor's curve is
-  /// between.
+  /// True where commands are an affine map of outputs and angular acceleration; `curved`: a rotor's curve is between.
+  /// A schema that is added is none until it stands here: nothing is proven of it.
   bool is_affine(bool curved) const noexcept {
-    bool affine = true;
+    using Always =
+        std::tuple<CommandOutputs, AxisCommandOutputs, ResidualOutputs<RigidBodyBase>, SignedSumsOn<RigidBodyBase>>;
+    using OfThrusts = std::tuple<WrenchOutputs, AccelerationOutputs, ResidualOutputs<LinearizedBase>>;
+    bool affine = place_ == Settings::count;
     visit([&](auto schema) {
-      using Base = typename detail::BaseOf<decltype(schema)>::type;
-      if (std::is_same_v<decltype(schema), RotorSpeedOutputs>) affine = false;
-      constexpr bool reads_acceleration = detail::reads_angular_acceleration<Base>();
-      if (curved && reads_acceleration) affine = false;
-      if (curved && detail::is_among<decltype(schema), std::tuple<WrenchOutputs, AccelerationOutputs>>) affine = false;
+      using Schema = decltype(schema);
+      affine = detail::is_among<Schema, Always> || (!curved && detail::is_among<Schema, OfThrusts>);
     });
     return affine;
   }

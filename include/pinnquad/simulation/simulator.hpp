@@ -264,7 +264,8 @@ inline double tilt_rad(const Quaternion<double>& attitude) noexcept {
 /// Flies and records. `observer(const Simulator<Vehicle, Pilot, Recorder>&)` is called after each row: it sees the true
 /// state, and the row as the last of the recording. A Status that isn't ok, or the ground, ends the flight; the rows up
 /// to there are kept and the report says where.
-template <class Vehicle, class Pilot, class Observer, class Recorder = ExactRecorder>
+template <class Vehicle, class Pilot, class Observer, class Recorder = ExactRecorder,
+          class = std::enable_if_t<!is_recorder<Observer>>>
 RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan, Observer observer,
                    const Recorder& recorder = Recorder{}) {
   Simulator<Vehicle, Pilot, Recorder> simulator(quadrotor, pilot, plan, recorder);
@@ -294,9 +295,11 @@ RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPla
 }
 
 /// The same, with nobody who watches.
-template <class Vehicle, class Pilot>
-RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan = {}) {
-  return fly(quadrotor, pilot, plan, [](const auto&) {});
+template <class Vehicle, class Pilot, class Recorder = ExactRecorder, class = std::enable_if_t<is_recorder<Recorder>>>
+RecordedFlight fly(const Vehicle& quadrotor, const Pilot& pilot, const FlightPlan& plan = {},
+                   const Recorder& recorder = Recorder{}) {
+  return fly(
+      quadrotor, pilot, plan, [](const auto&) {}, recorder);
 }
 
 }  // namespace pinnquad
