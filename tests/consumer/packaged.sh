@@ -13,7 +13,7 @@ mkdir -p "$work/header" "$work/unpacked"
 
 # answer <name> <flag>...
 answer() {
-  "${CXX:-g++}" -std=c++17 -O1 "${@:2}" "$root/examples/quickstart.cpp" -o "$work/$1" && "$work/$1"
+  "${CXX:-g++}" -std=c++17 -O0 -DPINNQUAD_INLINE_AS_COMPILER_LIKES "${@:2}" "$root/examples/quickstart.cpp" -o "$work/$1" && "$work/$1"
 }
 models=$root/examples/models
 expected=$(answer tree "-I$root/include" "-I$models" "-I$eigen")

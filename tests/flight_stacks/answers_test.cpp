@@ -82,8 +82,8 @@ void always_answers(const char* name) {
   CAPTURE(name);
   for (const bool far : {false, true}) {
     CAPTURE(far);
-    CHECK(unanswered<Model, FlownAirframe>(sound_block<Model>(), far, 20'000) == 0);
-    CHECK(unanswered<Model, FlownAirframe>(narrow_block<Model>(), far, 20'000) == 0);  // the analytic inverse alone
+    CHECK(unanswered<Model, FlownAirframe>(sound_block<Model>(), far, 5'000) == 0);
+    CHECK(unanswered<Model, FlownAirframe>(narrow_block<Model>(), far, 5'000) == 0);  // the analytic inverse alone
   }
 }
 
@@ -118,7 +118,7 @@ TEST_CASE("fresh, finite inputs always get an answer within the output limits") 
 
 TEST_CASE("jumping and silent set points at 8 m/s with a weak motor: no tick without an answer") {
   for (const bool by_analytic : {false, true}) {
-    for (const double jump_m : {0.0, 2.0, 5.0}) {
+    for (const double jump_m : {0.0, 5.0}) {
       for (const bool silent : {false, true}) {
         CAPTURE(by_analytic);
         CAPTURE(jump_m);

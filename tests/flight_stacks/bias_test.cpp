@@ -53,13 +53,11 @@ void carries(const char* what, const Target& target, FaultKind kind, double valu
 
 template <class Stack>
 void carries_all(const Eight& eight, double rotor) {
-  carries<Stack>("hover with 20 % of payload", hover, FaultKind::payload, 1.2, 0, 0.02, 0.1);
   carries<Stack>("hover, 20 % picked up", hover, FaultKind::payload, 1.2, 6, 0.02, 0.3);
   carries<Stack>("hover, a weak rotor", hover, FaultKind::bent_rotor, rotor, 6, 0.02, 0.3);
   carries<Stack>("hover, a battery a fifth too weak", hover, FaultKind::weak_battery, 0.8, 6, 0.02, 0.3);
   carries<Stack>("hover, wind 3 m/s", hover, FaultKind::wind, 3, 6, 0.02, 0.3);
   carries<Stack>("eight with 20 % of payload", eight, FaultKind::payload, 1.2, 0, 0.15, 0.3);
-  carries<Stack>("eight, a weak rotor", eight, FaultKind::bent_rotor, rotor, 0, 0.15, 0.3);
 }
 
 /// A hover with a payload, and samples of which nothing can be learnt for a while from 10 s on.

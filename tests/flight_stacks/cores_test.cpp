@@ -270,7 +270,7 @@ TEST_CASE("whatever comes in, what goes out is a command within its limits") {
   Crazyflie cf;
   const pinnquad::autopilot::CoreSettings limits;
   int px4_answers = 0, cf_answers = 0;
-  for (std::uint64_t tick = 0; tick < 100'000; ++tick) {
+  for (std::uint64_t tick = 0; tick < 30'000; ++tick) {
     for (float& v : px4.rates.xyz) v = hostile(0);
     px4.attitude.q[0] = engine() % 64 == 0 ? hostile(1) : 1;
     for (float* v : {&px4.local.x, &px4.local.y, &px4.local.z, &px4.local.vx, &px4.local.vy, &px4.local.vz})
@@ -301,9 +301,9 @@ TEST_CASE("whatever comes in, what goes out is a command within its limits") {
       REQUIRE(sound);
     }
   }
-  CHECK(px4_answers > 50'000);
-  CHECK(cf_answers > 50'000);
-  CHECK(px4.status.refused_samples > 10'000);
+  CHECK(px4_answers > 15'000);
+  CHECK(cf_answers > 15'000);
+  CHECK(px4.status.refused_samples > 3'000);
 }
 
 TEST_CASE("another thread changes models while the module flies: each answer is one model's, whole") {

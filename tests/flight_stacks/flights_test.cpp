@@ -142,13 +142,6 @@ TEST_CASE("crazyflie_app flies the Crazyflie through all faults") {
   through_all_faults<CrazyflieStack>("random_places", RandomPlaces(1), 2.5);
 }
 
-TEST_CASE("each module flies the other's airframe through all faults") {
-  through_all_faults<Px4StackOf<CrazyflieModel>>("crazyflie_hover", hover, 0.5);
-  through_all_faults<Px4StackOf<CrazyflieModel>>("crazyflie_eight", Eight(1.5, 6), 3);
-  through_all_faults<CrazyflieStackOf<DemoQuadModel>>("paper_quadrotor_hover", hover, 0.5);
-  through_all_faults<CrazyflieStackOf<DemoQuadModel>>("paper_quadrotor_eight", Eight(4, 9), 6);
-}
-
 TEST_CASE("without faults the network flies, and tracks") {
   calm<Px4Stack>("hover", hover, 0.05, 0.0f);
   calm<Px4Stack>("eight", Eight(4, 9), 0.12, 0.01f);

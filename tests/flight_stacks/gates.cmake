@@ -99,6 +99,9 @@ pinnquad_thorough(flight_stacks.gate.crazyflie_past.host-O2)
 foreach(stack IN ITEMS px4 crazyflie)
   _pinnquad_add_stack_gate("flight_stacks.gate.${stack}.host-O2" "${${stack}_source}" "${CMAKE_CXX_COMPILER}" "${CMAKE_NM}"
     "-O2 ${${stack}_flags}")
+  if(stack STREQUAL "crazyflie") # one core stands for both without --all
+    pinnquad_thorough(flight_stacks.gate.crazyflie.host-O2)
+  endif()
   set(name "flight_stacks.gate.${stack}.cortex_m-Os")
   if(PINNQUAD_ARM_CXX AND PINNQUAD_ARM_NM)
     _pinnquad_add_stack_gate("${name}" "${${stack}_source}" "${PINNQUAD_ARM_CXX}" "${PINNQUAD_ARM_NM}"

@@ -56,14 +56,6 @@ def test_completion(pinnquad, words, become):
     assert subprocess.run(["bash", "-euc", script], capture_output=True, text=True).stdout == become + "\n"
 
 
-def test_completion_of_the_study(study):
-    script = f"""source {SOURCE}/tools/command_line/completion.bash
-        COMP_WORDS=({study} paper --mo) COMP_CWORD=2 COMPREPLY=()
-        _pinnquad
-        echo "${{COMPREPLY[*]}}" """
-    assert subprocess.run(["bash", "-euc", script], capture_output=True, text=True).stdout == "--models\n"
-
-
 def test_completion_has_every_command(pinnquad, commands):
     script = f"""source {SOURCE}/tools/command_line/completion.bash
         COMP_WORDS=({pinnquad} '') COMP_CWORD=1 COMPREPLY=()
@@ -74,14 +66,6 @@ def test_completion_has_every_command(pinnquad, commands):
 
 
 def test_manual_page(commands):
-    check_manual_page(commands)
-
-
-def test_manual_page_of_the_study(study):
-    check_manual_page(commands_of(study))
-
-
-def check_manual_page(commands):
     needed("help2man")
     Program("bash")("", SOURCE / "tools/command_line/manual_page.sh", commands[0][0], "pinnquad.1")
     page = re.sub(r'^(\.SS ".*)', lambda line: line.group(1).replace(r"\-", "-"), Path("pinnquad.1").read_text(), flags=re.M)

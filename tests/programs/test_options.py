@@ -42,11 +42,6 @@ def check_options(commands):
     return tried
 
 
-def test_models_of_the_study(study):
-    study.refused("paper --models", "", "--out", "o", keyword="--models", timeout=20)
-    assert not os.listdir()
-
-
 def test_lag(pinnquad):
     for value in LAGS:
         for command in "import x.csv --mapping px4 --out o", "train x.csv --out o":

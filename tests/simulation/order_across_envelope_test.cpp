@@ -41,7 +41,9 @@ std::vector<Sample> motions(std::size_t every) {
   std::vector<Sample> result;
   for (const double max_speed_m_s : {8.0, 12.0}) {
     const auto pilot = AgileFlight::pilot(vehicle(), std::mt19937_64(41), max_speed_m_s);
-    const auto recorded = fly(vehicle(), pilot, AgileFlight::plan());
+    FlightPlan plan = AgileFlight::plan();
+    plan.samples = 3000;
+    const auto recorded = fly(vehicle(), pilot, plan);
     for (std::size_t row = 0; row < recorded.flight.size(); row += every) result.push_back(recorded.flight[row]);
   }
   return result;
@@ -91,7 +93,7 @@ TEST_CASE("a step across the edge of the envelope never lowers the own sum") {
   using Model = StructuredQuadModel;
   const Flown<Model> inverse{Flown<Model>::Guard(Formula(vehicle()))};
   Order order;
-  for (const Sample& sample : motions(30)) {
+  for (const Sample& sample : motions(6)) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = static_cast<std::size_t>(Model::Features::angular_acceleration + axis);
       InputsOf<Model> less = inputs_of<Model>(sample), more = less;
@@ -118,7 +120,7 @@ Order along_rays() {
   using Scalar = typename Model::Scalar;
   std::mt19937_64 engine(43);
   Order order;
-  for (const Sample& sample : motions(60)) {
+  for (const Sample& sample : motions(24)) {
     InputsOf<Model> less = inputs_of<Model>(sample);
     const auto anywhere = [&](int axis, double share) {
       const auto at = static_cast<std::size_t>(Model::Features::angular_acceleration + axis);

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
@@ -74,19 +73,4 @@ TEST_CASE("a payload of 20 %: the figure-eight without and with it") {
   const double without = track(known, world, eight, feedback, inverse, {}, unseen).rmse_m;
   const double with = track(known, world, eight, feedback, policy(), {}, unseen).rmse_m;
   CHECK(with < 0.15 * without);
-}
-
-TEST_CASE("what is no number is not learnt") {
-  Policy learning = policy();
-  State<double> state;
-  const Commands<double> commands{0.5, 0.5, 0.5, 0.5};
-  for (std::uint64_t tick = 1; tick < 200; ++tick) learning.learn(2000 * tick, true, state, commands);
-  const Vector3<double> force = learning.force_m_s2(), torque = learning.torque_rad_s2();
-  CHECK(force.norm() > 0.1);
-  state.velocity_m_s[0] = std::numeric_limits<double>::quiet_NaN();
-  learning.learn(2000 * 200, true, state, commands);
-  learning.learn(2000 * 201, true, State<double>{}, {0.5, std::numeric_limits<double>::infinity(), 0.5, 0.5});
-  learning.learn(2000 * 202, false, State<double>{}, commands);
-  CHECK(learning.force_m_s2() == force);
-  CHECK(learning.torque_rad_s2() == torque);
 }

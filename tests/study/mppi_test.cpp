@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
@@ -120,55 +119,4 @@ TEST_CASE("the same seed gives the same flight, another seed another one") {
   CHECK(end[0].body.position_m == end[1].body.position_m);
   CHECK(end[0].rotors == end[1].rotors);
   CHECK(end[0].rotors != end[2].rotors);
-}
-
-TEST_CASE("what MPPI can't answer has a Status, and the commands stay") {
-  const Commands<float> before{9, 9, 9, 9};
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const FigureEight<float> eight;
-  const auto sample = [&eight](double time_s) { return eight.sample(static_cast<float>(time_s)); };
-  const auto status_of = [&](Small controller, const VehicleState<float>& state, const auto& path) {
-    Commands<float> commands = before;
-    const Status status = controller(state, path, commands);
-    CHECK((status == Status::ok) == (commands != before));
-    return std::string(to_string(status));
-  };
-  const Small good(airframe, paper_site<float>());
-  VehicleState<float> state = start_of(eight);
-  CHECK(status_of(good, state, sample) == "ok");
-  state.body.velocity_m_s[1] = nan;
-  CHECK(status_of(good, state, sample) == "not_finite");
-  state = start_of(eight);
-  state.rotors[2] = nan;
-  CHECK(status_of(good, state, sample) == "not_finite");
-  state = start_of(eight);
-  state.body.attitude.w = 2;
-  CHECK(status_of(good, state, sample) == "not_unit_quaternion");
-  state = start_of(eight);
-  state.body.position_m[2] = -20000;  // above the standard atmosphere: each flight is refused
-  CHECK(status_of(good, state, sample) == "no_solution");
-  state = start_of(eight);
-  CHECK(status_of(good, state, [&](double time_s) {
-          TrajectoryPoint<float> point = sample(time_s);
-          point.acceleration_m_s2[0] = nan;
-          return point;
-        }) == "not_finite");
-  CHECK(status_of(good, state, [&](double time_s) {
-          TrajectoryPoint<float> point = sample(time_s);
-          point.position_m[0] = nan;
-          return point;
-        }) == "no_solution");
-
-  MppiSettings wrong;
-  wrong.step_s = 0;
-  CHECK(status_of(Small(airframe, paper_site<float>(), wrong), state, sample) == "out_of_range");
-  wrong = {};
-  wrong.position_cost_1_m2 = -1;
-  CHECK(status_of(Small(airframe, paper_site<float>(), wrong), state, sample) == "out_of_range");
-  wrong = {};
-  wrong.most_off_m = 0;
-  CHECK(status_of(Small(airframe, paper_site<float>(), wrong), state, sample) == "out_of_range");
-  Airframe<float> heavy = airframe;
-  heavy.mass_kg = 9;
-  CHECK(status_of(Small(heavy, paper_site<float>()), state, sample) == "invalid_airframe");
 }

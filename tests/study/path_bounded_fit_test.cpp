@@ -134,21 +134,3 @@ TEST_CASE("without a projection the same rows do turn it; with one a network tha
   CHECK(!answer_of(free).proven());
   CHECK_THROWS_AS((study::detail::PathProjection<Setting, Seeing>(context, map, 1.0)), std::invalid_argument);
 }
-
-TEST_CASE("project() changes the trainer's network and nothing else") {
-  using Only = Trainer<Seeing, Mse, Adam, Setting>;
-  const Flight flight = flight_of([](double a) { return own_slope * a; }, 3);
-  const RowSet rows(flight, {0, flight.size()});
-  const auto context = make_context<Setting>(rows);
-  const auto data = standardised<float>(context, rows);
-  std::mt19937_64 engine(4), again(4);
-  const auto network = initialised<Seeing>(engine);
-  static_cast<void>(initialised<Seeing>(again));
-  const auto one = std::make_unique<Only>(network, Mse{}, Adam{}, context);
-  const auto other = std::make_unique<Only>(network, Mse{}, Adam{}, context);
-  one->epoch(data, {0, 1}, engine);
-  other->epoch(data, {0, 1}, again, [](auto& trained) { trained.project([](auto&) {}); });
-  CHECK(one->network().parameters == other->network().parameters);
-  one->project([](auto& parameters) { parameters[7] = 0.25F; });
-  CHECK(one->network().parameters[7] == 0.25F);
-}

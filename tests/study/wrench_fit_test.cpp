@@ -51,13 +51,6 @@ TEST_CASE("the rotors of a row are its commands behind the lag") {
   CHECK(with_rotor_states(flight, airframe(), 0.020).column("rotor_1")->values[10] == doctest::Approx(0.7));
 }
 
-TEST_CASE("rows too far apart for the lag are refused") {
-  Flight flight(100);
-  for (std::size_t row = 0; row < flight.size(); ++row) flight[row].time_s = 0.05 * static_cast<double>(row);
-  CHECK_THROWS_WITH_AS(static_cast<void>(with_rotor_states(flight, airframe())), doctest::Contains("at most 0.02"),
-                       std::invalid_argument);
-}
-
 TEST_CASE("the residual wrench of a row is that of the simulator's effects") {
   const auto vehicle = flight_vehicle<HarderFlight>(airframe());
   const Quadrotor<double, StandardAtmosphere> rigid(airframe(), paper_site<double>());
@@ -92,12 +85,4 @@ TEST_CASE("a network explains the residual wrench of a flight that it has not se
     CAPTURE(k);
     CHECK(judged.r_squared[k] >= least[k]);
   }
-}
-
-TEST_CASE("too few rows are refused") {
-  const Flight flight = with_rotor_states(flown(1, 300), airframe());
-  CHECK_THROWS_AS(
-      static_cast<void>(fit_wrench(RowSet(flight, {0, 200}), RowSet(flight, {200, 300}),
-                                   GivenAirframe("light_quadrotor", airframe()), {}, [](int) { return true; })),
-      std::invalid_argument);
 }
