@@ -235,7 +235,8 @@ void write_block() {
   each_number(flown, [&](auto number) { append(vehicle, bytes_of(static_cast<float>(number))); });
   vehicle.insert(vehicle.end(), Vehicle::name, Vehicle::name + std::strlen(Vehicle::name));
   record(BlockRecord::vehicle, vehicle);
-  record(BlockRecord::contents, bytes_of(Model::contents_hash));
+  record(BlockRecord::contents, bytes_of(Model::contents_hash, std::uint64_t{0}));
+  const std::size_t own = end - 8;
   number(Header::size, count, 4);
   number(Header::size + 4, end - Header::size - Header::record_counts, 4);
   const std::size_t length = static_cast<std::size_t>(Layout::length(golden)) + end - Header::size;
@@ -262,7 +263,9 @@ void write_block() {
   scalars(Layout::golden_features, Model::golden_features);
   scalars(Layout::golden_commands(golden), Model::golden_commands);
   scalars(Layout::parameters(golden), Model::parameters);
-  number(length - Header::checksum_size, crc32(block, length - Header::checksum_size), 4);
+  const std::size_t hashed = length - Header::checksum_size;
+  number(own, pinnquad::detail::hash_of_block(block, hashed, block + own), 8);
+  number(hashed, crc32(block, hashed), 4);
   instruction_sets::block_bytes = length;
 }
 
