@@ -244,7 +244,7 @@ TEST_CASE("a description of a predictor that is too deep, too long, too wide or 
         std::string("pinnquad::Network<half, pinnquad::Inputs<16>, pinnquad::Dense<4>>"),
         std::string("pinnquad::Network<float, pinnquad::Inputs<16>, mine::Swish, pinnquad::Dense<4>>"),
         "pinnquad::Bounded<pinnquad::Bounded<" + network + ">>",
-        "pinnquad::PathBounded<" + network,
+        "pinnquad::PathBounded<" + network + ">",
         "pinnquad::Withheld<" + network + ", 19>",
         "pinnquad::Withheld<" + network + ", 19, 18>",
         "pinnquad::Withheld<" + network + ", 22, 3, 5>",

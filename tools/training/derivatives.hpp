@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/deploy/exact_derivatives.hpp"
 #include "pinnquad/loss/context.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "training/model_predictions.hpp"
 
 namespace programs {
