@@ -55,8 +55,8 @@ Flight flight_of(const Shape& shape, std::uint64_t seed) {
 
 using Answer = Sum<MonotoneBase<PhysicsFeatures>, Saturated<Seeing>>;
 
-/// The least, over the axes, of what the network's paths leave of a slope, the other sums' parts taken off; above 0 each
-/// rotor goes the right way.
+/// The least, over the axes, of what the network's paths leave of a slope, the other sums' parts taken off; above 0
+/// each rotor goes the right way.
 template <class ContextType>
 double slope_left(const Answer& answer, const ContextType& context) {
   constexpr auto own = std::size_t(MonotoneBase<PhysicsFeatures>::parameter_count + 8);

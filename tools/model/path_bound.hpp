@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bounds of a network's derivatives along a direction, valid at every input: the products of the weights along each path
-// from the inputs to an output are added up, each activation's slope anywhere from 0 to 1 (docs/certificate.md).
+// Bounds of a network's derivatives along a direction, valid at every input: the products of the weights along each
+// path from the inputs to an output are added up, each activation's slope anywhere from 0 to 1 (docs/certificate.md).
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@ struct Intervals {
   std::vector<double> least, most;
 };
 
-/// The intervals of `outputs` weighted sums of intervals, weights row by row. Intervals that hold 0 add up numbers of one
-/// sign at each end: rounding errs by less than (inputs + 1) 2^-53 of it.
+/// The intervals of `outputs` weighted sums of intervals, weights row by row. Intervals that hold 0 add up numbers of
+/// one sign at each end: rounding errs by less than (inputs + 1) 2^-53 of it.
 template <class Scalar>
 Intervals weighed_intervals(const Scalar* weights, std::size_t outputs, const Intervals& from) {
   Intervals sums{std::vector<double>(outputs), std::vector<double>(outputs)};
@@ -35,8 +35,8 @@ Intervals weighed_intervals(const Scalar* weights, std::size_t outputs, const In
   return sums;
 }
 
-/// Bounds of a network's outputs from those of its first layer, of `inputs` numbers, each holding 0. `widths`: outputs of
-/// each dense layer; parameters in the order of a Network.
+/// Bounds of a network's outputs from those of its first layer, of `inputs` numbers, each holding 0. `widths`: outputs
+/// of each dense layer; parameters in the order of a Network.
 template <class Scalar>
 Intervals path_bound_behind_first(const Scalar* parameters, std::size_t inputs, const std::vector<std::size_t>& widths,
                                   Intervals bounds) {
@@ -72,8 +72,9 @@ Intervals path_bound_along(const Scalar* parameters, const std::vector<std::size
   return path_bound_behind_first(parameters, inputs, widths, std::move(first));
 }
 
-/// The outputs of each dense layer of a network whose path bound is known: at most 3, with activations between them whose
-/// slope is from 0 to 1. Empty for any other: of Gelu, Silu and Sine it is not, and of more layers the bound says nothing.
+/// The outputs of each dense layer of a network whose path bound is known: at most 3, with activations between them
+/// whose slope is from 0 to 1. Empty for any other: of Gelu, Silu and Sine it is not, and of more layers the bound says
+/// nothing.
 inline std::vector<std::size_t> bounded_widths(const pinnquad::RunTimeNetwork& network,
                                                const pinnquad::RunTimePart& part) {
   constexpr std::array<std::string_view, 5> slopes_from_0_to_1 = {

@@ -109,8 +109,8 @@ class PathProjection {
 
 }  // namespace detail
 
-/// As fit_monotone(), but the residual is shown all features. `Residual`: as path_bound() takes it. `share`: of a slope,
-/// the most that the residual may take away.
+/// As fit_monotone(), but the residual is shown all features. `Residual`: as path_bound() takes it. `share`: of a
+/// slope, the most that the residual may take away.
 template <class Residual, class ContextType>
 auto fit_path_bounded(const ContextType& context, const RowSet& training, const RowSet& validation,
                       const AffineMap& map, const ResidualTraining& how, std::mt19937_64& engine, const GoesOn& goes_on,

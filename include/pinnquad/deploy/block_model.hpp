@@ -108,10 +108,9 @@ class BlockModel {
   /// Signed sums of commands about roll, pitch, yaw.
   std::array<double, 3> signed_sums(const Commands<double>& u) const;
 
-  /// Derivative of each of these sums by the angular acceleration about its axis: above 0 for any vehicle that turns the
-  /// way it is told to. Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of
-  /// all taps is moved; else the present alone. At the kink of a ReLU it is the derivative from below, as in
-  /// nn/jacobian.hpp.
+  /// Derivative of each of these sums by the angular acceleration about its axis, above 0 for any vehicle that turns as
+  /// it is asked to. Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of
+  /// all taps is moved; else the present alone. At a ReLU's kink it is the derivative from below (nn/jacobian.hpp).
   AxisSlopes derivatives(const std::vector<double>& x, bool held = true) const;
 
   /// Calls `take(row, AnsweredRow)` for the rows that have features, `row` counted through the set. Throws
@@ -132,7 +131,7 @@ class BlockModel {
   void open();
   template <class Scalar>
   void open_as();
-  /// What the derivatives need.
+  /// Takes what derivatives() needs.
   template <class Scalar>
   void take_derivatives(const RunTimeModel<Scalar>& model);
   /// Words of the provenance that are numbers: whole ones, and R^2 that bear out the verdict.

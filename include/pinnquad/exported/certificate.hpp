@@ -21,8 +21,8 @@ inline constexpr double least_thrust_share = 0.5;
 /// Of a model with a structure that can be proven. All bounds hold for the real function of the stored numbers; where a
 /// bound is rounded it is rounded to the safe side.
 struct Certificate {
-  /// The slopes about the axes are above 0 and their floor, rounding does not hide them over the envelope, and the mix of
-  /// the vehicle's rotors is exact.
+  /// The slopes about the axes are above 0 and their floor, rounding does not hide them over the envelope, and the mix
+  /// of the vehicle's rotors is exact.
   bool monotone = false;
   bool bounded = false;  ///< there is a residual, none, or one between finite bounds that are in order
   /// Least values of d(signed sum)/d(angular acceleration), roll, pitch, yaw, s^2/rad: of the present instant, and of
