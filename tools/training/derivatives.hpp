@@ -84,12 +84,4 @@ class FormulaDerivatives {
   std::array<std::array<double, pinnquad::rotor_count>, 3> signs_;
 };
 
-/// Of model 1.
-inline auto linear_derivatives(const pinnquad::GivenAirframe& airframe) {
-  const auto told = airframe.airframe<double>();
-  return FormulaDerivatives(airframe, [told, rotors = pinnquad::Rotors<double>(told)](const pinnquad::Sample& sample) {
-    return linear_prediction(told, rotors, sample);
-  });
-}
-
 }  // namespace programs

@@ -195,23 +195,6 @@ TEST_CASE("rows that a window leaves without an answer are told by NaN, the othe
   }
 }
 
-TEST_CASE("model 1 commands J / (lever x thrust) per angular acceleration") {
-  constexpr Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
-  const GivenAirframe given("paper", airframe);
-  const auto derivatives = programs::linear_derivatives(given);
-  std::mt19937_64 engine(3);
-  for (const Sample& row : samples(5, engine)) {
-    const Site<double> site = paper_site<double>();
-    const double scale =
-        standard_atmosphere_density_kg_m3(site.elevation_m + row.altitude_m) / standard_air_density_kg_m3<double>;
-    const double thrust_N = scale * airframe.max_rotor_thrust_N();
-    const programs::AxisSlopes found = derivatives(row);
-    CHECK(found[0] == doctest::Approx(airframe.inertia_kg_m2[0] / (std::abs(airframe.rotors[0].y_m) * thrust_N)));
-    CHECK(found[1] == doctest::Approx(airframe.inertia_kg_m2[1] / (std::abs(airframe.rotors[0].x_m) * thrust_N)));
-    CHECK(found[2] == doctest::Approx(airframe.inertia_kg_m2[2] / (scale * airframe.max_rotor_torque_N_m())));
-  }
-}
-
 TEST_CASE("the share counts rows below 0; what is not finite is told") {
   std::mt19937_64 engine(3);
   Flight flight;
