@@ -15,6 +15,7 @@ Command import_command(CLI::App& program);
 Command identify_command(CLI::App& program);
 Command train_command(CLI::App& program);
 Command evaluate_command(CLI::App& program);
+Command benchmark_command(CLI::App& program);
 Command certify_command(CLI::App& program);
 Command replay_command(CLI::App& program);
 Command loop_command(CLI::App& program);
@@ -33,7 +34,7 @@ int run(int argument_count, char** arguments, std::string& name) {
       programs::fly_command(program),     programs::import_command(program),   programs::identify_command(program),
       programs::train_command(program),   programs::evaluate_command(program), programs::certify_command(program),
       programs::replay_command(program),  programs::loop_command(program),     programs::block_command(program),
-      programs::convert_command(program), programs::airframe_command(program)};
+      programs::convert_command(program), programs::airframe_command(program), programs::benchmark_command(program)};
   program.footer(
       "Examples:\n"
       "  pinnquad fly d1 --seed 1 --out d1.csv                    a simulated flight\n"

@@ -47,6 +47,8 @@
 #include "pinnquad/model/axis_aligned.hpp"
 #include "pinnquad/nn/activations.hpp"
 #include "pinnquad/nn/batch_norm.hpp"
+#include "pinnquad/nn/glu.hpp"
+#include "pinnquad/nn/layer_norm.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/outputs/rigid_body_base.hpp"
 #include "pinnquad/outputs/wrench_outputs.hpp"

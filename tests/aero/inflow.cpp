@@ -138,7 +138,7 @@ TEST_CASE_TEMPLATE("each hub's force in three dimensions, of tilted rotors too",
       force += lift;
       torque += pinnquad::cross<double>(arm, lift);
     }
-    const auto w = Inflow{}.wrench(c, airframe);
+    const auto w = Inflow{}.bound(airframe).wrench(c, airframe);
     const double tolerance = pinnquad::test::rounding<Scalar>(2000);
     CHECK(pinnquad::test::distance(w.force_N, force) <= tolerance);
     CHECK(pinnquad::test::distance(w.torque_N_m, torque) <= tolerance);
@@ -151,7 +151,7 @@ TEST_CASE("a rolling vehicle is damped: the side that goes up lifts less") {
   c.air_density_kg_m3 = 1.225;
   c.rotor_thrust_N = {3.7, 3.7, 3.7, 3.7};
   c.body_rates_rad_s = Vector3<double>(1, 0, 0);
-  const auto w = Inflow{}.wrench(c, airframe);
+  const auto w = Inflow{}.bound(airframe).wrench(c, airframe);
   const auto hover = paper_hover<double>();
   const double expected = -4 * 3.7 * hover.gain / (2 + hover.gain) * 0.243952 * 0.243952 / hover.induced_velocity_m_s;
   CHECK(std::fabs(w.torque_N_m[0] / expected - 1) <= 1e-3);

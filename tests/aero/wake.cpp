@@ -48,7 +48,7 @@ TEST_CASE_TEMPLATE("the rotors behind lose thrust, those before keep it: the sid
       CHECK((ahead > 0 ? std::fabs(share) < 1e-3 : share > 0.9 * Wake{}.depth));
       CHECK(share <= Wake{}.depth);
     }
-    const auto w = Wake{}.wrench(flying<Scalar>(peak * x, peak * y), airframe);
+    const auto w = Wake{}.bound(airframe).wrench(flying<Scalar>(peak * x, peak * y), airframe);
     CHECK(static_cast<double>(w.force_N[2]) == doctest::Approx(2 * 3.7 * 0.95 * 0.15).epsilon(0.02));
     // nose up (+y) in forward flight, right side up (-x) in flight to the right
     CHECK(static_cast<double>(w.torque_N_m[1]) * x - static_cast<double>(w.torque_N_m[0]) * y > 0.2);

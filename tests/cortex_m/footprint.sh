@@ -22,14 +22,14 @@ thousands() { sed ':again; s/\([0-9]\)\([0-9]\{3\}\)\($\|,\)/\1,\2\3/; t again' 
 estimate() { awk -v n="$1" -v mhz="$2" -v cycles="$3" 'BEGIN { printf "%.0f", n * cycles / mhz }'; }
 
 table() {
-  local layers width target optimisation object image name part count stack most
+  local layers width behind target optimisation object image name part count stack most
   echo "Measured with $compiler. Each cell of three: -Os / -O2 / -O3."
   echo
   echo "| network | weights, B | workspace, B | code, B | stack, B | static RAM, B" \
     "| M4F, instructions | M7, instructions | M4F, µs* | M7, µs* |"
   echo "|---|---|---|---|---|---|---|---|---|---|"
-  for name in 2x16 3x25 10x25 2x64; do
-    layers=${name%x*} width=${name#*x}
+  for name in 2x16 3x25 3x25-LayerNorm 3x25-RmsNorm 10x25 2x64; do
+    IFS=x- read -r layers width behind <<<"$name"
     local -A counts=() slowest=()
     stack=0 most=0
     for target in m4f m7_dp; do
@@ -40,7 +40,7 @@ table() {
       for optimisation in -Os -O2 -O3; do
         object=$work/$target$optimisation.$name.o image=$work/$target$optimisation.$name.elf
         compile "$target" "$optimisation" "$here/sized_network.cpp" "$object" \
-          "-DHIDDEN_LAYERS=$layers" "-DHIDDEN_WIDTH=$width"
+          "-DHIDDEN_LAYERS=$layers" "-DHIDDEN_WIDTH=$width" "-DBEHIND=${behind:+$behind<$width>,}Relu"
         link_image "$target" "$image" "$work/$target.start_up.o" "$work/$target.measure_forward.o" "$object"
         run_image "$target" "$image" "$image.txt"
         if [ "$(largest instructions "$image.txt")" != "$(smallest instructions "$image.txt")" ]; then
@@ -54,7 +54,7 @@ table() {
         [ "$(code_bytes "$image")" -le "$most" ] || most=$(code_bytes "$image")
       done
     done
-    echo "| 16-$layers x $width-4 | $(thousands "$(weight_bytes "$image")") |" \
+    echo "| 16-$layers x $width-4${behind:+, $behind} | $(thousands "$(weight_bytes "$image")") |" \
       "$(awk '$1 == "workspace" { print $3 }' "$image.txt") |" \
       "$(thousands "$most") | $stack | $(ram_bytes "$image") | ${counts[m4f]} | ${counts[m7_dp]} |" \
       "$(estimate "${slowest[m4f]}" $m4_clock $m4_cycles) | $(estimate "${slowest[m7_dp]}" $m7_clock $m7_cycles) |"

@@ -67,7 +67,7 @@ run_image() {
   }
 }
 
-# What under_test.cpp and planted.cpp are compiled with: a model that write_model.cpp wrote, or a shipped one.
+# What under_test.cpp is compiled with: a model that write_model.cpp wrote, or a shipped one.
 model_flags=(-DMODEL=PaperModel "-DMODEL_HEADER=\"paper_model.hpp\"")
 structured_flags=(-DMODEL=StructuredModel "-DMODEL_HEADER=\"structured_model.hpp\"")
 shipped_flags=(-DTRAINED_ON_A_FLIGHT -DMODEL=StructuredQuadModel "-DMODEL_HEADER=\"$root/examples/models/structured_quadrotor.hpp\"")

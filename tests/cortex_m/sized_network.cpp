@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
 // A network of another size for docs/footprint.md: HIDDEN_LAYERS x HIDDEN_WIDTH between 16 inputs and 4 outputs, with
-// weights in flash that no compiler can fold away. Instructions don't depend on their values.
+// what stands behind each hidden layer (BEHIND) and weights in flash that no compiler can fold away. Instructions don't
+// depend on their values.
 #include <cstdint>
 
+#include "pinnquad/nn/layer_norm.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "under_test.hpp"
 
 namespace {
 
-using Net = pinnquad::Mlp<float, pinnquad::InputSize<16>, pinnquad::Hidden<HIDDEN_LAYERS, HIDDEN_WIDTH>,
-                          pinnquad::OutputSize<4>, pinnquad::Relu>;
+using namespace pinnquad;
+
+using Net = detail::Mlp<float, InputSize<16>, Hidden<HIDDEN_LAYERS, HIDDEN_WIDTH>, OutputSize<4>, Dense, BEHIND>::type;
 
 constexpr Net::Parameters numbers() {
   Net::Parameters result{};

@@ -2,7 +2,7 @@
 #
 # The cores and the glue run, and the build files of the stacks configure: included by CMakeLists.txt.
 add_library(flight_stacks_crazyflie_glue OBJECT "${crazyflie_glue}")
-target_include_directories(flight_stacks_crazyflie_glue PRIVATE "${crazyflie_headers}")
+target_include_directories(flight_stacks_crazyflie_glue PRIVATE "${crazyflie_headers}" "${stand_in}/crazyflie")
 set_target_properties(flight_stacks_crazyflie_glue PROPERTIES C_STANDARD 11)
 # With no include path but the library's, as in the firmware: a model.hpp among them would take the place of its own.
 add_library(flight_stacks_crazyflie_core OBJECT "${PROJECT_SOURCE_DIR}/examples/crazyflie_app/src/neural_control_core.cpp")
@@ -13,7 +13,7 @@ add_executable(test_flight_stacks answers_test.cpp bias_test.cpp cores_test.cpp 
   px4_module_test.cpp takeover_test.cpp "${PROJECT_SOURCE_DIR}/examples/px4_module/pinnquad_control.cpp"
   crazyflie_firmware_test.cpp
   $<TARGET_OBJECTS:flight_stacks_crazyflie_glue> $<TARGET_OBJECTS:flight_stacks_crazyflie_core> $<TARGET_OBJECTS:test_main>)
-target_include_directories(test_flight_stacks PRIVATE ${stack_includes} "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/px4"
+target_include_directories(test_flight_stacks PRIVATE ${stack_includes} "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/px4" "${stand_in}/px4"
   "${PROJECT_SOURCE_DIR}/examples/px4_module")
 target_compile_definitions(test_flight_stacks PRIVATE PINNQUAD_FLOWN_VEHICLE=0 PINNQUAD_TRUST=0
   "PINNQUAD_PX4_MODULE=\"${PROJECT_SOURCE_DIR}/examples/px4_module\"")
@@ -33,8 +33,8 @@ endif()
 # PX4's module once more, against the branches after v1.16 (px4_module/px4_version.hpp).
 add_executable(test_flight_stacks_px4_later px4_module_test.cpp "${PROJECT_SOURCE_DIR}/examples/px4_module/pinnquad_control.cpp"
   $<TARGET_OBJECTS:test_main>)
-target_include_directories(test_flight_stacks_px4_later PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/px4_later" ${stack_includes}
-  "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/px4" "${PROJECT_SOURCE_DIR}/examples/px4_module")
+target_include_directories(test_flight_stacks_px4_later PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/px4_later" "${stand_in}/px4_later" ${stack_includes}
+  "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/px4" "${stand_in}/px4" "${PROJECT_SOURCE_DIR}/examples/px4_module")
 target_compile_definitions(test_flight_stacks_px4_later PRIVATE PINNQUAD_PX4_MODULE_DESCRIPTOR=1
   PINNQUAD_FLOWN_VEHICLE=1 PINNQUAD_TRUST=0
   "PINNQUAD_PX4_MODULE=\"${PROJECT_SOURCE_DIR}/examples/px4_module\"")
@@ -54,7 +54,7 @@ target_link_libraries(flight_stacks_past_core PRIVATE pinnquad::pinnquad pinnqua
 add_executable(test_flight_stacks_past past_glue_test.cpp "${PROJECT_SOURCE_DIR}/examples/px4_module/pinnquad_control.cpp"
   $<TARGET_OBJECTS:flight_stacks_crazyflie_glue> $<TARGET_OBJECTS:flight_stacks_past_core> $<TARGET_OBJECTS:test_main>)
 target_include_directories(test_flight_stacks_past PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/px4_past" ${stack_includes}
-  "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/px4" "${PROJECT_SOURCE_DIR}/examples/px4_module")
+  "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/px4" "${stand_in}/px4" "${PROJECT_SOURCE_DIR}/examples/px4_module")
 target_compile_definitions(test_flight_stacks_past PRIVATE PINNQUAD_FLOWN_VEHICLE=0 PINNQUAD_TRUST=0
   "PINNQUAD_PX4_MODULE=\"${PROJECT_SOURCE_DIR}/examples/px4_module\"")
 pinnquad_test_program(test_flight_stacks_past)
@@ -87,14 +87,14 @@ foreach(missing IN ITEMS "WITHOUT_KALMAN:needs the Kalman estimator" "MINIMAL_ST
   string(REGEX MATCH "^([^:]*):(.*)$" parts "${missing}")
   set(name "flight_stacks.crazyflie_refuses.${CMAKE_MATCH_1}")
   add_test(NAME "${name}" COMMAND "${CMAKE_C_COMPILER}" -fsyntax-only -std=gnu11 "-D${CMAKE_MATCH_1}"
-    "-I${crazyflie_headers}" "-I${PROJECT_SOURCE_DIR}/examples/crazyflie_app/src" "${crazyflie_glue}")
+    "-I${crazyflie_headers}" "-I${stand_in}/crazyflie" "-I${PROJECT_SOURCE_DIR}/examples/crazyflie_app/src" "${crazyflie_glue}")
   set_tests_properties("${name}" PROPERTIES LABELS flight_stacks PASS_REGULAR_EXPRESSION "${CMAKE_MATCH_2}")
 endforeach()
 
 # ROS 2's package: its core alone, and its component against a stand-in of rclcpp.
 add_executable(test_flight_stacks_ros2 ros2/core_test.cpp ros2/node_test.cpp
   "${PROJECT_SOURCE_DIR}/examples/ros2_package/src/inverse_node.cpp" $<TARGET_OBJECTS:test_main>)
-target_include_directories(test_flight_stacks_ros2 PRIVATE ros2 "${PROJECT_SOURCE_DIR}/examples"
+target_include_directories(test_flight_stacks_ros2 PRIVATE ros2 "${stand_in}/ros2" "${PROJECT_SOURCE_DIR}/examples"
   "${PROJECT_SOURCE_DIR}/examples/models")
 target_compile_definitions(test_flight_stacks_ros2 PRIVATE "PINNQUAD_ROS2_PACKAGE=\"${PROJECT_SOURCE_DIR}/examples/ros2_package\"")
 pinnquad_test_program(test_flight_stacks_ros2)
@@ -106,7 +106,7 @@ foreach(model IN ITEMS "${PROJECT_SOURCE_DIR}/examples/models" none)
     --build-and-test "${CMAKE_CURRENT_SOURCE_DIR}/ros2_build" "${CMAKE_CURRENT_BINARY_DIR}/ros2_build_${name}"
     --build-generator "${CMAKE_GENERATOR}" --build-options "-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}"
       "-DCMAKE_CXX_FLAGS=-Wall -Wextra ${pinnquad_werror}" "-DPINNQUAD_DIR=${PROJECT_SOURCE_DIR}" "-DPINNQUAD_MODEL_DIR=${model}"
-      "-DPACKAGE_DIR=${PROJECT_SOURCE_DIR}/examples/ros2_package" "-DSTAND_IN=${CMAKE_CURRENT_SOURCE_DIR}/ros2"
+      "-DPACKAGE_DIR=${PROJECT_SOURCE_DIR}/examples/ros2_package" "-DSTAND_IN=${CMAKE_CURRENT_SOURCE_DIR}/ros2;${stand_in}/ros2"
     --test-command true)
   set_tests_properties(flight_stacks.ros2_build.${name} PROPERTIES LABELS flight_stacks)
 endforeach()

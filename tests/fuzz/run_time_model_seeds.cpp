@@ -40,6 +40,8 @@ int main(int argument_count, char** arguments) {
     write<ModelOf<Network<float, InputSize<16>, Clip, Dense<6>>, PaperFeatures, AccelerationOutputs>>(folder, "six");
     write<ModelOf<MonotonePredictor<Physics, Residual>, Physics, AxisCommandOutputs>>(folder, "monotone");
     write<ModelOf<MonotonePredictor<Physics, Residual>, Physics, SignedSumsOn<RigidBodyBase>>>(folder, "on_base");
+    write<ModelOf<Network<float, InputSize<16>, LayerNorm<9>, Dense<8>, Glu<3>, RmsNorm<5>, Dense<4>>, PaperFeatures>>(
+        folder, "norms");
   } catch (const pinnquad::OutputError& error) {
     std::fprintf(stderr, "run_time_model_seeds: %s\n", error.what());
     return 2;

@@ -11,7 +11,7 @@ folders=()
 for folder in include tools tests examples bench; do [ ! -d "$folder" ] || folders+=("$folder"); done
 [ ${#folders[@]} -gt 0 ] || { echo "no sources below $1"; exit 1; }
 mapfile -t sources < <(find "${folders[@]}" -type f \( -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.c' \) \
-  ! -path '*/models/*' ! -path '*_faults/*' ! -name small_model.hpp ! -name structured_trust.hpp | sort)
+  ! -path '*/models/*' ! -name small_model.hpp ! -name structured_trust.hpp | sort)
 faults=$({
   grep -nHE '^.{121,}' "${sources[@]}" | grep -v '// CASE ' | sed -E 's/^([^:]+:[0-9]+):.*/\1: more than 120 columns/'
   grep -nHE '^ *(//|/\*)[/!]?<? *(What|Who|Which|Whose) ' "${sources[@]}" |

@@ -1,9 +1,81 @@
 // SPDX-License-Identifier: MIT
-// A translation unit of flight code that only predicts, compiled once per instruction set; PREDICT names its function.
-#include "prediction.hpp"
+// A translation unit of flight code that only predicts, compiled once per instruction set and never run: check.sh reads
+// its symbols. Sizes with a remainder, weights worked out by the compiler.
+#include "../support/small_model.hpp"
+#include "pinnquad/exported/model_view.hpp"
+#include "pinnquad/inference/batched_inverse.hpp"
+#include "pinnquad/inference/command_jacobian.hpp"
+#include "pinnquad/inference/self_test.hpp"
+#include "pinnquad/nn/batch_norm.hpp"
+#include "pinnquad/nn/batched_network.hpp"
+#include "pinnquad/nn/elu.hpp"
+#include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/leaky_relu.hpp"
+#include "pinnquad/nn/packed_network.hpp"
+#include "pinnquad/nn/relu.hpp"
+#include "pinnquad/nn/silu.hpp"
+#include "pinnquad/nn/sine.hpp"
+#include "pinnquad/nn/softplus.hpp"
+#include "pinnquad/nn/tanh.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/outputs/wrench_outputs.hpp"
 
 namespace {
-using namespace instruction_sets;
+
+using Net =
+    pinnquad::Mlp<float, pinnquad::InputSize<16>, pinnquad::Hidden<3, 25>, pinnquad::OutputSize<4>, pinnquad::Relu>;
+/// Runs from memory to memory: too wide for registers, with an activation that calls the C library.
+using WideNet =
+    pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<70>, pinnquad::Tanh, pinnquad::Dense<4>>;
+
+/// Every smooth activation that calls the C library, leaky ReLU, and derivatives asked with inputs.
+using SmoothNet =
+    pinnquad::Network<float, pinnquad::InputSize<16>, pinnquad::Dense<9>, pinnquad::Gelu, pinnquad::Dense<9>,
+                      pinnquad::Silu, pinnquad::Dense<9>, pinnquad::Softplus, pinnquad::Dense<9>, pinnquad::Sine,
+                      pinnquad::Dense<9>, pinnquad::Elu, pinnquad::Dense<9>, pinnquad::LeakyRelu, pinnquad::Dense<4>>;
+
+/// Numbers in +-0.5 without a pattern that a sum would cancel: a linear congruence.
+template <class Network>
+constexpr typename Network::Parameters some_parameters() noexcept {
+  typename Network::Parameters parameters{};
+  unsigned state = 12345;
+  for (auto& p : parameters) {
+    state = state * 1664525u + 1013904223u;
+    p = static_cast<float>(state >> 8) / 16777216.0f - 0.5f;
+  }
+  return parameters;
+}
+
+/// With batch norm: the Jacobian takes its roots.
+using NormNet = pinnquad::BatchNormMlp<float, pinnquad::InputSize<16>, pinnquad::Hidden<1, 9>, pinnquad::OutputSize<4>,
+                                       pinnquad::Relu>;
+
+/// The same numbers, positive as a variance is.
+template <class Network>
+constexpr typename Network::Parameters some_variances() noexcept {
+  auto parameters = some_parameters<Network>();
+  for (auto& p : parameters) p = p < 0 ? -p : p;
+  return parameters;
+}
+
+using Model = pinnquad::test::SmallModel;
+
+/// Its outputs taken for rotor speeds, rev/s.
+struct SpeedNumbers : Model {
+  using Outputs = pinnquad::RotorSpeedOutputs;
+};
+using SpeedModel = pinnquad::test::AsHeader<SpeedNumbers>;
+
+/// Its outputs taken for a wrench, and for what is added to another inverse.
+struct WrenchNumbers : Model {
+  using Outputs = pinnquad::WrenchOutputs;
+};
+struct ResidualNumbers : Model {
+  using Outputs = pinnquad::ResidualOutputs<pinnquad::LinearizedBase>;
+};
+using WrenchModel = pinnquad::test::AsHeader<WrenchNumbers>;
+using ResidualModel = pinnquad::test::AsHeader<ResidualNumbers>;
+
 constexpr Net::Parameters parameters = some_parameters<Net>();
 constexpr WideNet::Parameters wide_parameters = some_parameters<WideNet>();
 constexpr pinnquad::PackedNetwork<Net> packed{parameters};
@@ -11,9 +83,8 @@ constexpr pinnquad::PackedNetwork<WideNet> packed_wide{wide_parameters};
 constexpr Net portable{parameters};
 constexpr NormNet::Parameters norm_parameters = some_variances<NormNet>();
 constexpr const float* norm_parameters_begin = norm_parameters.data();
-using instruction_sets::Model;
 
-/// All that is made of outputs that are no commands, derivatives too.
+/// Outputs that are no commands, derivatives too.
 template <class OtherModel>
 void predict_outputs(const float* golden, float* y) {
   float jacobian[4 * Model::Features::size];
@@ -28,7 +99,7 @@ void predict_outputs(const float* golden, float* y) {
 }
 
 /// A block of the exported model, in place and packed.
-void predict_from_block(float* y) {
+void predict_from_block(const unsigned char* block, std::size_t block_bytes, float* y) {
   using View = pinnquad::ModelView<Model>;
   static View::Packed memory;
   View view, packed_view;
@@ -72,7 +143,7 @@ void predict_smoothly(const float* x, float* y) {
 }
 }  // namespace
 
-extern "C" void PREDICT(const float* x, float* y) {
+extern "C" void predict(const unsigned char* block, std::size_t block_bytes, const float* x, float* y) {
   packed.forward(x, y);
   packed_wide.forward(x, y + 4);
   portable.forward(x, y + 8);
@@ -80,7 +151,7 @@ extern "C" void PREDICT(const float* x, float* y) {
   const pinnquad::InverseDynamics<Model> inverse;
   if (inverse.predict_features(golden, y + 12) != pinnquad::Status::ok) y[12] = -1.0f;
   predict_outputs<SpeedModel>(golden, y + 16);
-  predict_from_block(y + 20);
+  predict_from_block(block, block_bytes, y + 20);
   differentiate(x, y + 28);
   predict_smoothly(x, y + 32);
   predict_outputs<WrenchModel>(golden, y + 49);

@@ -16,6 +16,8 @@
 
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/nn/gelu.hpp"
+#include "pinnquad/nn/glu.hpp"
+#include "pinnquad/nn/layer_norm.hpp"
 #include "pinnquad/nn/leaky_relu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/silu.hpp"
@@ -78,18 +80,19 @@ std::vector<double> some_input(std::mt19937_64& engine) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("Jacobian against central differences", Net,
-                   Mlp<double, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>,
-                   Mlp<double, InputSize<17>, Hidden<3, 32>, OutputSize<4>, Tanh>, From16<double, Dense<1>>,
-                   From16<double, Dense<7>, Tanh, Dense<9>>, From16<double, DenseWithoutBias<5>, Relu, Dense<13>, Tanh>,
-                   From16<double, Dense<6>, test::LeakyRelu, Dense<3>>,
-                   From16<double, Dense<7>, Gelu, Dense<9>, Silu, Dense<5>, Softplus, Dense<4>, Sine, Dense<3>>,
-                   From16<double, Gelu, DenseWithoutBias<5>, Sine, Silu, Dense<3>, Gelu>,
-                   From16<double, test::ScalarSquare, Dense<5>, test::Square, test::ScalarSquare, Dense<3>>,
-                   From16<double, Elu, Dense<7>, Elu, Dense<9>, pinnquad::LeakyRelu, Dense<5>, Elu>,
-                   Network<double, InputSize<3>, Sine, Dense<1>>,
-                   Network<double, InputSize<1>, Dense<3>, Tanh, Dense<2>>,
-                   Network<double, InputSize<3>, Tanh, Dense<40>, Relu, Relu, Dense<4>>) {
+TEST_CASE_TEMPLATE(
+    "Jacobian against central differences", Net, Mlp<double, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>,
+    Mlp<double, InputSize<17>, Hidden<3, 32>, OutputSize<4>, Tanh>, From16<double, Dense<1>>,
+    From16<double, Dense<7>, Tanh, Dense<9>>, From16<double, DenseWithoutBias<5>, Relu, Dense<13>, Tanh>,
+    From16<double, Dense<6>, test::LeakyRelu, Dense<3>>,
+    From16<double, Dense<7>, Gelu, Dense<9>, Silu, Dense<5>, Softplus, Dense<4>, Sine, Dense<3>>,
+    From16<double, Gelu, DenseWithoutBias<5>, Sine, Silu, Dense<3>, Gelu>,
+    From16<double, test::ScalarSquare, Dense<5>, test::Square, test::ScalarSquare, Dense<3>>,
+    From16<double, Elu, Dense<7>, Elu, Dense<9>, pinnquad::LeakyRelu, Dense<5>, Elu>,
+    From16<double, LayerNorm<16>, Dense<7>, RmsNorm<7>, Tanh, Dense<9>, LayerNorm<5>, Glu<3>, Gelu, Dense<3>>,
+    From16<double, Dense<7>, Tanh, RmsNorm<5>, LayerNorm<7>>, Network<double, InputSize<3>, Sine, Dense<1>>,
+    Network<double, InputSize<1>, Dense<3>, Tanh, Dense<2>>,
+    Network<double, InputSize<3>, Tanh, Dense<40>, Relu, Relu, Dense<4>>) {
   std::mt19937_64 engine(7);
   for (int round = 0; round < 5; ++round) {
     const auto net = random_network<Net>(engine);

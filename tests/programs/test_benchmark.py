@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Public data sets (tools/study/benchmark.py): a set of a user's own from import to row, and predictions of others."""
+"""Public data sets (tools/study/benchmark.py, pinnquad benchmark): a set of a user's own from import to row, and
+predictions of others."""
 import csv
 import json
 import shutil
@@ -38,9 +39,9 @@ def rows_of(path):
         return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
 
-def write_predictions(rows, of):
+def write_predictions(rows, of, path="mine.csv"):
     lines = ["t,u1,u2,u3,u4"] + [",".join(repr(one) for one in (row["t"], *of(row))) for row in rows]
-    Path("mine.csv").write_text("\n".join(lines) + "\n")
+    Path(path).write_text("\n".join(lines) + "\n")
 
 
 def test_a_set(pinnquad, flown):
@@ -55,29 +56,59 @@ def test_a_set(pinnquad, flown):
     Path("mine.toml").write_text(SET)
     done = benchmark("run", "mine.toml", "copy", "--program", str(pinnquad), "--out", "out")
     assert "twice.csv: left out" in done.out and "cannot write" not in done.err
-    row = json.loads(Path("out/row.json").read_text())
-    assert row["flights"] == 3 and row["held_out"] == ["flight5"] and row["r2"]["ridge"] > 0.9
+    report = json.loads(Path("out/model/report.json").read_text())
+    ridge, = (one["r2"] for one in report["results"] if one["model"] == "ridge")
+    assert f"| out | 3, {report['settings']['rows']} | flight5 |" in done.out and f"| **{ridge:.3f}** |" in done.out
     assert "imported before" in benchmark("run", "mine.toml", "copy", "--program", str(pinnquad), "--out", "out").out
 
     held_out = rows_of("out/dataset/flight5.csv")
     training = rows_of("out/dataset/flight3.csv") + rows_of("out/dataset/flight4.csv")
     mean = [fmean(one[f"u{motor}"] for one in training) for motor in range(1, 5)]
+    truth = lambda row: [row[f"u{motor}"] for motor in range(1, 5)]
     write_predictions(held_out, lambda row: mean)
-    benchmark("score", "out", "mine.csv", "--name", "mean")
-    write_predictions(held_out, lambda row: [row[f"u{motor}"] for motor in range(1, 5)])
-    benchmark("score", "out", "mine.csv", "--name", "truth")
-    row = json.loads(Path("out/row.json").read_text())
-    assert row["others"]["mean"]["r2"] == pytest.approx(row["r2"]["constant"], abs=0.01)
-    assert row["others"]["truth"]["r2"] == 1 and row["others"]["truth"]["rmse"] == 0
-    shown = benchmark("table", "out").out
-    assert "| mean | truth |" in shown and "| 1.000 |" in shown
+    pinnquad("benchmark out --predictions mine.csv --name mean")
+    write_predictions(held_out, truth)
+    shown = pinnquad("benchmark out/ --predictions mine.csv --name truth").out
+    others = json.loads(Path("out/others.json").read_text())
+    constant, = (one["r2"] for one in report["results"] if one["model"] == "constant")
+    assert others["mean"]["r2"] == pytest.approx(constant, abs=0.01)
+    assert others["truth"]["r2"] == 1 and others["truth"]["rmse"] == 0 and others["truth"]["rows"] == len(held_out)
+    assert "| mean | truth |" in shown and "| out |" in shown and shown.rstrip().endswith("| 1.000 |")
+    assert pinnquad("benchmark out").out == shown
 
-    write_predictions(held_out[1:], lambda row: mean)
-    benchmark.refused("score", "out", "mine.csv", keyword="found none for 1")
+    write_predictions(held_out[1:], truth)
+    pinnquad.refused("benchmark out --predictions mine.csv", at="mine.csv", keyword="none for 1, the first at t = 177")
+    write_predictions([held_out[0], *held_out], truth)
+    pinnquad.refused("benchmark out --predictions mine.csv", at="mine.csv:3:1", keyword="a time of its own")
     Path("mine.csv").write_text("t,u1,u2,u3,u4\n0,1,2,3,x\n")
-    benchmark.refused("score", "out", "mine.csv", at="mine.csv:2", keyword="'x'")
+    pinnquad.refused("benchmark out --predictions mine.csv", at="mine.csv:2:5", keyword='"x"')
     Path("mine.csv").write_text("t,u1,u2,u3\n")
-    benchmark.refused("score", "out", "mine.csv", at="mine.csv:1", keyword="u4")
+    pinnquad.refused("benchmark out --predictions mine.csv", at="mine.csv:1", keyword="u4")
+    pinnquad.refused("benchmark out out --predictions mine.csv", keyword="of one set")
+    pinnquad.refused("benchmark copy", at="copy/model/report.json", keyword="expected")
+    assert json.loads(Path("out/others.json").read_text()) == others
+
+
+def test_predictions_of_several_flights(pinnquad, flown):
+    """A CSV for each flight that is held out."""
+    Path("mine").mkdir()
+    for seed in 3, 4, 5:
+        shutil.copy(flown(f"--seed {seed} --samples 2400"), f"flight{seed}.csv")
+    Path("mapping.toml").write_text(MAPPING)
+    pinnquad("import flight3.csv flight4.csv flight5.csv --mapping mapping.toml --out out/dataset")
+    pinnquad("train out/dataset --airframe paper_quadrotor --models constant,ridge --seeds 1 --hold-out flight4,flight5 "
+             "--out out/model")
+    for name in "flight4", "flight5":
+        rows = rows_of(f"out/dataset/{name}.csv")
+        write_predictions(rows, lambda row: [row[f"u{motor}"] for motor in range(1, 5)], f"mine/{name}.csv")
+    assert "| 1.000 |" in pinnquad("benchmark out --predictions mine --name truth").out
+    pinnquad.refused("benchmark out --predictions mine/flight4.csv", keyword="a folder with NAME.csv")
+    Path("mine/flight5.csv").unlink()
+    pinnquad.refused("benchmark out --predictions mine", at="mine/flight5.csv", keyword="expected")
+    report = json.loads(Path("out/model/report.json").read_text())
+    for key in "held_out", "settings", "results":
+        Path("out/model/report.json").write_text(json.dumps({**report, key: 3}))
+        pinnquad.refused("benchmark out", at="out/model/report.json", keyword="other JSON")
 
 
 def test_sets_and_refusals(pinnquad):
@@ -93,7 +124,6 @@ def test_sets_and_refusals(pinnquad):
             assert mapping[1].split('"')[0] in ready or (path.parent / mapping[1].split('"')[0]).is_file()
     benchmark.refused("run", "nowhere", ".", keyword="one of")
     benchmark.refused("run", names[0], ".", keyword="expected flights")
-    benchmark.refused("score", ".", "mine.csv", keyword="benchmark.py run")
     Path("mine.toml").write_text('about = "x"\n')
     benchmark.refused("run", "mine.toml", ".", at="mine.toml", keyword="`url`")
 

@@ -352,10 +352,11 @@ def test_blackbox(pinnquad):
     like_closed_form(flight, 2e-3, least_rows=1900)
 
 
-def test_usd_log(pinnquad):
+def write_usd_log(path, leave_out="nothing"):
     """A Crazyflie's log of the variables that docs/how_to_log.md names."""
     document = (SOURCE / "docs/how_to_log.md").read_text()
     names = re.search(r"on:fixedFrequency\n.*\n.*\n((?:\w+\.\w+\n)+)", document).group(1).split()
+    names = [name for name in names if not name.startswith(leave_out)]
     kinds = {name: "I" if name.startswith("motor.") else "f" for name in names}
     head = b"\xbc" + struct.pack("<HHH", 2, 1, 0) + b"fixedFrequency\0" + struct.pack("<H", len(names))
     head += b"".join(f"{name}({kinds[name]})".encode() + b"\0" for name in names)
@@ -374,13 +375,27 @@ def test_usd_log(pinnquad):
         values.update(zip((f"motor.m{i}" for i in (1, 2, 3, 4)), (round(65535 * u) for u in (u1, u4, u2, u3))))
         values["pm.vbat"] = 4.1 - 0.01 * t
         rows += struct.pack("<HQ" + "".join(kinds.values()), 0, 10000 * n, *(values[name] for name in names))
-    Path("log00").write_bytes(head + rows + struct.pack("<I", zlib.crc32(head + rows)))
+    Path(path).write_bytes(head + rows + struct.pack("<I", zlib.crc32(head + rows)))
+
+
+def test_usd_log(pinnquad):
+    write_usd_log("log00")
     said = imported(pinnquad, "log00", "--mapping", "crazyflie", "--lag", "0.04", out="flown")
     dataset = facts("flown")
     assert dataset["absent"] == [] and not [w for w in dataset["warnings"] if "attitude" in w], said
     flight = Path("flown", dataset["flights"][0]["file"])
     assert "battery_voltage [V]" in flight.read_text().split("\n")[0]
     like_closed_form(flight, 1e-4, least_rows=1500)  # the lowest are taken for ground
+
+
+def test_usd_log_without_an_attitude(pinnquad):
+    """Roll and pitch are made of gyroscope and accelerometer."""
+    write_usd_log("log00", leave_out="stateEstimate")
+    imported(pinnquad, "log00", "--lag", "0.04", out="flown")
+    flight = facts("flown")["flights"][0]
+    assert "velocity" in facts("flown")["absent"] and flight["rows"] > 1500
+    for t, roll, pitch in numbers(Path("flown", flight["file"]), "roll", "pitch"):
+        assert abs(roll - angles(t)[0]) < 0.2 and abs(pitch - angles(t)[1]) < 0.2
 
 
 def test_nanobench(pinnquad, recorded):

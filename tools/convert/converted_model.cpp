@@ -182,8 +182,9 @@ std::string network_text(const char* inputs_word, std::size_t inputs, const std:
   std::string text =
       "pinnquad::Network<" + type_name<Scalar>() + ", pinnquad::" + inputs_word + "<" + std::to_string(inputs) + ">";
   for (const ForeignLayer& layer : layers) {
-    text += ", " + (layer.activation.empty() ? "pinnquad::Dense<" + std::to_string(layer.outputs()) + ">"
-                                             : activation_layer(layer.activation));
+    const std::string name = layer.activation.empty() ? "pinnquad::Dense" : counted_layer(layer.activation);
+    text +=
+        ", " + (name.empty() ? activation_layer(layer.activation) : name + "<" + std::to_string(layer.outputs()) + ">");
   }
   return text + ">";
 }

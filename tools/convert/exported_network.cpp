@@ -62,6 +62,17 @@ json part_of(const RunTimePart& from, const Scalar* at) {
   std::size_t width = shown_features.empty() ? inputs : shown_features.size();
   for (int i = 0; i < from.layer_count; ++i) {
     const RunTimeLayer& layer = from.layers[i];
+    if (layer.normalised > 0) {
+      const Numbers gamma = take(std::size_t(layer.normalised));
+      part["steps"].push_back(
+          {{"norm", layer.centred ? "layer_norm" : "rms_norm"}, {"weights", gamma}, {"bias", take(gamma.size())}});
+      continue;
+    }
+    if (layer.gated > 0) {
+      part["steps"].push_back({{"glu", layer.gated}});
+      width -= std::size_t(layer.gated);
+      continue;
+    }
     if (layer.outputs == 0) {
       const auto& activations = pinnquad::detail::run_time_activations<float>;
       part["steps"].push_back(activation_word(activations[std::size_t(layer.activation)].description));

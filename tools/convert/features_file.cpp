@@ -277,6 +277,11 @@ std::string activation_layer(const std::string& word) {
   return {};
 }
 
+std::string counted_layer(const std::string& word) {
+  if (word == "layer_norm") return "pinnquad::LayerNorm";
+  return word == "rms_norm" ? "pinnquad::RmsNorm" : word == "glu" ? "pinnquad::Glu" : "";
+}
+
 ForeignMeaning read_features_file(const std::string& path) {
   return meaning_of(logs::read_toml_file(path, "a features file"), path);
 }

@@ -17,6 +17,8 @@ namespace programs {
 std::string activation_word(std::string_view layer);
 /// The layer that is called so; empty: none.
 std::string activation_layer(const std::string& word);
+/// The same of layer_norm, rms_norm and glu, which no features file names.
+std::string counted_layer(const std::string& word);
 
 /// A number that the network reads: (value in that unit - mean) / scale.
 struct ForeignFeature {

@@ -24,7 +24,22 @@ ForeignLayer layer_of(const json& one, std::size_t width, const std::string& pat
     if (activation_layer(layer.activation).empty()) refuse(path, "'" + pinnquad::printable(layer.activation) + "'");
     return layer;
   }
+  if (one.contains("glu")) {
+    layer.activation = "glu";
+    layer.gated = one.at("glu").get<std::size_t>();
+    if (layer.gated < 1 || 2 * layer.gated > width) refuse(path, "a Glu of other numbers");
+    return layer;
+  }
   layer.bias = one.at("bias").get<Numbers>();
+  if (one.contains("norm")) {
+    layer.activation = one.at("norm").get<std::string>();
+    layer.weights = one.at("weights").get<Numbers>();
+    if (counted_layer(layer.activation).empty()) refuse(path, "'" + pinnquad::printable(layer.activation) + "'");
+    if (layer.bias.empty() || layer.bias.size() > width || layer.weights.size() != layer.bias.size()) {
+      refuse(path, "a norm of other numbers");
+    }
+    return layer;
+  }
   for (const json& row : one.at("weights")) {
     const auto weights = row.get<Numbers>();
     if (weights.size() != width) refuse(path, "a row of " + std::to_string(weights.size()) + " weights");
@@ -41,7 +56,8 @@ ForeignNetwork network_of(const json& answer, const std::string& path) {
   std::size_t width = network.inputs;
   for (const json& one : answer.at("layers")) {
     network.layers.push_back(layer_of(one, width, path));
-    if (network.layers.back().activation.empty()) width = network.layers.back().outputs();
+    const ForeignLayer& last = network.layers.back();
+    width = last.activation.empty() ? last.outputs() : width - last.gated;
   }
   if (network.layers.empty() || !network.layers.front().activation.empty() ||
       !network.layers.back().activation.empty() || width != network.outputs) {

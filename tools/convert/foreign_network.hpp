@@ -15,12 +15,13 @@ using Numbers = std::vector<double>;
 /// A request as JSON, and the answer to it: networks.py, in a process of its own or in the Python that asks.
 using AskPython = std::function<std::string(const std::string& request)>;
 
-/// y = W x + b, row by row (row = output); or an activation, where it has a name.
+/// y = W x + b, row by row (row = output); or an activation, a norm of as many numbers as it has biases, or a Glu.
 struct ForeignLayer {
-  std::string activation;  ///< as a features file names it; empty: dense
+  std::string activation;  ///< as a features file names it, or layer_norm, rms_norm, glu; empty: dense
   Numbers weights, bias;
+  std::size_t gated = 0;  ///< outputs of a Glu, of twice as many numbers
 
-  std::size_t outputs() const { return bias.size(); }
+  std::size_t outputs() const { return gated > 0 ? gated : bias.size(); }
   std::size_t inputs() const { return weights.size() / bias.size(); }
 };
 

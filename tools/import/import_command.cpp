@@ -23,7 +23,7 @@ struct ImportOptions {
   std::string mapping;
   std::string airframe;
   std::string out;
-  std::optional<double> rate_hz, to_s;
+  std::optional<double> rate_hz, to_s, cut_s;
   double from_s = 0;
   std::string lag = "auto";
   bool hold = false;
@@ -78,6 +78,7 @@ logs::LogSettings settings_of(const ImportOptions& options) {
   settings.lag_s = programs::lag_of(options.lag);
   settings.from_s = options.from_s;
   settings.to_s = options.to_s;
+  settings.cut_s = options.cut_s;
   return settings;
 }
 
@@ -127,6 +128,8 @@ Command import_command(CLI::App& program) {
       ->type_name("auto|SECONDS")
       ->capture_default_str();
   add_time_range(*line, *options);
+  add_number(*line, "--cut", options->cut_s, 1.0, 1e6,
+             "flights become parts of about so many s, of which train can hold one out");
   line->add_flag("--hold", options->hold, "commands hold until their next row, instead of lines between rows");
   line->add_flag("--json", options->json, "rows per step, flights and warnings as JSON, and nothing else, on stdout");
   line->add_flag("--list", options->list, "list the ready mappings");

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <utility>
 
-#include "logs/blackbox_attitude.hpp"
 #include "logs/blackbox_bytes.hpp"
 #include "logs/blackbox_header.hpp"
+#include "logs/integrated_attitude.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/file_error.hpp"
@@ -408,33 +408,16 @@ class Reader {
     }
   }
 
-  /// Roll about x forward, pitch about y left, heading clockwise, as --simulate-imu has them.
+  /// As --simulate-imu has it.
   void add_attitude() {
     LogTopic& topic = main_.topic;
     if (topic.column("imuQuaternion[0]") != nullptr || topic.column("attitude[0]") != nullptr) return;
-    std::array<const LogColumn*, 3> gyro{}, force{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::string axis = "[" + std::to_string(i) + "]";
-      gyro[i] = topic.column("gyroADC" + axis + " (deg/s)");
-      if (gyro[i] == nullptr) gyro[i] = topic.column("gyroData" + axis + " (deg/s)");
-      force[i] = topic.column("accSmooth" + axis + " (m/s/s)");
-      if (gyro[i] == nullptr || force[i] == nullptr) return;
-    }
-    IntegratedAttitude attitude;
-    std::array<std::vector<double>, 3> angles;
-    for (std::size_t row = 0; row < topic.size(); ++row) {
-      IntegratedAttitude::Vector w{}, f{};
-      for (std::size_t i = 0; i < 3; ++i) {  // forward, left, up as logged
-        w[i] = (i == 0 ? degree : -degree) * gyro[i]->values[row];
-        f[i] = (i == 0 ? 1 : -1) * force[i]->values[row] / g_m_s2;
-      }
-      const EulerAngles<double> euler = to_euler(attitude.next(topic.time_s[row], w, f));
-      angles[0].push_back(euler.roll_rad / degree);
-      angles[1].push_back(-euler.pitch_rad / degree);
-      angles[2].push_back(euler.yaw_rad / degree);
-    }
-    constexpr std::array<const char*, 3> names = {"roll", "pitch", "heading"};
-    for (std::size_t i = 0; i < 3; ++i) topic.columns.push_back({names[i], std::move(angles[i])});
+    const auto axes = [](const std::string& name, const std::string& unit) {
+      return std::array<std::string, 3>{name + "[0]" + unit, name + "[1]" + unit, name + "[2]" + unit};
+    };
+    const bool modern = topic.column("gyroADC[0] (deg/s)") != nullptr;
+    add_integrated_attitude(topic, axes(modern ? "gyroADC" : "gyroData", " (deg/s)"), axes("accSmooth", " (m/s/s)"),
+                            1 / g_m_s2);
   }
 
   static constexpr std::int64_t wrap = std::int64_t{1} << 32;

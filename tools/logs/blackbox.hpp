@@ -24,7 +24,7 @@ std::vector<std::size_t> blackbox_flights(std::string_view file);
 ///
 /// Frames are decoded as the loggers define them: a frame that is damaged, and the P frames behind it up to the next I
 /// frame, are left out, and `warnings` say how many. A log without an attitude of its own gets "roll", "pitch" and
-/// "heading" in degrees, of gyroscope and accelerometer (blackbox_attitude.hpp). "motorOutput[0]" and
+/// "heading" in degrees, of gyroscope and accelerometer (integrated_attitude.hpp). "motorOutput[0]" and
 /// "motorOutput[1]" are parameters of every log: what a motor is sent when it idles and at most.
 ///
 /// Throws InputError, one line with the byte: no such flight, a head that makes no sense.

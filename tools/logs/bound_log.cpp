@@ -450,6 +450,10 @@ BoundLog bind_log(FlightLog& log, const Mapping& mapping, const std::optional<Na
     const bool optional =
         std::any_of(sources.begin(), sources.end(), [](const Source* source) { return source->optional; });
     if (optional && !needed) return;
+    const auto one_g = log.parameters.find("acc_1G");
+    if (&signal == &bound.of(Quantity::attitude) && one_g != log.parameters.end() && !(one_g->second > 0)) {
+      throw InputError(log.source, 0, 0, "an accelerometer that is on, of which roll and pitch are made", "acc_1G 0");
+    }
     static_cast<void>(bind_source(log, mapping, *sources.front(), airframe, true));
     throw InputError(mapping.file, sources.front()->place.line, sources.front()->place.column,
                      "a topic with rows in " + log.source, "none");

@@ -277,24 +277,28 @@ class Reader {
   }
 
   /// The outputs that SERVOn_FUNCTION gives to motors, as columns of RCOU: other outputs are servos. Without such
-  /// parameters the first outputs are the motors.
+  /// parameters, before 3.5, the first outputs are the motors; before 3.4 C1 is Ch1.
   void name_motors() {
     constexpr int first_motor = 33, motors = 8, outputs = 16;  // motors 9 to 12 have other numbers
     for (LogTopic& topic : log_.topics) {
       if (topic.name != "RCOU" || topic.instance != 0) continue;
+      const auto output_column = [&topic](const std::string& number) {
+        const LogColumn* const column = topic.column("C" + number);
+        return column != nullptr ? column : topic.column("Ch" + number);
+      };
       bool said = false;
       std::map<int, const LogColumn*> found;  // by motor
       for (int output = 1; output <= outputs; ++output) {
         const std::string number = std::to_string(output);
         const auto function = log_.parameters.find("SERVO" + number + "_FUNCTION");
-        const LogColumn* const column = topic.column("C" + number);
+        const LogColumn* const column = output_column(number);
         if (function == log_.parameters.end()) continue;
         const double motor = function->second - first_motor + 1;
         said = said || (motor >= 1 && motor <= motors);
         if (column != nullptr && motor >= 1 && motor <= motors) found.emplace(static_cast<int>(motor), column);
       }
       for (int motor = 1; motor <= static_cast<int>(rotor_count) && !said; ++motor) {
-        if (const LogColumn* const column = topic.column("C" + std::to_string(motor))) found.emplace(motor, column);
+        if (const LogColumn* const column = output_column(std::to_string(motor))) found.emplace(motor, column);
       }
       std::vector<LogColumn> named;
       for (const auto& [motor, column] : found) named.push_back({"Motor" + std::to_string(motor), column->values});
@@ -308,12 +312,15 @@ class Reader {
       return found == log_.parameters.end() ? otherwise : found->second;
     };
     double least = parameter("MOT_PWM_MIN", 0), most = parameter("MOT_PWM_MAX", 0);
-    if (!(least > 0 && most > least)) {  // as the firmware has it where they are 0, or older than these
-      least = 1000;
-      most = 2000;
+    if (!(least > 0 && most > least)) {  // as the firmware has it where they are 0, or older than these: the stick's
+      const std::string stick = "RC" + std::to_string(std::lround(parameter("RCMAP_THROTTLE", 3)));
+      least = parameter((stick + "_MIN").c_str(), 1000);
+      most = parameter((stick + "_MAX").c_str(), 2000);
     }
-    const double begin = parameter("MOT_SPIN_MIN", 0), end = parameter("MOT_SPIN_MAX", 1);
-    if (!(end > begin)) return;
+    const double begin =
+        parameter("MOT_SPIN_MIN", parameter("THR_MIN", 0) / 1000);  // before 3.4: THR_MIN, MOT_THST_MAX
+    const double end = parameter("MOT_SPIN_MAX", parameter("MOT_THST_MAX", 1));
+    if (!(end > begin && most > least)) return;
     log_.parameters["motorOutput[0]"] = least + begin * (most - least);
     log_.parameters["motorOutput[1]"] = least + end * (most - least);
   }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -179,6 +180,27 @@ std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selec
     throw InputError(path, 0, 0, "a folder of logs, or one that ulog2csv wrote", "neither");
   }
   return places;
+}
+
+void tell_apart(std::vector<LogPlace>& places) {
+  std::map<std::string, std::vector<LogPlace*>> by_name;
+  for (LogPlace& place : places) by_name[place.name].push_back(&place);
+  for (const auto& [name, alike] : by_name) {
+    std::vector<std::filesystem::path> folders;
+    for (const LogPlace* place : alike) {
+      folders.push_back(std::filesystem::absolute(place->path).lexically_normal().parent_path());
+    }
+    bool told = alike.size() == 1;
+    while (!told && folders.front().has_relative_path()) {
+      std::set<std::string> different;
+      for (const auto& folder : folders) different.insert(folder.filename().string());
+      told = different.size() == alike.size();
+      for (std::size_t i = 0; i < alike.size(); ++i) {
+        if (told) alike[i]->name = printable(folders[i].filename().string()) + "_" + name;
+        folders[i] = folders[i].parent_path();
+      }
+    }
+  }
 }
 
 std::vector<LogPart> parts_of(FlightLog log, const std::string& name, const Mapping& mapping) {

@@ -33,6 +33,10 @@ bool is_vehicles_log(const std::string& path);
 /// without.
 std::vector<LogPlace> logs_at(const std::string& path, const LogSelection& selection, bool tables_have_clock);
 
+/// Logs of one name, as cards number them anew (00000001.BIN), get the nearest folder's that differs before it:
+/// monday_00000001.
+void tell_apart(std::vector<LogPlace>& places);
+
 /// True for what blackbox_decode writes beside a log, by its name: *.gps.csv, *.gps.gpx, *.headers.csv, *.event.
 bool stands_beside_log(const std::string& path);
 

@@ -90,14 +90,16 @@ std::string other_frame(const FlightLog& log) {
                                                    "",
                                                    "a decacopter",
                                                    ""};
-  const auto kind = log.parameters.find("FRAME_CLASS"), type = log.parameters.find("FRAME_TYPE");
-  if (kind == log.parameters.end()) return "";
-  if (kind->second > 1) {
+  const auto kind = log.parameters.find("FRAME_CLASS");
+  const bool said = kind != log.parameters.end();
+  const std::string key = said ? "FRAME_TYPE" : "FRAME";  // before 3.5
+  const auto type = log.parameters.find(key);
+  if (said && kind->second > 1) {
     const auto index = static_cast<std::size_t>(std::min(kind->second, 15.0));
     return "FRAME_CLASS " + std::to_string(index) +
            (classes[index][0] == '\0' ? "" : std::string(": ") + classes[index]);
   }
-  return type != log.parameters.end() && std::abs(type->second) < 0.5 ? "FRAME_TYPE 0: a '+' frame" : "";
+  return type != log.parameters.end() && std::abs(type->second) < 0.5 ? key + " 0: a '+' frame" : "";
 }
 
 /// PX4's parameters of the places, where all four are logged: rotors ahead, behind and beside the centre.

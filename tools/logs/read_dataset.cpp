@@ -123,6 +123,7 @@ class Import {
         }
       }
     }
+    tell_apart(places);
     if (places.empty()) {
       throw InputError(logs_.front(), 0, 0, "a flight log, such as LOG00001.01.csv",
                        "what blackbox_decode writes beside one");
@@ -483,17 +484,28 @@ class Import {
     drop("outliers", "a value like none of its neighbours", [](const Flight& flight) { return outlier_rows(flight); });
   }
 
+  std::vector<Flight> cut_flights(std::vector<Flight> segments) const {
+    std::vector<Flight> flights = split_at_gaps(joined(std::move(segments)), mapping_.split_gap_s);
+    if (!settings_.cut_s) return flights;
+    std::vector<Flight> parts;
+    for (Flight& flight : flights) {
+      if (flight.size() == 0) continue;
+      for (Flight& part : cut(std::move(flight), *settings_.cut_s)) parts.push_back(std::move(part));
+    }
+    return parts;
+  }
+
   void make_flights() {
     const std::size_t before = rows_in(passages_);
     std::size_t longest = 0;
     for (Passage& passage : passages_) {
       use(passage.mapping);
       int part = 0;
-      for (Flight& flight : split_at_gaps(joined(std::move(passage.segments)), mapping_.split_gap_s)) {
+      for (Flight& flight : cut_flights(std::move(passage.segments))) {
         longest = std::max(longest, flight.size());
         if (flight.size() < fewest_rows) continue;
-        flight.trajectory = passage.trajectory;
         flight.name = free_name(dataset_.flights, passage.name, ++part);
+        flight.trajectory = settings_.cut_s && passage.trajectory == passage.name ? flight.name : passage.trajectory;
         const bool misread = causes_.find(flight.name) != causes_.end();
         if (!misread) {
           for (const SensorFinding& finding :

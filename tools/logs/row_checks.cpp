@@ -203,11 +203,10 @@ Flight without(Flight flight, const RowMask& out) {
   return flight;
 }
 
-std::vector<Flight> split_at_gaps(Flight flight, double gap_s) {
-  std::vector<std::size_t> begins;
-  for (std::size_t row = 0; row < flight.size(); ++row) {
-    if (row == 0 || flight[row].time_s - flight[row - 1].time_s > gap_s) begins.push_back(row);
-  }
+namespace {
+
+/// At the rows at which another part begins; the first is 0.
+std::vector<Flight> split(Flight flight, const std::vector<std::size_t>& begins) {
   std::vector<Flight> parts;
   if (begins.size() == 1) {
     parts.push_back(std::move(flight));
@@ -220,6 +219,27 @@ std::vector<Flight> split_at_gaps(Flight flight, double gap_s) {
     for (std::size_t row = begins[i]; row < end; ++row) append(parts.back(), flight, row);
   }
   return parts;
+}
+
+}  // namespace
+
+std::vector<Flight> split_at_gaps(Flight flight, double gap_s) {
+  std::vector<std::size_t> begins;
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    if (row == 0 || flight[row].time_s - flight[row - 1].time_s > gap_s) begins.push_back(row);
+  }
+  return split(std::move(flight), begins);
+}
+
+std::vector<Flight> cut(Flight flight, double part_s) {
+  const double begin_s = flight[0].time_s, length_s = flight.back().time_s - begin_s;
+  const double parts = std::max(1.0, std::round(length_s / part_s));
+  std::vector<std::size_t> begins = {0};
+  for (std::size_t row = 1; row < flight.size(); ++row) {
+    const double done = static_cast<double>(begins.size());
+    if (done < parts && flight[row].time_s - begin_s >= length_s * done / parts) begins.push_back(row);
+  }
+  return split(std::move(flight), begins);
 }
 
 Flight joined(std::vector<Flight> parts) {

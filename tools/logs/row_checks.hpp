@@ -45,6 +45,9 @@ Flight without(Flight flight, const RowMask& out);
 /// Parts at steps in time longer than `gap_s`.
 std::vector<Flight> split_at_gaps(Flight flight, double gap_s);
 
+/// In parts of one length, as near to `part_s` as whole parts are.
+std::vector<Flight> cut(Flight flight, double part_s);
+
 /// One after the other, which is in time's order.
 Flight joined(std::vector<Flight> parts);
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "logs/integrated_attitude.hpp"
 #include "logs/ulog_types.hpp"
 #include "pinnquad/exported/checksum.hpp"
 #include "pinnquad/io/file_error.hpp"
@@ -126,6 +127,10 @@ FlightLog read_usd_log(const std::string& path) {
     for (std::size_t i = 0; i < event.types.size(); ++i) {
       topic.columns[i].values.push_back(bytes.number(event.types[i].type, event.types[i].size));
     }
+  }
+  for (LogTopic& topic : log.topics) {
+    if (topic.size() == 0 || topic.column("stateEstimate.qw") != nullptr) continue;
+    add_integrated_attitude(topic, {"gyro.x", "gyro.y", "gyro.z"}, {"acc.x", "acc.y", "acc.z"}, 1);
   }
   return log;
 }

@@ -86,7 +86,7 @@ inline std::vector<std::size_t> bounded_widths(const pinnquad::RunTimeNetwork& n
     if (i % 2 == 0) {
       if (layer.outputs == 0 || !layer.has_bias) return {};
       widths.push_back(static_cast<std::size_t>(layer.outputs));
-    } else if (layer.outputs != 0 ||
+    } else if (layer.activation < 0 ||
                std::find(slopes_from_0_to_1.begin(), slopes_from_0_to_1.end(),
                          pinnquad::detail::run_time_activations<double>[layer.activation].description) ==
                    slopes_from_0_to_1.end()) {

@@ -3,8 +3,6 @@
 // network is that of models 2 to 4. Vanilla has as many variants of its training as the physics-informed network.
 #include "study/ablation.hpp"
 
-#include <algorithm>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,15 +11,11 @@
 #include "pinnquad/loss/local_monotonicity.hpp"
 #include "pinnquad/training/adam.hpp"
 #include "study/contender.hpp"
+#include "training/network_kinds.hpp"
 
 namespace study {
 
 namespace {
-
-template <class Axis>
-using PearsonTerm = pinnquad::Weighted<pinnquad::PearsonCorrelation<Axis>, pinnquad::CyclicalAnnealing>;
-using PearsonLoss = pinnquad::PhysicsInformed<pinnquad::Mse, PearsonTerm<pinnquad::Roll>, PearsonTerm<pinnquad::Pitch>,
-                                              PearsonTerm<pinnquad::Yaw>>;
 
 /// Batches in recorded order: consecutive pairs of a batch are consecutive in time.
 struct TimeOrderedBatches {
@@ -102,25 +96,15 @@ std::vector<Contender> ablation() {
                             annealed_weight()),
               informed);
   add_variant(all, "pearson", "Pearson's correlation instead of local monotonicity",
-              with_schedule(PearsonLoss{}, annealed_weight()), informed);
+              with_schedule(programs::PearsonLoss{}, annealed_weight()), informed);
   return all;
 }
 
 }  // namespace
 
 std::vector<Contender> chosen_variants(const std::vector<std::string>& names) {
-  std::vector<Contender> all = ablation();
-  if (names.empty()) return all;
-  std::vector<Contender> result;
-  for (Contender& contender : all) {
-    if (std::find(names.begin(), names.end(), contender.id) != names.end()) result.push_back(contender);
-  }
-  for (const std::string& name : names) {
-    if (std::any_of(all.begin(), all.end(), [&name](const Contender& c) { return c.id == name; })) continue;
-    throw std::invalid_argument("--variants: no variant '" + name + "'; known: " +
-                                programs::listed(all, [](const Contender& contender) { return contender.id; }));
-  }
-  return result;
+  return programs::chosen_by_name(
+      ablation(), names, [](const Contender& contender) { return contender.id; }, "--variants", "variant");
 }
 
 }  // namespace study

@@ -157,18 +157,9 @@ Condition given_condition(const std::string& name, const ToldAirframe& airframe)
   return {name, "recorded; 60 % of the rows train", Told::the_truth, airframe, {name}, usual};
 }
 
-std::vector<Condition> chosen_conditions(std::vector<Condition> all, const std::vector<std::string>& names) {
-  const auto is_named = [&names](const Condition& condition) {
-    return names.empty() || std::find(names.begin(), names.end(), condition.name) != names.end();
-  };
-  for (const std::string& name : names) {
-    if (std::any_of(all.begin(), all.end(), [&name](const Condition& c) { return c.name == name; })) continue;
-    throw std::invalid_argument("--conditions: no condition '" + name + "'; known: " +
-                                programs::listed(all, [](const Condition& condition) { return condition.name; }));
-  }
-  std::vector<Condition> chosen;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), is_named);
-  return chosen;
+std::vector<Condition> chosen_conditions(const std::vector<Condition>& all, const std::vector<std::string>& names) {
+  return programs::chosen_by_name(
+      all, names, [](const Condition& condition) { return condition.name; }, "--conditions", "condition");
 }
 
 Flight fly_for_beyond(const programs::StudyFlight& id) {

@@ -37,7 +37,7 @@ std::vector<Condition> flown_conditions();
 Condition given_condition(const std::string& name, const pinnquad::GivenAirframe& airframe);
 
 /// Those of `all` that are named, each once, in their order; all for no names. Throws std::invalid_argument, one line.
-std::vector<Condition> chosen_conditions(std::vector<Condition> all, const std::vector<std::string>& names);
+std::vector<Condition> chosen_conditions(const std::vector<Condition>& all, const std::vector<std::string>& names);
 
 /// Flies "d1", "d2", "d3"; with "_noisy" behind it as a log has it (noisy_gyro_errors()), with "_payload" a fifth
 /// heavier. Throws std::invalid_argument, one line, if the flight ends early.

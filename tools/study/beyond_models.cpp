@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <optional>
 #include <random>
-#include <stdexcept>
 #include <utility>
 
 #include "command_line/listed.hpp"
@@ -143,18 +142,10 @@ std::vector<BeyondModel> beyond_models() {
   };
 }
 
-std::vector<BeyondModel> chosen_models(std::vector<BeyondModel> all, const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    if (std::any_of(all.begin(), all.end(), [&name](const BeyondModel& m) { return m.name == name; })) continue;
-    throw std::invalid_argument("--models: no model '" + name +
-                                "'; known: " + programs::listed(all, [](const BeyondModel& m) { return m.name; }));
-  }
-  if (names.empty()) return all;
-  std::vector<BeyondModel> chosen;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&names](const BeyondModel& model) {
-    return model.name == yardstick || std::find(names.begin(), names.end(), model.name) != names.end();
-  });
-  return chosen;
+std::vector<BeyondModel> chosen_models(const std::vector<BeyondModel>& all, std::vector<std::string> names) {
+  if (!names.empty()) names.emplace_back(yardstick);
+  return programs::chosen_by_name(
+      all, names, [](const BeyondModel& model) { return model.name; }, "--models", "model");
 }
 
 }  // namespace study

@@ -47,7 +47,7 @@ inline constexpr const char* yardstick = "paper";
 std::vector<BeyondModel> beyond_models();
 
 /// Those of `all` that are named, and always the yardstick. Throws std::invalid_argument, one line.
-std::vector<BeyondModel> chosen_models(std::vector<BeyondModel> all, const std::vector<std::string>& names);
+std::vector<BeyondModel> chosen_models(const std::vector<BeyondModel>& all, std::vector<std::string> names);
 
 // Trainings, a translation unit each: what is slow to compile.
 BeyondTraining train_network_on_physics(const BeyondTask& task);

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 
 #include "loop/policy_parts.hpp"
@@ -28,7 +27,7 @@ class MppiPolicy {
  public:
   MppiPolicy(const Airframe<double>& airframe, const Site<double>& site, AnyTrajectory path, double speed_m_s,
              const LoopGains& gains)
-      : planner_(in_float(airframe),
+      : planner_(pinnquad::airframe_in<float>(airframe),
                  {static_cast<float>(site.elevation_m), static_cast<float>(site.ground_z_m),
                   static_cast<float>(site.gravity_m_s2)},
                  settings(gains, speed_m_s)),
@@ -53,21 +52,6 @@ class MppiPolicy {
   }
 
  private:
-  static Airframe<float> in_float(const Airframe<double>& airframe) {
-    std::vector<double> numbers;
-    Airframe<float> result;
-    each_number(airframe, [&](const auto& number) { numbers.push_back(static_cast<double>(number)); });
-    std::size_t k = 0;
-    each_number(result, [&](auto& number) {
-      using Number = std::decay_t<decltype(number)>;
-      if constexpr (std::is_enum_v<Number>) {
-        number = static_cast<Number>(static_cast<int>(numbers[k++]));
-      } else {
-        number = static_cast<float>(numbers[k++]);
-      }
-    });
-    return result;
-  }
   static MppiSettings settings(const LoopGains& gains, double speed_m_s) {
     MppiSettings result;
     constexpr double speed_per_distance_1_s = 1.5;  // 8 m/s at 6 m by these plans, and a margin

@@ -249,7 +249,8 @@ inline std::vector<Fold> folds_asked_for(const TrainOptions& options, const pinn
   if (!options.flights.empty()) return {fold_in_order(flights)};
   throw std::invalid_argument(
       "say what judges: --hold-out NAME[,NAME...] or --hold-out-each flight|trajectory; the flights are " +
-      listed(flights.flights(), [](const auto& flight) { return pinnquad::printable(flight.name); }));
+      listed(flights.flights(), [](const auto& flight) { return pinnquad::printable(flight.name); }) +
+      (flights.size() == 1 ? "; of one log pinnquad import --cut SECONDS makes several" : ""));
 }
 
 }  // namespace programs

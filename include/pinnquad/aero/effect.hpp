@@ -166,6 +166,18 @@ constexpr bool noexcept_or_absent() noexcept {
   }
 }
 
+template <class Effect>
+constexpr auto flown_type() noexcept {
+  if constexpr (is_detected<BoundCall, Effect, double>) {
+    return Unswitched<decltype(some<Effect>().bound(some<Airframe<double>>()))>{};
+  } else {
+    return Unswitched<Effect>{};
+  }
+}
+/// The effect that a vehicle asks: unswitched, and bound to an airframe.
+template <class Effect>
+using FlownEffect = typename decltype(flown_type<UnswitchedEffect<Effect>>())::type;
+
 /// Finds an effect's member by name, whatever its type: `&WithNames<Effect>::name` is ambiguous, and no type, where the
 /// effect has one.
 struct ContractNames {
@@ -197,9 +209,9 @@ using IsBattery = std::enable_if_t<Effect::is_battery>;
 template <class Effect>
 inline constexpr bool is_battery = is_detected<detail::IsBattery, detail::UnswitchedEffect<Effect>>;
 template <class Effect>
-inline constexpr bool changes_surroundings = is_detected<detail::SurroundingsCall, detail::UnswitchedEffect<Effect>>;
+inline constexpr bool changes_surroundings = is_detected<detail::SurroundingsCall, detail::FlownEffect<Effect>>;
 template <class Effect>
-inline constexpr bool makes_wrench = is_detected<detail::WrenchCall, detail::UnswitchedEffect<Effect>>;
+inline constexpr bool makes_wrench = is_detected<detail::WrenchCall, detail::FlownEffect<Effect>>;
 
 /// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Effect>
@@ -208,12 +220,12 @@ inline constexpr bool is_effect = changes_surroundings<Effect> || makes_wrench<E
 
 /// True for an effect with `wrench_on`.
 template <class Effect>
-inline constexpr bool has_thrust_branches = is_detected<detail::WrenchOnCall, detail::UnswitchedEffect<Effect>>;
+inline constexpr bool has_thrust_branches = is_detected<detail::WrenchOnCall, detail::FlownEffect<Effect>>;
 
 /// True for an effect whose `wrench` takes a RotorCondition.
 template <class Effect>
 inline constexpr bool uses_rotor_wrench =
-    makes_wrench<Effect> && !is_detected<detail::WrenchCall, detail::UnswitchedEffect<Effect>, AeroCondition<double>>;
+    makes_wrench<Effect> && !is_detected<detail::WrenchCall, detail::FlownEffect<Effect>, AeroCondition<double>>;
 
 /// False where the effect has a function of the contract's name that can't be called as the contract says, or returns
 /// something else: it would be passed over in silence. A `final` class is not looked into: C++ does not list its names.
@@ -221,9 +233,9 @@ template <class Effect, class Scalar = double>
 constexpr bool is_whole_effect() noexcept {
   using namespace detail;
   if constexpr (std::is_class_v<Effect> && !std::is_final_v<Effect>) {
-    return changes_surroundings<Effect> != is_detected<NoSurroundings, Effect> &&
-           makes_wrench<Effect> != is_detected<NoWrench, Effect> &&
-           has_thrust_branches<Effect> != is_detected<NoWrenchOn, Effect> &&
+    return is_detected<SurroundingsCall, Effect> != is_detected<NoSurroundings, Effect> &&
+           is_detected<WrenchCall, Effect> != is_detected<NoWrench, Effect> &&
+           is_detected<WrenchOnCall, Effect> != is_detected<NoWrenchOn, Effect> &&
            is_detected<BoundCall, Effect, Scalar> != is_detected<NoBound, Effect> &&
            is_detected<StatusCall, Effect, Scalar> != is_detected<NoStatus, Effect>;
   } else {

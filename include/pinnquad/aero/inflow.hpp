@@ -154,11 +154,6 @@ struct Inflow {
     return hover;
   }
 
-  template <class Scalar>
-  Wrench<Scalar> wrench(const RotorCondition<Scalar>& condition, const Airframe<Scalar>& airframe) const noexcept {
-    return bound(airframe).wrench(condition, airframe);
-  }
-
   /// `out_of_range` for a solidity above 1, a lift slope above 4 pi, or one of them that isn't positive.
   template <class Scalar>
   constexpr Status status(const Airframe<Scalar>&) const noexcept {

@@ -72,11 +72,6 @@ struct Wake {
     return {Scalar(depth), Scalar(peak_speed) * detail::hover_induced_velocity_m_s(airframe)};
   }
 
-  template <class Scalar>
-  Wrench<Scalar> wrench(const RotorCondition<Scalar>& condition, const Airframe<Scalar>& airframe) const noexcept {
-    return bound(airframe).wrench(condition, airframe);
-  }
-
   /// `out_of_range` for a depth outside 0 to 0.3, where three rotors could take all thrust, or a speed that isn't
   /// positive.
   template <class Scalar>

@@ -4,24 +4,31 @@
 //   predictor := part | Sum<predictor, part>
 //   part      := AxisAligned<scalar, features, place...> | Bounded<shown> | shown
 //   shown     := Withheld<network, features, place...> | network
-//   network   := Network<scalar, Inputs<n>, layer...>, layer := Dense<n> | DenseWithoutBias<n> | an activation
+//   network   := Network<scalar, Inputs<n>, layer...>
+//   layer     := Dense<n> | DenseWithoutBias<n> | LayerNorm<n> | RmsNorm<n> | Glu<n> | an activation
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <string_view>
 
+#include "pinnquad/exported/description_reader.hpp"
 #include "pinnquad/exported/run_time_activation.hpp"
 #include "pinnquad/nn/kernel/lane_row.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
+#include "pinnquad/nn/layer_norm.hpp"
 
 namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// A layer of a description: dense where it has outputs, else the activation of that place in Activations.
+/// A layer of a description: dense where it has outputs, a norm where it has `normalised`, Glu where it has `gated`,
+/// else the activation of that place in Activations.
 struct RunTimeLayer {
   int outputs = 0;
   bool has_bias = true;
+  int normalised = 0;   ///< numbers of LayerNorm, or of RmsNorm
+  bool centred = true;  ///< LayerNorm
+  int gated = 0;        ///< numbers that a Glu gives
   int activation = -1;
 };
 
@@ -58,50 +65,6 @@ struct RunTimePart {
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// Reads a description from left to right; spaces don't count. std::string_view::substr() may throw: it does not fly.
-class DescriptionReader {
- public:
-  constexpr explicit DescriptionReader(std::string_view text) noexcept : rest_(text) {}
-
-  constexpr bool at_end() noexcept {
-    skip_spaces();
-    return rest_.empty();
-  }
-  /// Takes the text where it is next.
-  constexpr bool take(std::string_view text) noexcept {
-    skip_spaces();
-    if (rest_.size() < text.size() || std::string_view(rest_.data(), text.size()) != text) return false;
-    rest_.remove_prefix(text.size());
-    return true;
-  }
-  /// The same of a name, where it ends there: Gelu is no GeluTanh.
-  constexpr bool take_name(std::string_view name) noexcept {
-    const DescriptionReader before = *this;
-    if (!take(name)) return false;
-    const char next = rest_.empty() ? ' ' : rest_.front();
-    if ((next >= 'a' && next <= 'z') || (next >= 'A' && next <= 'Z') || (next >= '0' && next <= '9')) *this = before;
-    return rest_.size() != before.rest_.size();
-  }
-  /// A number from 0 to `most`, or -1.
-  constexpr int number(int most) noexcept {
-    skip_spaces();
-    int value = -1;
-    while (!rest_.empty() && rest_.front() >= '0' && rest_.front() <= '9') {
-      value = 10 * (value < 0 ? 0 : value) + (rest_.front() - '0');
-      if (value > most) return -1;
-      rest_.remove_prefix(1);
-    }
-    return value;
-  }
-
- private:
-  constexpr void skip_spaces() noexcept {
-    while (!rest_.empty() && rest_.front() == ' ') rest_.remove_prefix(1);
-  }
-
-  std::string_view rest_;
-};
 
 /// The numbers of an entry of RunTimeNetwork::forward().
 enum class RunTimeEntry {
@@ -203,6 +166,19 @@ class RunTimeNetwork {
     while (reader.take(",")) {
       if (part.layer_count == RunTimePart::most_layers) return false;
       RunTimeLayer& layer = part.layers[part.layer_count++];
+      layer.centred = reader.take("pinnquad::LayerNorm<");
+      if (layer.centred || reader.take("pinnquad::RmsNorm<")) {
+        layer.normalised = reader.number(width);
+        if (layer.normalised < 1 || !reader.take(">")) return false;
+        parameters += 2 * layer.normalised;
+        continue;
+      }
+      if (reader.take("pinnquad::Glu<")) {
+        layer.gated = reader.number(width / 2);
+        if (layer.gated < 1 || !reader.take(">")) return false;
+        width -= layer.gated;
+        continue;
+      }
       layer.has_bias = !reader.take("pinnquad::DenseWithoutBias<");
       if (!layer.has_bias || reader.take("pinnquad::Dense<")) {
         layer.outputs = reader.number(widest_layer);
@@ -270,6 +246,16 @@ class RunTimeNetwork {
     part.each_shown([&](int feature) { work[width++] = x[feature]; });
     for (int i = 0; i < part.layer_count; ++i) {
       const RunTimeLayer& layer = part.layers[i];
+      if (layer.normalised > 0) {
+        normalise<Number, Count, Kind>(layer, own, work);
+        own += 2 * layer.normalised;
+        continue;
+      }
+      if (layer.gated > 0) {
+        gate<Number, Count, Kind>(layer.gated, work, width);
+        width -= layer.gated;
+        continue;
+      }
       if (layer.outputs == 0) {
         activate<Number, Count, Kind>(detail::run_time_activations<Number>[layer.activation], work, width);
         continue;
@@ -333,6 +319,42 @@ class RunTimeNetwork {
         entry[0] = activation.activate(entry[0]);
       }
     }
+  }
+
+  /// In place, as NormLayer.
+  template <class Number, int Count, detail::RunTimeEntry Kind, class Scalar>
+  static void normalise(const RunTimeLayer& layer, const Scalar* own, Values<Number, Count>* values) noexcept {
+    constexpr int rows = Kind == detail::RunTimeEntry::lanes ? Count : 1;
+    const int count = layer.normalised;
+    Number* const numbers = values->data();
+    for (int lane = 0; lane < rows; ++lane) {
+      const auto of_lane = detail::normalised<Number>(numbers + lane, count, Count, layer.centred);
+      for (int c = rows; c < Count; ++c) {
+        of_lane.multiply_by_jacobian(numbers + c, layer.centred);
+        for (int i = 0; i < count; ++i) numbers[i * Count + c] *= static_cast<Number>(own[i]);
+      }
+      for (int i = 0; i < count; ++i) {
+        numbers[i * Count + lane] =
+            multiply_add(static_cast<Number>(own[i]), of_lane[i], static_cast<Number>(own[count + i]));
+      }
+    }
+  }
+
+  /// In place, as Glu.
+  template <class Number, int Count, detail::RunTimeEntry Kind>
+  static void gate(int count, Values<Number, Count>* values, int width) noexcept {
+    constexpr std::size_t rows = Kind == detail::RunTimeEntry::lanes ? std::size_t(Count) : 1;
+    for (int i = 0; i < count; ++i) {
+      for (std::size_t lane = 0; lane < rows; ++lane) {
+        Number& x = values[i][lane];
+        const Number open = detail::logistic(values[count + i][lane]);
+        for (std::size_t c = rows; c < std::size_t(Count); ++c) {
+          values[i][c] = open * values[i][c] + x * open * (Number(1) - open) * values[count + i][c];
+        }
+        x = x * open;
+      }
+    }
+    for (int i = 2 * count; i < width; ++i) values[i - count] = values[i];
   }
 
   template <class Number, int Count, detail::RunTimeEntry Kind, class Scalar>

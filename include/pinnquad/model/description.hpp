@@ -10,6 +10,8 @@
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/fnv1a.hpp"
 #include "pinnquad/core/type_text.hpp"
+#include "pinnquad/nn/glu.hpp"
+#include "pinnquad/nn/layer_norm.hpp"
 #include "pinnquad/nn/network.hpp"
 
 namespace pinnquad::detail {
@@ -45,6 +47,12 @@ template <int Size>
 inline constexpr TemplateText<Number<Size>> description_of<Dense<Size>>{"pinnquad::Dense"};
 template <int Size>
 inline constexpr TemplateText<Number<Size>> description_of<DenseWithoutBias<Size>>{"pinnquad::DenseWithoutBias"};
+template <int Count>
+inline constexpr TemplateText<Number<Count>> description_of<LayerNorm<Count>>{"pinnquad::LayerNorm"};
+template <int Count>
+inline constexpr TemplateText<Number<Count>> description_of<RmsNorm<Count>>{"pinnquad::RmsNorm"};
+template <int Count>
+inline constexpr TemplateText<Number<Count>> description_of<Glu<Count>>{"pinnquad::Glu"};
 template <class Scalar, class InputSize, class... Specs>
 inline constexpr TemplateText<Scalar, InputSize, Specs...> description_of<Network<Scalar, InputSize, Specs...>>{
     "pinnquad::Network"};

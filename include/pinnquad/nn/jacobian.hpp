@@ -16,11 +16,22 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// `Stride`:
 ///   static void run<Pack, Rows, Stride>(parameters, x, y, by_output, by_input, finish) noexcept
 /// where x and y are the layer's inputs and outputs, and `finish(column, pack)` is applied to each stored pack.
-/// Specialise it for a layer of your own that is not element-wise.
+/// Specialise it for a layer of your own that is not element-wise, or give that layer, for one row,
+///   static void pull_back(parameters, x, by_output, by_input) noexcept
 template <class Layer>
 struct PullBack {
-  static_assert(is_elementwise<Layer>,
+  using Scalar = typename Layer::Scalar;
+  static_assert(is_elementwise<Layer> || detail::pulls_back<Layer>,
                 "pinnquad: this layer has no Jacobian; specialise pinnquad::PullBack (nn/jacobian.hpp)");
+  template <class Pack, int Rows, int Stride, class Finish>
+  static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar* x, const Scalar*,
+                                         const Scalar* by_output, Scalar* by_input, const Finish& finish) noexcept {
+    using Lane = GenericPack<Scalar, 1>;
+    for (int row = 0; row < Rows; ++row, by_output += Stride, by_input += Stride) {
+      Layer::pull_back(parameters, x, by_output, by_input);
+      for (int i = 0; i < Layer::inputs; ++i) finish(i, Lane{{by_input[i]}}).store(by_input + i);
+    }
+  }
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

@@ -77,6 +77,14 @@ inline constexpr bool is_noexcept_layer =
     is_noexcept_where_given<SlopeOf, Layer>() && is_noexcept_where_given<SlopeFromInputOf, Layer>();
 
 template <class Layer>
+using PullBackOf = decltype(Layer::pull_back(
+    static_cast<const typename Layer::Scalar*>(nullptr), static_cast<const typename Layer::Scalar*>(nullptr),
+    static_cast<const typename Layer::Scalar*>(nullptr), static_cast<typename Layer::Scalar*>(nullptr)));
+/// A layer that is not element-wise and goes back over one row of gradients (nn/jacobian.hpp).
+template <class Layer>
+inline constexpr bool pulls_back = is_detected<PullBackOf, Layer>;
+
+template <class Layer>
 using ElementwiseOf = std::enable_if_t<Layer::elementwise>;
 template <class Layer>
 using LaneByLaneOf = std::enable_if_t<Layer::lane_by_lane>;

@@ -2,7 +2,8 @@
 // Backward passes of layers. The contract of a layer's own: a specialisation `BackwardRule<Layer>` for one sample,
 //   static void backward(const Scalar* parameters, const Scalar* x, const Scalar* y, const Scalar* dy, Scalar* dx,
 //                        Scalar* parameter_gradient) noexcept;
-// dx is set, parameter_gradient is added to. Dense needs none, and an element-wise layer has its slope (nn/layer.hpp).
+// dx is set, parameter_gradient is added to. Dense needs none, an element-wise layer has its slope (nn/layer.hpp), and
+// one with a pull_back() has the rule below.
 // Over a mini-batch activations are [feature][sample], a sample per lane, each row as long as the largest batch in
 // whole blocks. A forward pass runs over whole packs: lanes behind the last sample hold copies of it. A backward pass
 // may leave anything there, and no sum over samples takes it in.
@@ -20,8 +21,23 @@
 
 namespace pinnquad {
 
+namespace detail {
 template <class Layer>
-struct BackwardRule;
+using AddGradientOf = decltype(&Layer::add_gradient);
+}  // namespace detail
+
+/// A layer that pulls back (nn/layer.hpp) brings, where it has parameters, for one sample
+///   static void add_gradient(const Scalar* x, const Scalar* dy, Scalar* parameter_gradient) noexcept;
+template <class Layer>
+struct BackwardRule {
+  using Scalar = typename Layer::Scalar;
+  template <class Number, class = std::enable_if_t<std::is_same_v<Number, Scalar> && detail::pulls_back<Layer>>>
+  static void backward(const Number* parameters, const Scalar* x, const Scalar*, const Scalar* dy, Scalar* dx,
+                       [[maybe_unused]] Scalar* parameter_gradient) noexcept {
+    if constexpr (is_detected<detail::AddGradientOf, Layer>) Layer::add_gradient(x, dy, parameter_gradient);
+    Layer::pull_back(parameters, x, dy, dx);
+  }
+};
 
 namespace detail {
 

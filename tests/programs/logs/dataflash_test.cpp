@@ -92,6 +92,19 @@ TEST_CASE("instances by FMTU, parameters, and motors by SERVOn_FUNCTION") {
   CHECK(read.topic("RCOU")->column("Motor3") == nullptr);
 }
 
+TEST_CASE("before 3.5 the first outputs are motors: Ch1 to Ch4, of the throttle stick's pulses from THR_MIN on") {
+  std::string log = formats + parameters + format(8, 19, "RCOU", "QHHHH", "TimeUS,Ch1,Ch2,Ch3,Ch4");
+  log += message(8, Bytes().u64(5).u16(1500).u16(1200).u16(1300).u16(1400).str());
+  log += parameter("THR_MIN", 130) + parameter("MOT_THST_MAX", 0.95f) + parameter("RC3_MIN", 1100);
+  log += parameter("RC3_MAX", 1900);
+  const FlightLog read = parsed(log);
+  REQUIRE(read.topic("RCOU") != nullptr);
+  CHECK(read.topic("RCOU")->column("Motor1")->values == Values{1500});
+  CHECK(read.topic("RCOU")->column("Motor4")->values == Values{1400});
+  CHECK(read.parameters.at("motorOutput[0]") == 1204);
+  CHECK(read.parameters.at("motorOutput[1]") == doctest::Approx(1860));
+}
+
 TEST_CASE("bytes that are no message are left out and told; a format of wrong length leaves its messages out") {
   const std::string a = format(9, 12, "A", "QB", "TimeUS,v");
   const auto row = [](unsigned v) { return message(9, Bytes().u64(1000 * v).u8(v).str()); };

@@ -26,6 +26,9 @@ WIDEST = 4096  # numbers between two operators; the library's own limit is lower
 MOST_NUMBERS = 1 << 24
 LEAKY = 0.01  # slope of the library's LeakyRelu
 CLIP_BOUND = 3.5  # of its Clip, either way
+NORM_EPSILON = 1e-5  # of its LayerNorm and RmsNorm
+NORMS = ("layer_norm", "rms_norm")
+WHOLE_LAYERS = (*NORMS, "glu")  # each reads many numbers; those behind them pass on
 
 
 class Refused(Exception):
@@ -126,17 +129,25 @@ class Affine:
 
 
 class Value:
-    """What an operator made: affine in the stages, or an elementwise function `of_root` of a value that is, `root`.
-    `marks`: scales and shifts of the root's elements with which operators met them."""
+    """What an operator made: affine in the stages, or a function `of_root` of a value that is, `root`: elementwise, or
+    of several numbers. `marks`: scales and shifts of the root's elements with which operators met them."""
 
-    def __init__(self, shape, affine, root=None, of_root=None, marks=(), node=None, inputs=()):
+    def __init__(self, shape, affine, root=None, of_root=None, marks=(), node=None, inputs=(), elementwise=True):
         self.shape, self.affine = shape, affine
         self.size = int(np.prod(shape))
         self.root = affine if root is None else root
         self.of_root = of_root or (lambda z: z.reshape(shape))
         self.marks = list(marks) or [(np.ones(self.size), np.zeros(self.size))]
-        self.node, self.inputs = node, inputs
-        self.made = None  # the same, affine in a stage of its own
+        self.node, self.inputs, self.elementwise = node, inputs, elementwise
+        self.made = None  # the same, affine in a stage of its own, or why there is none
+        self.nearer = None  # the same, a function of what a later layer makes
+
+
+def stacked(parts):
+    """The numbers of several, one behind the other."""
+    wide = {stage: own.shape[1] for part in parts for stage, own in part.weights.items()}
+    return Affine({stage: np.vstack([part.weights.get(stage, np.zeros((len(part.shift), width))) for part in parts])
+                   for stage, width in wide.items()}, np.concatenate([part.shift for part in parts]))
 
 
 def same(root, other):
@@ -157,7 +168,7 @@ def softplus(q):
 
 
 def sigmoid(q):
-    return 0.5 + 0.5 * np.tanh(0.5 * q)
+    return np.exp(-np.logaddexp(0.0, -q))
 
 
 def gelu(q):
@@ -230,17 +241,29 @@ class Lowering:
         made = self.elementwise_value(node, inputs, running)
         if made:
             return made
-        if any(not one.affine for one in running):
-            return self.taken(node, [one if not isinstance(one, Value) or one.affine else self.made_affine(one)
-                                     for one in inputs])
-        if len(running) > 1:
-            raise Refused(f"{node.name}: sums of layers, and activations of one of them",
-                          "a function of several that depend on the input")
-        raise Refused(f"{node.name}: affine maps and activations, each of its own number", "a function of several numbers")
+        made = self.gated(node, inputs, running)
+        if made:
+            return made
+        try:
+            if any(not one.affine for one in running):
+                return self.taken(node, [one if not isinstance(one, Value) or one.affine else self.made_affine(one)
+                                         for one in inputs])
+            if len(running) > 1:
+                raise Refused(f"{node.name}: sums of layers, and activations of one of them",
+                              "a function of several that depend on the input")
+            raise Refused(f"{node.name}: affine maps, norms, and activations of each number", "a function of several numbers")
+        except Refused:
+            made = self.joint_value(node, [self.nearest(one) if isinstance(one, Value) else one for one in inputs])
+            if not made:
+                raise
+            try:
+                return self.made_affine(made)
+            except Refused:
+                return made
 
     def fixed(self, node, inputs, running):
         """What no input changes: a shape, a number that is no array."""
-        tried = [node([one if not isinstance(one, Value) else one.of_root(z[: one.size]) for one in inputs])
+        tried = [node([one if not isinstance(one, Value) else one.of_root(z[: len(one.root.shift)]) for one in inputs])
                  for z in (np.zeros(WIDEST), self.random(WIDEST), 100 * self.random(WIDEST))] if running else [node(inputs)]
         if not isinstance(tried[0], np.ndarray):
             return tried[0]
@@ -292,7 +315,7 @@ class Lowering:
 
     def elementwise_value(self, node, inputs, running):
         root, size = running[0].root, running[0].size
-        if not all(same(one.root, root) and one.size == size for one in running):
+        if not all(same(one.root, root) and one.size == size and one.elementwise for one in running):
             return None
 
         def of_root(z):
@@ -310,6 +333,34 @@ class Lowering:
         marks = [mark for one in running for mark in one.marks]
         return Value(first.shape, None, root, of_root, marks, node, inputs)
 
+    def joint_value(self, node, inputs):
+        """A function of several numbers, which operators behind it may complete to a norm."""
+        roots = []
+        for one in inputs:
+            if isinstance(one, Value) and not any(same(one.root, root) for root in roots):
+                roots.append(one.root)
+        root = roots[0] if len(roots) == 1 else stacked(roots)
+        ends = np.cumsum([0, *(len(own.shift) for own in roots)])
+
+        def of_root(z):
+            parts = [z[begin:end] for begin, end in zip(ends, ends[1:])]
+            own = lambda one: one.of_root(next(part for part, root in zip(parts, roots) if same(one.root, root)))
+            return node([own(one) if isinstance(one, Value) else one for one in inputs])
+
+        first = of_root(self.random(len(root.shift)))
+        if not isinstance(first, np.ndarray) or first.dtype.kind != "f":
+            return None
+        return Value(first.shape, None, root, of_root, (), node, inputs, False)
+
+    def nearest(self, value):
+        """The value affine in a stage of its own; else as a function of the last stage that it needs."""
+        try:
+            return self.made_affine(value)
+        except Refused:
+            while value.nearer:
+                value = value.nearer
+            return value
+
     # -- activations
 
     def made_affine(self, value):
@@ -317,18 +368,77 @@ class Lowering:
         if value.affine:
             return value
         if not value.made:
-            value.made = self.own_stage(value)
+            try:
+                value.made = self.own_stage(value)
+            except Refused as refused:
+                value.made = refused
+        if isinstance(value.made, Refused):
+            raise value.made
         return value.made
 
     def own_stage(self, value):
-        found = self.recognised(value)
+        found = self.recognised(value) if value.elementwise else None
         if found:
             return self.stage_of(value, *found)
+        found = None if value.elementwise else self.norm_of(value)
+        if found:
+            return found
         inputs = [one if not isinstance(one, Value) or one.affine else self.made_affine(one) for one in value.inputs]
         if all(new is old for new, old in zip(inputs, value.inputs)):
-            raise Refused(f"{value.node.name}: an activation that the library has (docs/convert.md)", "another function")
-        made = self.taken(value.node, inputs)
+            raise Refused(f"{value.node.name}: an activation that the library has (docs/convert.md)",
+                          "another function" if value.elementwise else "a function of several numbers")
+        made = value.nearer = self.taken(value.node, inputs)
         return made if made.affine else self.made_affine(made)
+
+    def gated(self, node, inputs, running):
+        """Numbers times the sigmoid of as many others, in a stage of its own; None."""
+        for one in [None, *running] if len(running) == 2 else [None]:
+            try:  # the numbers may be an activation's
+                value = self.joint_value(node, [self.made_affine(other) if other is one else other for other in inputs])
+            except Refused:
+                continue
+            half = len(value.root.shift) // 2 if value else 0
+            if not half or value.size != half:
+                continue
+            for turn in (0, half):
+                rows = [np.roll(scale * self.random(2 * half, seed), turn) for scale in (0.1, 1.0, 30.0) for seed in range(3)]
+                of = lambda z: np.asarray(value.of_root(np.roll(z, turn)), "f8").reshape(-1)
+                if all(np.allclose(of(z), z[:half] * sigmoid(z[half:]), 1e-9, 1e-9) for z in rows):
+                    q = value.root.mapped(np.roll(np.eye(2 * half), turn, 0), np.zeros(2 * half))
+                    return Value(value.shape, Affine({self.stage("glu", q): np.eye(half)}, np.zeros(half)))
+        return None
+
+    def norm_of(self, value):
+        """A value that is weights times the normalised root, and a shift, behind a stage of its own; None."""
+        count = len(value.root.shift)
+        of = lambda z: np.asarray(value.of_root(z), "f8").reshape(-1)
+        z, shift, far = self.random(count), of(np.zeros(count)), 1e8
+        if not np.all(np.isfinite(shift)):
+            return None
+        for norm, u in (("layer_norm", lambda z: z - z.mean()), ("rms_norm", lambda z: z)):
+            spread = lambda z: math.sqrt(np.mean(u(z) ** 2))
+            weights = np.array([(of(far * unit) - shift) * spread(unit) for unit in np.eye(count)]).T
+            if norm == "layer_norm" and value.size == count:  # only differences count: none off the diagonal, if they can
+                weights -= (weights.sum(1) - np.diag(weights))[:, None] / max(count - 1, 1)
+            weights[np.abs(weights) <= 1e-12 * np.abs(weights).max(initial=0)] = 0
+            limit = weights @ u(z) / spread(z)
+            if not np.all(np.isfinite(limit)) or not limit.any():
+                continue
+            place = np.abs(limit).argmax()
+            low, high = -30.0, 30.0  # of log(s), where s z gives the half of the limit's square: spread(s z)^2 is epsilon
+            for _ in range(80):
+                middle = (low + high) / 2
+                less = 2 * (of(math.exp(middle) * z)[place] - shift[place]) ** 2 < limit[place] ** 2
+                low, high = (middle, high) if less else (low, middle)
+            epsilon = (math.exp(low) * spread(z)) ** 2
+            if not 1e-20 < epsilon < 1e3:
+                continue
+            made = lambda z: weights @ u(z) / math.sqrt(np.mean(u(z) ** 2) + epsilon) + shift
+            others = [scale * self.random(count, seed) + seed for scale in (1e-3, 1.0, 1e3) for seed in range(3)]
+            if all(np.allclose(made(one), of(one), 1e-9, 1e-9 * (1 + np.abs(limit).max())) for one in others):
+                q = value.root.mapped(math.sqrt(NORM_EPSILON / epsilon) * np.eye(count), 0)
+                return Value(value.shape, Affine({self.stage(norm, q): weights}, shift))
+        return None
 
     @staticmethod
     def bends(of, size):
@@ -444,26 +554,23 @@ class Lowering:
         for number in range(1, len(self.stages)):
             activation, of = self.stages[number]
             level[number] = 1 + max((level[stage] for stage in of.weights), default=0)
-            groups.setdefault((level[number], activation), []).append(number)
+            groups.setdefault((level[number], activation, number if activation in WHOLE_LAYERS else 0), []).append(number)
         stages, moved = [None], {0: (0, 0)}  # of an old stage the new one, and where in it
+        outputs = lambda activation, q: len(q.shift) // (2 if activation == "glu" else 1)
 
         def renamed(affine):
             weights = {}
             for stage, own in affine.weights.items():
                 new, at = moved[stage]
-                width = self.graph.width if new == 0 else len(stages[new][1].shift)
+                width = self.graph.width if new == 0 else outputs(*stages[new])
                 wide = weights.setdefault(new, np.zeros((own.shape[0], width)))
                 wide[:, at : at + own.shape[1]] += own
             return Affine(weights, affine.shift)
 
-        for (_, activation), numbers in sorted(groups.items(), key=lambda group: group[0][0]):
+        for (_, activation, _), numbers in sorted(groups.items(), key=lambda group: group[0][0]):
             parts = [renamed(self.stages[number][1]) for number in numbers]
-            used = sorted({stage for part in parts for stage in part.weights})
             sizes = [len(part.shift) for part in parts]
-            width = lambda stage: self.graph.width if stage == 0 else len(stages[stage][1].shift)
-            weights = {stage: np.vstack([part.weights.get(stage, np.zeros((size, width(stage))))
-                                         for part, size in zip(parts, sizes)]) for stage in used}
-            stages.append((activation, Affine(weights, np.concatenate([part.shift for part in parts]))))
+            stages.append((activation, stacked(parts)))
             for number, at in zip(numbers, np.cumsum([0, *sizes])):
                 moved[number] = len(stages) - 1, int(at)
         return stages, renamed(output)
@@ -476,15 +583,32 @@ class Lowering:
         place = {0: np.eye(self.graph.width)}  # stages by the numbers that the last layer made
         layers = []
 
-        def dense(*parts):
+        def dense(*parts, last=False):
             weights = [sum((own @ place[stage] for stage, own in part.weights.items()),
                            np.zeros((len(part.shift), next(iter(place.values())).shape[1]))) for part in parts]
-            layers.append({"weights": np.vstack(weights).tolist(),
-                           "bias": np.concatenate([part.shift for part in parts]).tolist()})
+            weights, bias = np.vstack(weights), np.concatenate([part.shift for part in parts])
+            before = layers[-1] if layers and isinstance(layers[-1], dict) and "norm" in layers[-1] else None
+            if before and not last and weights.shape == (len(before["bias"]),) * 2 and np.array_equal(
+                    weights, np.diag(np.diag(weights))):  # the norm's own scales and shifts
+                before["weights"], before["bias"] = np.diag(weights).tolist(), bias.tolist()
+                return
+            layers.append({"weights": weights.tolist(), "bias": bias.tolist()})
 
         def advance(activation, q, name, carried, odd):
-            """Stage `name` = activation(q); the carried ones beside it, each as two halves times `odd`."""
+            """Stage `name` = activation(q); the carried ones beside it, each as two halves times `odd`. A norm and
+            a gate let them pass."""
             kept = [Affine({stage: np.eye(place[stage].shape[0])}, np.zeros(place[stage].shape[0])) for stage in carried]
+            if activation in WHOLE_LAYERS:
+                dense(q, *kept)
+                size = len(q.shift)
+                layers.append({"norm": activation, "weights": [1.0] * size, "bias": [0.0] * size})
+                if activation == "glu":
+                    size //= 2
+                    layers[-1] = {"glu": size}
+                sizes = [size, *(len(one.shift) for one in kept)]
+                place.clear()
+                place.update(zip([name, *carried], np.split(np.eye(sum(sizes)), np.cumsum(sizes)[:-1])))
+                return
             dense(q, *(self.halves(one) for one in kept))
             layers.append(activation)
             width, at = sum(len(one.shift) * 2 for one in kept) + len(q.shift), len(q.shift)
@@ -514,10 +638,10 @@ class Lowering:
                 place.update(moved)
                 place[number] = np.eye(size + rest)[:size]
                 continue
-            if carried and activation not in ODD_PARTS:
+            if carried and activation not in (*ODD_PARTS, *WHOLE_LAYERS):
                 raise Refused("a skip connection past relu, leaky_relu, elu, gelu, silu or softplus", f"past {activation}")
             advance(activation, q, number, carried, ODD_PARTS.get(activation, 1))
-        dense(output)
+        dense(output, last=True)
         return layers
 
 
@@ -559,6 +683,11 @@ def chain_of_tensors(tensors, asked):
     for name in names:
         if name not in modules:
             raise Refused(f"'{name}.weight', a layer of the features file", ", ".join(f"'{one}'" for one in modules))
+    for name in names:
+        scale = modules[name].get("weight", modules[name].get("scale"))
+        if scale is not None and scale.ndim == 1 and "running_mean" not in modules[name]:
+            raise Refused(f"'{prefix}{name}.weight' of two dimensions, of Linear", f"{list(scale.shape)}, of a norm: tensors "
+                          "say neither which nor its epsilon (convert the module, or its ONNX)")
     parents = {name.rpartition(".")[0] for name in names}
     if len(parents) > 1 and not asked.get("layers"):
         some = sorted(parents, key=natural)[:3]
@@ -789,6 +918,12 @@ def batch_norm(x, gamma, beta, mean, variance, epsilon):
     return (x - column(mean)) / np.sqrt(column(variance) + epsilon) * column(gamma) + column(beta)
 
 
+def norm(x, gamma, beta, axis, epsilon, centred):
+    axes = tuple(range(axis % x.ndim, x.ndim))
+    off = x - x.mean(axes, keepdims=True) if centred else x
+    return off / np.sqrt((off**2).mean(axes, keepdims=True) + epsilon) * gamma + (0.0 if beta is None else beta)
+
+
 def reduced(of, x, axes, keep):
     return of(x, axis=None if axes is None else tuple(int(one) for one in np.ravel(axes)), keepdims=bool(keep))
 
@@ -825,6 +960,9 @@ def operators(a):
         "Gemm": lambda x, w, c=0.0: a("alpha", 1.0) * ((x.T if a("transA", 0) else x) @ (w.T if a("transB", 0) else w))
         + a("beta", 1.0) * c,
         "BatchNormalization": lambda x, g, b, m, v: batch_norm(x, g, b, m, v, a("epsilon", 1e-5)),
+        "LayerNormalization": lambda x, g, b=None: norm(x, g, b, a("axis", -1), a("epsilon", 1e-5), True),
+        "RMSNormalization": lambda x, g: norm(x, g, None, a("axis", -1), a("epsilon", 1e-5), False),
+        "SimplifiedLayerNormalization": lambda x, g: norm(x, g, None, a("axis", -1), a("epsilon", 1e-5), False),
         "Identity": lambda x: x, "Dropout": lambda x, *more: x, "CastLike": lambda x, other: x,
         "Cast": lambda x: x.astype("f8") if a("to", 1) in FLOATS else x.astype(WHOLE.get(a("to", 1), "i8")),
         "Flatten": lambda x: flattened(x, a("axis", 1)), "Reshape": lambda x, s: reshaped(x, s, a("allowzero", 0)),
@@ -1175,6 +1313,20 @@ def read_network(asked, source=None):
 # Back: a model as a network for elsewhere
 
 
+def applied(step, v):
+    """A layer as the library has it, of rows."""
+    if isinstance(step, str):
+        return ACTIVATIONS[step](v)
+    if "glu" in step:
+        count = step["glu"]
+        return np.hstack([v[:, :count] * sigmoid(v[:, count : 2 * count]), v[:, 2 * count :]])
+    if "norm" not in step:
+        return v @ np.array(step["weights"]).T + step["bias"]
+    count = len(step["bias"])
+    made = norm(v[:, :count], step["weights"], np.array(step["bias"]), -1, NORM_EPSILON, step["norm"] == "layer_norm")
+    return np.hstack([made, v[:, count:]])
+
+
 class Model:
     """A model in numbers: standardised features, a sum of chains, each between bounds, an affine map to commands."""
 
@@ -1202,7 +1354,7 @@ class Model:
         for part in self.parts:
             v = z[:, part["shown"]] if part["shown"] else z
             for step in part["steps"]:
-                v = ACTIVATIONS[step](v) if isinstance(step, str) else v @ np.array(step["weights"]).T + step["bias"]
+                v = applied(step, v)
             y += np.clip(v, part["lower"], part["upper"]) if part["lower"] else v
         u = (y * self.output_deviation + self.output_mean) @ self.weights.T + self.bias
         return u if self.of_features is None else u + features @ self.of_features.T
@@ -1256,13 +1408,34 @@ def onnx_of(model):
             return node("Mul", x, node("Tanh", node("Softplus", x)))
         return node(plain[word], x)
 
+    def whole_layer(x, step, width):
+        """A norm or a gate, as operators of opset 13."""
+        some = lambda *places: node("Gather", x, constant(range(*places), TensorProto.INT64), axis=1)
+        if "glu" in step:
+            count = step["glu"]
+            made = node("Mul", some(count), node("Sigmoid", some(count, 2 * count)))
+            return node("Concat", made, some(2 * count, width), axis=1) if 2 * count < width else made
+        count = len(step["bias"])
+        own = some(count) if count < width else x
+        off = node("Sub", own, node("ReduceMean", own, axes=[1])) if step["norm"] == "layer_norm" else own
+        variance = node("Add", node("ReduceMean", node("Mul", off, off), axes=[1]), constant(NORM_EPSILON))
+        made = node("Add", node("Mul", node("Div", off, node("Sqrt", variance)), constant(step["weights"])), constant(step["bias"]))
+        return node("Concat", made, some(count, width), axis=1) if count < width else made
+
     clipped = lambda x, lower, upper: node("Min", node("Max", x, constant(lower)), constant(upper))
     x = "features" if model.least is None else clipped("features", model.least, model.most)
     z, total = node("Div", node("Sub", x, constant(model.mean)), constant(model.deviation)), None
     for part in model.parts:
         v = node("Gather", z, constant(part["shown"], TensorProto.INT64), axis=1) if part["shown"] else z
+        width = len(part["shown"] or model.mean)
         for step in part["steps"]:
-            v = activation(v, step) if isinstance(step, str) else gemm(v, step["weights"], step["bias"])
+            if isinstance(step, str):
+                v = activation(v, step)
+            elif "bias" not in step or "norm" in step:
+                v = whole_layer(v, step, width)
+                width -= step.get("glu", 0)
+            else:
+                v, width = gemm(v, step["weights"], step["bias"]), len(step["bias"])
         if part["lower"]:
             v = clipped(v, part["lower"], part["upper"])
         total = node("Add", total, v) if total else v
@@ -1294,13 +1467,14 @@ def safetensors_of(model):
         raise refuse("columns that are clipped to their range")
     if model.of_features is not None:
         raise refuse("a base that reads the features")
+    if any(not isinstance(step, str) and ("norm" in step or "glu" in step) for step in part["steps"]):
+        raise refuse("a norm or a gate, which tensors don't name")
     graph = ChainGraph()
     graph.add("model", lambda v: (v - model.mean) / model.deviation)
     if part["shown"]:
         graph.add("shown", lambda v: v[:, part["shown"]])
     for step in part["steps"]:
-        graph.add("step", ACTIVATIONS[step] if isinstance(step, str)
-                  else lambda v, w=np.array(step["weights"]), b=np.array(step["bias"]): v @ w.T + b)
+        graph.add("step", lambda v, step=step: applied(step, v))
     graph.add("commands", lambda v: (v * model.output_deviation + model.output_mean) @ model.weights.T + model.bias)
     layers = Lowering(Graph(len(model.mean), graph.nodes)).layers()
     number, data, header = "<f8" if model.said["is_double"] else "<f4", b"", {}

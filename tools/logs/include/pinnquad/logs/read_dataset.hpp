@@ -58,6 +58,7 @@ struct LogSettings {
   std::optional<double> lag_s;    ///< from command to motion; empty: estimated
   double from_s = 0;              ///< of each log, from its first row on: rows before are left out
   std::optional<double> to_s;     ///< and rows after; empty: to the end
+  std::optional<double> cut_s;    ///< flights are cut into parts of about this length; empty: they stay whole
   bool hold_commands = false;     ///< a command holds until the next row, where lines are drawn between rows otherwise
   bool keep_saturated = false;    ///< rows with a command at its limit stay: what the motors were given is known
   OnProgress on_progress;

@@ -1,3 +1,0 @@
-// SPDX-License-Identifier: MIT
-// See declarations.hpp.
-#include "declarations.hpp"

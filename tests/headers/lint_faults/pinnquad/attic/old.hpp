@@ -1,3 +1,0 @@
-// SPDX-License-Identifier: MIT
-#pragma once
-// FAULT 'attic' is no room

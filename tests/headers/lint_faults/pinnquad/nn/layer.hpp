@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: MIT
-#pragma once
-// FAULT write <pinnquad/...>
-#include "dense.hpp"

@@ -1,2 +1,0 @@
-#include "pinnquad/nn/a.hpp"
-pinnquad::Lonely lonely;
