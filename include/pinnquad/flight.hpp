@@ -45,7 +45,6 @@
 #include "pinnquad/inference/monitored_inverse.hpp"
 #include "pinnquad/inference/self_test.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
-#include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/nn/activations.hpp"
 #include "pinnquad/nn/batch_norm.hpp"
 #include "pinnquad/nn/glu.hpp"

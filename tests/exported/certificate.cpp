@@ -332,10 +332,3 @@ TEST_CASE(
   CHECK(turned(1) == 0);
   CHECK(turned(0.003) + turned(0.0003) + turned(0.00003) > 0);  // which of them, the kernel decides
 }
-
-TEST_CASE("nobody knows the rounding of a network that is shown the angular acceleration, nor of a formula") {
-  using Shown = Network<float, InputSize<PhysicsFeatures::size>, Dense<4>, Tanh, Dense<4>>;
-  const MonotoneModel<MonotoneShape<PhysicsFeatures, PathBoundedPredictor<PhysicsFeatures, Shown>>> model(1);
-  CHECK(std::isinf(model.certificate().rounding));
-  CHECK(std::isinf(model.certificate().sure_step[2]));
-}

@@ -157,18 +157,14 @@ using Normed = Network<Scalar, InputSize<16>, LayerNorm<16>, Dense<9>, RmsNorm<9
 using Clipped = Network<double, InputSize<16>, Clip, Dense<40>, Softplus, Dense<4>>;
 
 using Residual = Network<float, InputSize<residual_inputs<PhysicsFeatures>>, Dense<8>, Relu, Dense<4>>;
-using Seeing = Network<float, InputSize<PhysicsFeatures::size>, Dense<6>, Tanh, Dense<4>>;
 using Period = PeriodMicroseconds<20000>;
 using PhysicsWindow = PartlyWindowed<PhysicsFeatures, AccelerationFeatures, 3, Period>;
 using WindowResidual = Network<double, InputSize<residual_inputs<PhysicsWindow>>, Dense<8>, Silu, Dense<4>>;
-using WindowSeeing = Network<float, InputSize<PhysicsWindow::size>, Dense<5>, Relu, Dense<5>, Softplus, Dense<4>>;
 using OnBase = SignedSumsOn<RigidBodyBase>;
 
 using BaseAlone = ModelOf<MonotoneBase<PhysicsFeatures>, PhysicsFeatures, AxisCommandOutputs>;
 using Monotone = ModelOf<MonotonePredictor<PhysicsFeatures, Residual>, PhysicsFeatures, AxisCommandOutputs>;
 using MonotoneWindow = ModelOf<MonotonePredictor<PhysicsWindow, WindowResidual>, PhysicsWindow, AxisCommandOutputs>;
-using PathBoundedModel = ModelOf<PathBoundedPredictor<PhysicsFeatures, Seeing>, PhysicsFeatures, AxisCommandOutputs>;
-using PathBoundedWindow = ModelOf<PathBoundedPredictor<PhysicsWindow, WindowSeeing>, PhysicsWindow, AxisCommandOutputs>;
 using MonotoneOnBase = ModelOf<MonotonePredictor<PhysicsFeatures, Residual>, PhysicsFeatures, OnBase>;
 /// No structure that is proven: two networks, a base that covers no angular acceleration.
 using TwoNetworks = ModelOf<Sum<Small<float, Relu>, Small<float, Sine>>, PaperFeatures>;
@@ -403,8 +399,8 @@ TEST_CASE_TEMPLATE("commands to the bit: each output schema, rotors with curves,
   commands_are_the_same<Model>(2);
 }
 
-TEST_CASE_TEMPLATE("commands to the bit: sums, monotone and path-bounded models", Model, BaseAlone, Monotone,
-                   MonotoneWindow, PathBoundedModel, PathBoundedWindow, MonotoneOnBase, TwoNetworks, OtherThrees) {
+TEST_CASE_TEMPLATE("commands to the bit: sums, monotone models", Model, BaseAlone, Monotone, MonotoneWindow,
+                   MonotoneOnBase, TwoNetworks, OtherThrees) {
   commands_are_the_same<Model>(3);
 }
 
@@ -522,8 +518,8 @@ TEST_CASE_TEMPLATE("derivatives are those of central differences in double", Mod
 
 TEST_CASE_TEMPLATE("derivatives are those that the flight side works out", Model, Activated<Relu>, Activated<Gelu>,
                    Activated<Elu>, ActivatedInDouble<LeakyRelu>, ActivatedInDouble<Softplus>,
-                   OfSchema<WrenchOutputs, Racer>, Monotone, PathBoundedModel, MonotoneOnBase, TwoNetworks,
-                   OfFeatures<CausalWindow>, ModelOf<Normed<float>, PaperFeatures>) {
+                   OfSchema<WrenchOutputs, Racer>, Monotone, MonotoneOnBase, TwoNetworks, OfFeatures<CausalWindow>,
+                   ModelOf<Normed<float>, PaperFeatures>) {
   using Scalar = typename Model::Scalar;
   const Model model = some<Model>(7);
   const auto bytes = drawn_block(model);
@@ -551,7 +547,7 @@ TEST_CASE_TEMPLATE("derivatives are those that the flight side works out", Model
 }
 
 TEST_CASE_TEMPLATE("the certificate of a block is that of its training, number by number", Model, BaseAlone, Monotone,
-                   MonotoneWindow, PathBoundedModel, PathBoundedWindow, MonotoneOnBase) {
+                   MonotoneWindow, MonotoneOnBase) {
   const Model model = some<Model>(8);
   const BlockModel block("drawn.block", drawn_block(model));
   const std::optional<Certificate> own = block.certificate();
@@ -563,8 +559,6 @@ TEST_CASE_TEMPLATE("the certificate of a block is that of its training, number b
   const auto same = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
   CHECK(same(own->slope, expected.slope));
   CHECK(same(own->held_slope, expected.held_slope));
-  CHECK(same(own->other_sums, expected.other_sums));
-  CHECK(same(own->held_other_sums, expected.held_other_sums));
   CHECK(same(own->thrust_slope, expected.thrust_slope));
   CHECK(same(own->held_thrust_slope, expected.held_thrust_slope));
   CHECK(same(own->rounding, expected.rounding));

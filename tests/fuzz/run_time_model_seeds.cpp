@@ -17,7 +17,6 @@ using test::ModelOf;
 
 using Physics = PhysicsFeatures;
 using Residual = Network<float, InputSize<residual_inputs<Physics>>, Dense<3>, Tanh, Dense<4>>;
-using Seeing = Network<float, InputSize<Physics::size>, Dense<3>, Relu, Dense<4>>;
 using Window = PartlyWindowed<WithColumns<PaperFeatures, BatteryVoltage>, AngularAcceleration, 3,
                               PeriodMicroseconds<10000>, Centred>;
 
@@ -40,9 +39,9 @@ int main(int argument_count, char** arguments) {
                                                                                                              "window");
     write<ModelOf<Network<float, InputSize<16>, Clip, Dense<6>>, PaperFeatures, AccelerationOutputs>>(folder, "six");
     write<ModelOf<MonotonePredictor<Physics, Residual>, Physics, AxisCommandOutputs>>(folder, "monotone");
+    write<ModelOf<MonotonePredictor<Physics, Residual>, Physics, SignedSumsOn<RigidBodyBase>>>(folder, "on_base");
     write<ModelOf<Network<float, InputSize<16>, LayerNorm<9>, Dense<8>, Glu<3>, RmsNorm<5>, Dense<4>>, PaperFeatures>>(
         folder, "norms");
-    write<ModelOf<PathBoundedPredictor<Physics, Seeing>, Physics, SignedSumsOn<RigidBodyBase>>>(folder, "paths");
   } catch (const pinnquad::OutputError& error) {
     std::fprintf(stderr, "run_time_model_seeds: %s\n", error.what());
     return 2;

@@ -9,7 +9,6 @@
 #include <memory>
 
 #include "pinnquad/model/axis_aligned.hpp"
-#include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "support/random_network.hpp"
 
@@ -24,7 +23,7 @@ using Shown = Net<19, Dense<12>, Relu>;
 using Base = AxisAligned<float, 19, 1>;
 
 using Structured = Sum<Base, Saturated<Masked<Residual, 19, 1>>>;
-using Bounded = Sum<Base, Saturated<PathBounded<Shown>>>;
+using Bounded = Sum<Base, Saturated<Shown>>;
 using OfTwoTaps = Sum<AxisAligned<float, 19, 1, 9>, Saturated<Masked<Net<13, Dense<25>, Relu>, 19, 1, 9>>>;
 using OfWindow = Sum<AxisAligned<float, 60, 1, 20, 39>, Saturated<Masked<Net<51, Dense<25>, Relu>, 60, 1, 20, 39>>>;
 using Bare = Masked<Residual, 19, 1>;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <direct.hpp>
 #include <memory>
-#include <path_bounded.hpp>
 #include <residual.hpp>
 #include <ridge.hpp>
 #include <structured.hpp>
@@ -217,7 +216,7 @@ TEST_CASE("a block of one meaning is none of another: six accelerations, a wrenc
   CHECK(ModelView<ResidualModel>::open(bytes.data(), bytes.size(), view) == Status::block_incompatible);
 }
 
-TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, StructuredModel, PathBoundedModel) {
+TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, StructuredModel) {
   const test::BlockBytes bytes(model_block<Model>());
   ModelView<Model> view;
   REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), view) == Status::ok);
@@ -261,15 +260,6 @@ TEST_CASE("a structured model brings its certificate, and its block none that it
   CHECK(opened_with(first + 2, 0.0F) == Status::block_corrupt);
   CHECK(opened_with(first + 3, -1.0F) == Status::ok);  // of another feature
   CHECK(opened_with(bounds, 1e3F) == Status::block_corrupt);
-}
-
-TEST_CASE("one whose network is shown the angular acceleration is proven too") {
-  constexpr Certificate seeing = certificate_of<PathBoundedModel>();
-  static_assert(seeing.proven());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    CHECK(seeing.other_sums[axis] > 0);
-    CHECK(seeing.other_sums[axis] < seeing.slope[axis]);
-  }
 }
 
 TEST_CASE("an affine map: its header has all that its commands need") {

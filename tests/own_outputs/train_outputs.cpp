@@ -16,8 +16,8 @@
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/initialization.hpp"
+#include "pinnquad/training/structured/residual_fit.hpp"
 #include "pinnquad/training/trainer.hpp"
-#include "study/path_bounded_fit.hpp"
 
 namespace {
 
@@ -96,11 +96,9 @@ void write_structured(const Answer& answer, const Structured& context, const Row
   write_weight_file(file + ".block", model_block(model, golden, provenance, name));
 }
 
-/// Monotone by construction: a base in closed form and a residual, whether it helps here or not. Two of them: one that
-/// is shown no angular acceleration, one that is shown it.
+/// Monotone by construction: a base in closed form and a residual, whether it helps here or not.
 void write_structured(const Flight& flight, const std::string& folder) {
   using Residual = Mlp<float, InputSize<residual_inputs<PhysicsFeatures>>, Hidden<2, 20>, OutputSize<4>, Tanh>;
-  using Seeing = Mlp<float, InputSize<PhysicsFeatures::size>, Hidden<2, 20>, OutputSize<4>, Tanh>;
   const RowSet training(flight, {0, flight.size() * 3 / 4}), validation(flight, {flight.size() * 3 / 4, flight.size()});
   const auto on = [](int) { return true; };
   std::mt19937_64 engine(5);
@@ -109,8 +107,6 @@ void write_structured(const Flight& flight, const std::string& folder) {
   const AffineMap map = fit_monotone_base(context, training);
   const auto fit = fit_monotone<Residual>(context, training, validation, map, short_training(), engine, on);
   write_structured(fit.predictor, context, training, flight, folder + "/structured", "StructuredModel");
-  const auto seeing = study::fit_path_bounded<Seeing>(context, training, validation, map, short_training(), engine, on);
-  write_structured(seeing.predictor, context, training, flight, folder + "/path_bounded", "PathBoundedModel");
 }
 
 }  // namespace

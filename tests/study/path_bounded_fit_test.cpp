@@ -6,11 +6,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/nn/relu.hpp"
 
@@ -53,9 +53,35 @@ Flight flight_of(const Shape& shape, std::uint64_t seed) {
   return flight;
 }
 
+using Answer = Sum<MonotoneBase<PhysicsFeatures>, Saturated<Seeing>>;
+
+/// The least, over the axes, of what the network's paths leave of a slope, the other sums' parts taken off; above 0
+/// each rotor goes the right way.
+template <class ContextType>
+double slope_left(const Answer& answer, const ContextType& context) {
+  constexpr auto own = std::size_t(MonotoneBase<PhysicsFeatures>::parameter_count + 8);
+  Seeing network;
+  std::copy(answer.parameters.begin() + own, answer.parameters.end(), network.parameters.begin());
+  double least = 1e300;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int place = PhysicsFeatures::angular_acceleration + int(axis);
+    const programs::Intervals bound = path_bound<Seeing>(network.parameters, place);
+    const auto scaled = [&](std::size_t k, double value) {
+      return value * context.output.standard_deviation[k] / context.input.standard_deviation[std::size_t(place)];
+    };
+    double left = scaled(1 + axis, double(answer.parameters[axis]));
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double worst = std::max(-bound.least[k], bound.most[k]);
+      left -= scaled(k, k == 1 + axis ? -bound.least[k] : worst);
+    }
+    least = std::min(least, left);
+  }
+  return least;
+}
+
 struct Fitted {
-  ResidualFit<MonotoneBase<PhysicsFeatures>, PathBoundedPredictor<PhysicsFeatures, Seeing>> fit;
-  Certificate certificate;
+  ResidualFit<MonotoneBase<PhysicsFeatures>, Answer> fit;
+  double slope_left;
   double blind_error;
 };
 
@@ -73,25 +99,21 @@ Fitted fitted(const Shape& shape) {
   std::mt19937_64 engine(1), again(1);
   const auto fit = fit_path_bounded<Seeing>(context, training, validation, map, how, engine, on);
   const auto blind = fit_monotone<Blind>(context, training, validation, map, how, again, on);
-  const auto model = make_trained_model(fit.predictor, context, training);
-  return {fit, certificate_of_trained(model), blind.error};
+  return {fit, slope_left(fit.predictor, context), blind.error};
 }
 
 }  // namespace
 
 TEST_CASE("a curve of the angular acceleration that rises is learnt, which a network that is not shown it can't") {
   const Fitted found = fitted([](double a) { return own_slope * (a < 0 ? 0.5 * a : 1.5 * a); });
-  CHECK(found.certificate.proven());
+  CHECK(found.slope_left > 0);
   CHECK(found.fit.residual_kept);
   CHECK(found.fit.error < 0.8 * found.blind_error);
 }
 
-TEST_CASE("rows that fall with the angular acceleration do not turn the slope: it stays proven") {
+TEST_CASE("rows that fall with the angular acceleration do not turn the slope") {
   const Fitted found = fitted([](double a) { return own_slope * (a - 14 * std::tanh(a / 4)); });
-  CHECK(found.certificate.proven());
-  for (int axis = 0; axis < 3; ++axis) {
-    CHECK(found.certificate.slope[axis] > found.certificate.other_sums[axis]);
-  }
+  CHECK(found.slope_left > 0);
 }
 
 TEST_CASE("without a projection the same rows do turn it; with one a network that keeps its bound is left as it is") {
@@ -119,18 +141,17 @@ TEST_CASE("without a projection the same rows do turn it; with one a network tha
   CHECK(network.parameters == projected);
 
   const auto answer_of = [&](const Seeing& trained) {
-    PathBoundedPredictor<PhysicsFeatures, Seeing> answer;
+    Answer answer;
     const auto base = monotone_base<Setting>(map);
     auto* to = std::copy(base.parameters.begin(), base.parameters.end(), answer.parameters.begin());
     std::fill_n(to, 4, -1.0F);
     std::fill_n(to + 4, 4, 1.0F);
     std::copy(trained.parameters.begin(), trained.parameters.end(), to + 8);
-    const auto model = make_trained_model(answer, context, rows);
-    return certificate_of_trained(model);
+    return slope_left(answer, context);
   };
   Seeing free;
   free.parameters = before;
-  CHECK(answer_of(network).proven());
-  CHECK(!answer_of(free).proven());
+  CHECK(answer_of(network) > 0);
+  CHECK(answer_of(free) < 0);
   CHECK_THROWS_AS((study::detail::PathProjection<Setting, Seeing>(context, map, 1.0)), std::invalid_argument);
 }

@@ -35,9 +35,6 @@ Model drawn_model(std::uint64_t seed, Model model = {}) {
         first[Base::parameter_count + k] = draw(-0.5, -0.1);
         first[Base::parameter_count + 4 + k] = draw(0.1, 0.5);
       }
-      if constexpr (Structure::has_paths) {  // what the network may do is less than a slope
-        for (std::size_t i = Base::parameter_count + 8; i < parameters.size(); ++i) first[i] *= Scalar(0.1);
-      }
     }
   }
   for (std::size_t i = 0; i < model.input.mean.size(); ++i) {

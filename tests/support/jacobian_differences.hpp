@@ -10,7 +10,6 @@
 
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
-#include "pinnquad/model/path_bound.hpp"
 
 namespace pinnquad::test {
 
@@ -28,11 +27,6 @@ struct InDouble<Sum<First, Second>> {
 template <class Scalar, int FeatureCount, int... First>
 struct InDouble<AxisAligned<Scalar, FeatureCount, First...>> {
   using type = AxisAligned<double, FeatureCount, First...>;
-};
-/// It is Inner that it says; the bound of its paths is of floats.
-template <class Inner>
-struct InDouble<PathBounded<Inner>> {
-  using type = InDoubleOf<Inner>;
 };
 template <class Inner, int FeatureCount, int... First>
 struct InDouble<Masked<Inner, FeatureCount, First...>> {

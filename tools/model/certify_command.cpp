@@ -91,12 +91,6 @@ void print_with_rates(const Findings& findings) {
 }
 
 void print_rounding(const Findings& findings) {
-  if (findings.by_path_bound()) {
-    std::printf(
-        "rounding   may turn the order of two accelerations that differ by as little as it does; the proof is of "
-        "the real function\n");
-    return;
-  }
   std::printf("rounding   turns no order of two accelerations of the present: a sum may rest, it never falls\n");
   const Certificate& certificate = *findings.certificate();
   if (!std::isfinite(certificate.rounding)) return;
@@ -128,10 +122,7 @@ void print_text(const BlockModel& model, const Findings& findings) {
   if (findings.proven()) {
     const AxisSlopes own = hover_slopes(model.airframe());
     std::printf("proven     each signed sum of the commands rises with the angular acceleration about its axis%s\n",
-                findings.certificate() == nullptr ? ""
-                                                  : (findings.by_path_bound() ? ", and each rotor goes the right way"
-                                                                              : " and with no other, before a limit "
-                                                                                "clips a command"));
+                findings.certificate() == nullptr ? "" : " and with no other, before a limit clips a command");
     std::printf("           %s\n", programs::least_share_in_words(findings.proof->held_slope, own).c_str());
     std::printf("for        all finite features, inside the envelope and outside of it\n");
     std::printf("by         %s\n", in_words(*findings.proof));

@@ -35,7 +35,6 @@ struct Findings {
   bool proven() const { return proof.has_value(); }
   /// Not null for a proof by structure.
   const pinnquad::Certificate* certificate() const { return proof && proof->structure ? &*proof->structure : nullptr; }
-  bool by_path_bound() const { return proof && proof->path_bounded; }
 };
 
 /// Searches for `seconds` of the processor where nothing is proven. Throws InputError for a model that is asked no

@@ -13,15 +13,14 @@
 #include <string_view>
 #include <vector>
 
+#include "model/path_bound.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 
 namespace programs {
 
 /// How fast each feature moves with what is asked, in physical units, between two ends.
-struct Direction {
-  std::vector<double> least, most;
-
-  explicit Direction(std::size_t features) : least(features), most(features) {}
+struct Direction : Intervals {
+  explicit Direction(std::size_t features) : Intervals{std::vector<double>(features), std::vector<double>(features)} {}
   void set(std::size_t feature, double rate) { least[feature] = most[feature] = rate; }
 };
 
@@ -132,26 +131,23 @@ Response response_along(const Direction& direction, const pinnquad::RunTimeNetwo
   }
   if (network.part_count() < 2) return response;
   const pinnquad::RunTimePart& residual = network.part(1);
-  int widths[3], layers = 0;
-  if (!pinnquad::has_path_bound(network, residual, widths, layers)) {
+  const std::vector<std::size_t> widths = bounded_widths(network, residual);
+  if (widths.empty()) {
     response.residual_least.fill(-std::numeric_limits<double>::infinity());
     response.residual_most.fill(std::numeric_limits<double>::infinity());
     return response;
   }
-  Direction shown(0);
+  Intervals shown;
   residual.each_shown([&](int feature) {
     shown.least.push_back(scaled.least[std::size_t(feature)]);
     shown.most.push_back(scaled.most[std::size_t(feature)]);
   });
-  std::vector<double> work(pinnquad::path_workspace(residual));
-  pinnquad::path_bound_along(parameters + base.parameter_count + (residual.bounded ? 8 : 0), residual.shown(),
-                             static_cast<const int*>(widths), layers, shown.least.data(), shown.most.data(),
-                             work.data(), residual.widest, response.residual_least.data(),
-                             response.residual_most.data());
+  const Intervals bound =
+      path_bound_along(parameters + base.parameter_count + (residual.bounded ? 8 : 0), widths, shown);
   for (std::size_t k = 0; k < 4; ++k) {  // a bound that clips has a slope from 0 to 1
     const auto deviation = static_cast<double>(output_deviation[k]);
-    response.residual_least[k] = std::min(0.0, response.residual_least[k]) * deviation;
-    response.residual_most[k] = std::max(0.0, response.residual_most[k]) * deviation;
+    response.residual_least[k] = std::min(0.0, bound.least[k]) * deviation;
+    response.residual_most[k] = std::max(0.0, bound.most[k]) * deviation;
   }
   return response;
 }

@@ -17,7 +17,7 @@ inline SearchedModel searched_model(const pinnquad::BlockModel& model) {
   searched.upper = model.envelope_upper();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     AskedMore now{axis, false, {}}, held{axis, true, {}};
-    for (const pinnquad::AccelerationPlace& place : model.angular_accelerations()) {
+    for (const pinnquad::BlockModel::AccelerationPlace& place : model.angular_accelerations()) {
       if (place.axis != axis) continue;
       held.places.push_back(place.feature);
       if (place.is_present) now.places.push_back(place.feature);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A residual that is shown the angular acceleration, and kept after each step from turning a slope round: its path
-// bound (model/path_bound.hpp) is less than the base's slope.
+// bound (model/path_bound.hpp of the program) is less than the base's slope. Not proven by a certificate, which is of
+// residuals that are not shown it.
 #pragma once
 
 #include <algorithm>
@@ -8,13 +9,33 @@
 #include <cstddef>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
-#include "pinnquad/model/path_bound.hpp"
+#include "model/path_bound.hpp"
 #include "pinnquad/training/structured/residual_fit.hpp"
 
 namespace study {
 
 using namespace pinnquad;
+
+/// Bounds of d(output)/d(input) of a Network for every input, both standardised. It has at most 3 Dense layers, with
+/// activations of slope 0 to 1 between them: with each layer more the bound is further above what the network does.
+template <class NetworkType>
+programs::Intervals path_bound(const typename NetworkType::Parameters& parameters, int input) {
+  static_assert(NetworkType::layer_count <= 5 && NetworkType::layer_count % 2 == 1);
+  std::vector<std::size_t> widths;
+  for (int layer = 0; layer < NetworkType::layer_count; layer += 2) {
+    widths.push_back(static_cast<std::size_t>(NetworkType::Sizes::outputs[static_cast<std::size_t>(layer)]));
+  }
+  programs::Intervals first;
+  for (std::size_t row = 0; row < widths[0]; ++row) {
+    const auto weight =
+        static_cast<double>(parameters[row * std::size_t(NetworkType::inputs) + static_cast<std::size_t>(input)]);
+    first.least.push_back(weight < 0 ? weight : 0);
+    first.most.push_back(weight > 0 ? weight : 0);
+  }
+  return programs::path_bound_behind_first(parameters.data(), std::size_t(NetworkType::inputs), widths, first);
+}
 
 namespace detail {
 
@@ -28,7 +49,6 @@ template <class ContextType, class Residual>
 class PathProjection {
   using Features = typename ContextType::Features;
   using Base = MonotoneBase<Features>;
-  using Path = PathBounded<Residual>;
 
  public:
   /// `map`: the base, standardised by `context`; its slopes are above 0. Throws std::invalid_argument for another one,
@@ -54,13 +74,13 @@ class PathProjection {
     }
   }
 
-  void operator()(typename Residual::Parameters& parameters) const noexcept {
+  void operator()(typename Residual::Parameters& parameters) const {
     constexpr int rows = Residual::template Layer<0>::outputs;
     for (int tap = 0; tap < Base::taps; ++tap) {
       for (int axis = 0; axis < 3; ++axis) {
         const int place = places_[static_cast<std::size_t>(tap)] + axis;
-        const double most =
-            danger(Path::bound(parameters.data(), place), axis) / deviation_[static_cast<std::size_t>(3 * tap + axis)];
+        const double most = danger(path_bound<Residual>(parameters, place), axis) /
+                            deviation_[static_cast<std::size_t>(3 * tap + axis)];
         const double allowed = allowed_[static_cast<std::size_t>(axis)];
         if (!(most > allowed)) continue;
         const auto factor = static_cast<typename Residual::Scalar>(allowed / most);
@@ -72,11 +92,11 @@ class PathProjection {
   }
 
  private:
-  double danger(const pinnquad::detail::PathBound<4>& bound, int axis) const noexcept {
+  double danger(const programs::Intervals& bound, int axis) const noexcept {
     double sum = 0;
-    for (int k = 0; k < 4; ++k) {
-      const double below = -bound.lower[k], worst = std::max(below, bound.upper[k]);
-      sum += (k == 1 + axis ? below : worst) * output_deviation_[static_cast<std::size_t>(k)];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double below = -bound.least[k], worst = std::max(below, bound.most[k]);
+      sum += (static_cast<int>(k) == 1 + axis ? below : worst) * output_deviation_[k];
     }
     return sum;
   }
@@ -89,15 +109,15 @@ class PathProjection {
 
 }  // namespace detail
 
-/// As fit_monotone(), but the residual is shown all features. `Residual`: at most 3 Dense layers with activations of
-/// slope 0 to 1 between them (model/path_bound.hpp). `share`: of a slope, the most that the residual may take away.
+/// As fit_monotone(), but the residual is shown all features. `Residual`: as path_bound() takes it. `share`: of a
+/// slope, the most that the residual may take away.
 template <class Residual, class ContextType>
 auto fit_path_bounded(const ContextType& context, const RowSet& training, const RowSet& validation,
                       const AffineMap& map, const ResidualTraining& how, std::mt19937_64& engine, const GoesOn& goes_on,
                       double share = 0.9) {
   using Features = typename ContextType::Features;
-  using Predictor = PathBoundedPredictor<Features, Residual>;
   using Base = MonotoneBase<Features>;
+  using Predictor = Sum<Base, Saturated<Residual>>;
   const auto kind = pinnquad::detail::residual_kind<Residual, Predictor, Base>(
       true, [projection = detail::PathProjection<ContextType, Residual>(context, map, share)](auto& trained) {
         trained.project(projection);

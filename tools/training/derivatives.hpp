@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "pinnquad/data/flight_features.hpp"
-#include "pinnquad/deploy/exact_derivatives.hpp"
 #include "pinnquad/loss/context.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "training/model_predictions.hpp"
 
 namespace programs {
@@ -83,13 +83,5 @@ class FormulaDerivatives {
   Predict predict_;
   std::array<std::array<double, pinnquad::rotor_count>, 3> signs_;
 };
-
-/// Of model 1.
-inline auto linear_derivatives(const pinnquad::GivenAirframe& airframe) {
-  const auto told = airframe.airframe<double>();
-  return FormulaDerivatives(airframe, [told, rotors = pinnquad::Rotors<double>(told)](const pinnquad::Sample& sample) {
-    return linear_prediction(told, rotors, sample);
-  });
-}
 
 }  // namespace programs

@@ -16,20 +16,14 @@
 #include <vector>
 
 #include "pinnquad/core/body.hpp"
-#include "pinnquad/deploy/exact_derivatives.hpp"
 #include "pinnquad/exported/run_time_certificate.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/text_file.hpp"
+#include "pinnquad/loss/local_monotonicity.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/training/ground_features.hpp"
 
 namespace pinnquad {
-
-namespace detail {
-
-/// No activation, no bound.
-bool is_affine(const RunTimeNetwork& network);
-
-}  // namespace detail
 
 /// The answer of a model to a row.
 struct AnsweredRow {
@@ -45,8 +39,6 @@ struct ProvenSigns {
   AxisSlopes slope{}, held_slope{};
   /// The proof's argument; none: the model is affine, its derivatives are the same everywhere.
   std::optional<Certificate> structure{};
-  /// True of a structure whose network sees the angular acceleration, where its paths from it leave the slopes above 0.
-  bool path_bounded = false;
 };
 
 /// A block of a file, ready to predict: in float or double, as it was written.
@@ -88,8 +80,12 @@ class BlockModel {
   std::vector<std::string> feature_names() const;
   /// Of a flight, beyond those that every flight has.
   std::vector<ColumnName> columns() const;
-  /// Features that show an angular acceleration.
-  const std::vector<AccelerationPlace>& angular_accelerations() const noexcept { return derivatives_.places(); }
+  /// A feature that shows the angular acceleration about an axis, at the present instant or at another tap of a window.
+  struct AccelerationPlace {
+    std::size_t feature = 0, axis = 0;
+    bool is_present = true;
+  };
+  const std::vector<AccelerationPlace>& angular_accelerations() const noexcept { return places_; }
   /// True where each feature is one of the library's or a column that shows no angular acceleration.
   bool knows_its_features() const;
   bool is_axis_commands() const;
@@ -110,10 +106,11 @@ class BlockModel {
   Commands<double> commands(const std::vector<double>& x) const;
 
   /// Signed sums of commands about roll, pitch, yaw.
-  std::array<double, 3> signed_sums(const Commands<double>& u) const { return derivatives_.signed_sums(u); }
+  std::array<double, 3> signed_sums(const Commands<double>& u) const;
 
-  /// Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of all taps is
-  /// moved; else the present alone.
+  /// Derivative of each of these sums by the angular acceleration about its axis, above 0 for any vehicle that turns as
+  /// it is asked to. Exact, in double whatever the model's scalar is. `held`: of a window the angular acceleration of
+  /// all taps is moved; else the present alone. At a ReLU's kink it is the derivative from below (nn/jacobian.hpp).
   AxisSlopes derivatives(const std::vector<double>& x, bool held = true) const;
 
   /// Calls `take(row, AnsweredRow)` for the rows that have features, `row` counted through the set. Throws
@@ -134,6 +131,9 @@ class BlockModel {
   void open();
   template <class Scalar>
   void open_as();
+  /// Takes what derivatives() needs.
+  template <class Scalar>
+  void take_derivatives(const RunTimeModel<Scalar>& model);
   /// Words of the provenance that are numbers: whole ones, and R^2 that bear out the verdict.
   void require_words() const;
   [[noreturn]] void refuse(detail::StatedNumber number, const std::string& found) const;
@@ -148,7 +148,9 @@ class BlockModel {
   std::size_t length_ = 0;
   std::vector<std::uint64_t> bytes_;  ///< aligned as a block must be
   std::variant<std::unique_ptr<const RunTimeModel<float>>, std::unique_ptr<const RunTimeModel<double>>> model_;
-  ExactDerivatives derivatives_;
+  RunTimeOutputs<double> outputs_;  ///< for the derivatives
+  std::vector<AccelerationPlace> places_;
+  std::array<std::array<double, rotor_count>, 3> signs_{};
 };
 
 }  // namespace pinnquad

@@ -21,18 +21,14 @@ inline constexpr double least_thrust_share = 0.5;
 /// Of a model with a structure that can be proven. All bounds hold for the real function of the stored numbers; where a
 /// bound is rounded it is rounded to the safe side.
 struct Certificate {
-  /// The slopes about the axes are above their floor and above what the other sums may do, rounding does not hide them
-  /// over the envelope, and the mix of the vehicle's rotors is exact.
+  /// The slopes about the axes are above 0 and their floor, rounding does not hide them over the envelope, and the mix
+  /// of the vehicle's rotors is exact.
   bool monotone = false;
   bool bounded = false;  ///< there is a residual, none, or one between finite bounds that are in order
   /// Least values of d(signed sum)/d(angular acceleration), roll, pitch, yaw, s^2/rad: of the present instant, and of
   /// one that is held over all taps of a window (the same without one).
   double slope[3]{};
   double held_slope[3]{};
-  /// Most that the other three sums change with that angular acceleration, magnitudes added up: 0 where no network is
-  /// shown it.
-  double other_sums[3]{};
-  double held_other_sums[3]{};
   /// Least values of d(sum of the commands)/d(specific force asked along the thrust axis), s^2/m, of the base alone: of
   /// the present instant, and of one that is held. Over a step d the sum rises by this times d, less at most the
   /// residual's range, residual_upper[0] - residual_lower[0]. 0 of features that have no such force. On a formula that
@@ -40,7 +36,7 @@ struct Certificate {
   double thrust_slope = 0;
   double held_thrust_slope = 0;
   /// Most that a command of the base, as it is computed, is off the real one inside the envelope; infinite where nobody
-  /// knows: on a formula, with a network that is shown the angular acceleration, of a residual without bounds.
+  /// knows: on a formula, of a residual without bounds.
   double rounding = std::numeric_limits<double>::infinity();
   /// The step of an acceleration that is held, rad/s^2, from which on the computed sum rises for sure inside the
   /// envelope. Over a smaller one it may rest; of a window it may fall by rounding.
@@ -56,34 +52,6 @@ struct Certificate {
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// The most that a residual that is shown the angular acceleration takes off the slopes about an axis, and that it does
-/// to the other sums.
-template <class Scalar>
-constexpr void take_paths(const CertifiedNumbers<Scalar>& from, int axis, Certificate& certificate) noexcept {
-  double held_fall = 0;
-  for (int tap = 0; tap < from.taps; ++tap) {
-    const PathBound<4>& path = from.paths[3 * tap + axis];
-    const double deviation = static_cast<double>(from.scales.input_deviation[from.places[tap] + axis]);
-    double fall = 0, others = 0;
-    for (int k = 0; k < 4; ++k) {
-      const double scale = static_cast<double>(from.scales.output_deviation[k]) / deviation;
-      const double below = -path.lower[k] * scale, above = path.upper[k] * scale;
-      certificate.monotone = certificate.monotone && is_finite_constant(below) && is_finite_constant(above);
-      if (k == 1 + axis) {
-        fall = rounded_up(below);
-      } else {
-        others += rounded_up(below > above ? below : above);
-      }
-    }
-    if (tap == 0) certificate.slope[axis] = rounded_down(certificate.slope[axis] - fall);
-    if (tap == 0) certificate.other_sums[axis] = rounded_up(others);
-    held_fall += fall;
-    certificate.held_other_sums[axis] += others;
-  }
-  certificate.held_slope[axis] = rounded_down(certificate.held_slope[axis] - rounded_up(held_fall));
-  certificate.held_other_sums[axis] = rounded_up(certificate.held_other_sums[axis]);
-}
 
 /// Ranges of the residual, and what they do to each command.
 template <class Scalar>
@@ -134,7 +102,7 @@ constexpr void take_thrust(const CertifiedNumbers<Scalar>& from, Certificate& ce
 /// The base's rounding inside the envelope, and the step from which on a slope is above it (docs/certificate.md).
 template <class Scalar>
 constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate& certificate) noexcept {
-  if (from.has_paths || from.vehicle.on_base || !certificate.bounded) {
+  if (from.vehicle.on_base || !certificate.bounded) {
     for (double& step : certificate.sure_step) step = std::numeric_limits<double>::infinity();
     return;
   }
@@ -196,7 +164,6 @@ template <class Scalar>
 constexpr Certificate certificate_of(const detail::CertifiedNumbers<Scalar>& from) noexcept {
   Certificate certificate;
   certificate.monotone = detail::exact_mix(from.vehicle.mix);
-  if (from.has_paths) certificate.monotone = certificate.monotone && detail::even_mix(from.vehicle.mix);
   for (int axis = 0; axis < 3; ++axis) {
     const double scale = static_cast<double>(from.scales.output_deviation[1 + axis]);
     bool finite = is_finite_constant(scale) && scale > 0;
@@ -212,11 +179,10 @@ constexpr Certificate certificate_of(const detail::CertifiedNumbers<Scalar>& fro
     const double doubt = detail::rounded_up(magnitudes) - magnitudes;  // of the sum: of its terms and of adding them
     certificate.slope[axis] = detail::rounded_down(present);
     certificate.held_slope[axis] = from.taps == 1 ? certificate.slope[axis] : sum - 2 * doubt;
-    if (from.has_paths) detail::take_paths(from, axis, certificate);
     const double floor = from.vehicle.least_slope[axis];
-    certificate.monotone = certificate.monotone && finite && certificate.slope[axis] > certificate.other_sums[axis] &&
-                           certificate.held_slope[axis] > certificate.held_other_sums[axis] &&
-                           certificate.slope[axis] > floor && certificate.held_slope[axis] > floor;
+    certificate.monotone = certificate.monotone && finite && certificate.slope[axis] > 0 &&
+                           certificate.held_slope[axis] > 0 && certificate.slope[axis] > floor &&
+                           certificate.held_slope[axis] > floor;
   }
   detail::bound_residual(from, certificate);
   detail::take_thrust(from, certificate);
@@ -236,15 +202,9 @@ constexpr Certificate certificate_of(const detail::CertifiedVehicle<typename Sha
     int places[Base::taps]{};
     Base::Threes::each([&](int place, int tap) { places[tap] = place; });
     constexpr auto thrusts = detail::thrust_places<Features>();
-    detail::PathBound<4> paths[Structure::has_paths ? 3 * Base::taps : 1]{};
-    if constexpr (Structure::has_paths) {
-      for (int i = 0; i < 3 * Base::taps; ++i) {
-        paths[i] = Structure::Seeing::bound(parameters + Base::parameter_count + 8, places[i / 3] + i % 3);
-      }
-    }
     return certificate_of(detail::CertifiedNumbers<typename Shape::Scalar>{
         Features::size, Base::taps, places, thrusts.count, thrusts.present, thrusts.place, parameters,
-        Structure::has_residual, paths, Structure::has_paths, scales, vehicle});
+        Structure::has_residual, scales, vehicle});
   } else {
     return {};
   }

@@ -6,7 +6,6 @@
 #include <string_view>
 #include <tuple>
 
-#include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/nn/activations.hpp"
 #include "pinnquad/nn/kernel/pack.hpp"
 
@@ -19,7 +18,6 @@ struct RunTimeActivation {
   Number (*activate)(Number) noexcept;
   void (*activate_all)(Number*, std::size_t) noexcept;
   Number (*slope)(Number) noexcept;  ///< by its input
-  bool slopes_from_0_to_1;
 };
 template <class Spec, class Number>
 constexpr RunTimeActivation<Number> run_time_activation() noexcept {
@@ -34,8 +32,7 @@ constexpr RunTimeActivation<Number> run_time_activation() noexcept {
     for (; i < count; ++i) values[i] = Number(Layer::activate(values[i]));
   };
   return {Spec::description, [](Number v) noexcept { return Number(Layer::activate(v)); }, all,
-          [](Number v) noexcept { return Number(slope_at<Layer>(slopes_from_input<Layer> ? v : Layer::activate(v))); },
-          pinnquad::slopes_from_0_to_1<Layer>};
+          [](Number v) noexcept { return Number(slope_at<Layer>(slopes_from_input<Layer> ? v : Layer::activate(v))); }};
 }
 template <class Number, class List>
 struct ActivationTable;

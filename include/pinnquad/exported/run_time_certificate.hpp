@@ -22,31 +22,11 @@ ShownAcceleration shown_acceleration(const RunTimeModel<Scalar>& model, int feat
   return detail::shown_acceleration(name, unit, is_column);
 }
 
-/// Dense layers, at most 3, with activations between them whose slope is from 0 to 1 (model/path_bound.hpp). `widths`
-/// become the outputs of each.
-inline bool has_path_bound(const RunTimeNetwork& network, const RunTimePart& part, int (&widths)[3],
-                           int& layers) noexcept {
-  if (part.axis_aligned || part.layer_count > 5 || part.layer_count % 2 == 0 || network.is_double()) return false;
-  layers = (part.layer_count + 1) / 2;
-  for (int i = 0; i < part.layer_count; ++i) {
-    const RunTimeLayer& layer = part.layers[i];
-    if (i % 2 == 0) {
-      if (layer.outputs == 0 || !layer.has_bias) return false;
-      widths[i / 2] = layer.outputs;
-    } else if (layer.activation < 0 || !detail::run_time_activations<double>[layer.activation].slopes_from_0_to_1) {
-      return false;
-    }
-  }
-  return true;
-}
-/// Entries of the workspace of run_time_certificate() and path bounds.
-inline std::size_t path_workspace(const RunTimePart& part) noexcept { return std::size_t(4 * part.widest); }
-
 /// False, and nothing is written, for a model whose structure says nothing of its slopes: other outputs than axis
 /// commands, an affine base that does not cover every feature that shows an angular acceleration, a feature of which
-/// nobody knows, a residual that is shown the angular acceleration without a bound of its paths.
+/// nobody knows, a residual that is shown the angular acceleration.
 template <class Scalar>
-bool run_time_certificate(const RunTimeModel<Scalar>& model, double* work, Certificate& certificate) noexcept {
+bool run_time_certificate(const RunTimeModel<Scalar>& model, Certificate& certificate) noexcept {
   const RunTimeNetwork& network = model.network();
   const RunTimeFeatures& features = model.features();
   const RunTimePart& base = network.part(0);
@@ -57,23 +37,13 @@ bool run_time_certificate(const RunTimeModel<Scalar>& model, double* work, Certi
           [&features](int feature) { return detail::is_of_present(features[feature].name); })) {
     return false;
   }
-  detail::PathBound<4> paths[3 * detail::most_certified_taps];
   const bool has_residual = network.part_count() == 2;
-  bool has_paths = false;
   if (has_residual) {
     const RunTimePart& residual = network.part(1);
     if (!residual.bounded || residual.axis_aligned) return false;
-    has_paths = residual.path_bounded;
     bool withheld = residual.three_count == base.three_count;
     for (int tap = 0; withheld && tap < base.three_count; ++tap) withheld = residual.threes[tap] == base.threes[tap];
-    if (!withheld && !has_paths) return false;
-    int widths[3], layers = 0;
-    if (has_paths && !has_path_bound(network, residual, widths, layers)) return false;
-    for (int i = 0; has_paths && i < 3 * base.three_count; ++i) {
-      path_bound(model.parameters() + base.parameter_count + 8, residual.inputs, static_cast<const int*>(widths),
-                 layers, base.threes[i / 3] + i % 3, work, residual.widest, static_cast<double*>(paths[i].lower),
-                 static_cast<double*>(paths[i].upper));
-    }
+    if (!withheld) return false;
   }
   int thrusts[RunTimeFeatures::most_features];
   int thrust_count = 0, present = 0;
@@ -89,8 +59,7 @@ bool run_time_certificate(const RunTimeModel<Scalar>& model, double* work, Certi
                            : detail::certified_vehicle<SignedSumsOn<RigidBodyBase>>(model.flown_airframe());
   certificate = certificate_of(detail::CertifiedNumbers<Scalar>{
       features.size(), base.three_count, static_cast<const int*>(base.threes), thrust_count, present,
-      static_cast<const int*>(thrusts), model.parameters(), has_residual,
-      static_cast<const detail::PathBound<4>*>(paths), has_paths, model.scales(), vehicle});
+      static_cast<const int*>(thrusts), model.parameters(), has_residual, model.scales(), vehicle});
   return true;
 }
 

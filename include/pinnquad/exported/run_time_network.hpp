@@ -3,7 +3,7 @@
 // the portable kernel: the same bits as the compiled one. No heap: the caller owns the workspace.
 //   predictor := part | Sum<predictor, part>
 //   part      := AxisAligned<scalar, features, place...> | Bounded<shown> | shown
-//   shown     := PathBounded<network> | Withheld<network, features, place...> | network
+//   shown     := Withheld<network, features, place...> | network
 //   network   := Network<scalar, Inputs<n>, layer...>
 //   layer     := Dense<n> | DenseWithoutBias<n> | LayerNorm<n> | RmsNorm<n> | Glu<n> | an activation
 #pragma once
@@ -14,7 +14,6 @@
 
 #include "pinnquad/exported/description_reader.hpp"
 #include "pinnquad/exported/run_time_activation.hpp"
-#include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/nn/kernel/lane_row.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
 #include "pinnquad/nn/layer_norm.hpp"
@@ -48,7 +47,6 @@ struct RunTimePart {
   int widest = 0;             ///< most numbers between two layers
   bool axis_aligned = false;  ///< pinnquad::AxisAligned
   bool bounded = false;       ///< pinnquad::Saturated: its first parameters are lower and upper bounds of the outputs
-  bool path_bounded = false;  ///< pinnquad::PathBounded
 
   /// Features that all of it is shown.
   constexpr int shown() const noexcept { return inputs - 3 * three_count; }
@@ -211,10 +209,6 @@ class RunTimeNetwork {
   }
 
   bool take_shown(detail::DescriptionReader& reader, RunTimePart& part) noexcept {
-    if (reader.take("pinnquad::PathBounded<")) {
-      part.path_bounded = true;
-      return take_network(reader, part) && reader.take(">");
-    }
     if (!reader.take("pinnquad::Withheld<")) return take_network(reader, part);
     if (!take_network(reader, part) || !reader.take(",")) return false;
     const int shown = part.inputs;

@@ -9,7 +9,6 @@
 
 #include "pinnquad/features/shown_acceleration.hpp"
 #include "pinnquad/model/axis_aligned.hpp"
-#include "pinnquad/model/path_bound.hpp"
 #include "pinnquad/outputs/axis_command_outputs.hpp"
 #include "pinnquad/outputs/rotor_map.hpp"
 
@@ -70,7 +69,6 @@ struct ProvenStructure<AxisAligned<Scalar, FeatureCount, First...>, Features> {
                                   AxisAligned<Scalar, FeatureCount, First...>, void>;
   static constexpr bool is_known = true;
   static constexpr bool has_residual = false;
-  static constexpr bool has_paths = false;
 };
 template <class Scalar, int FeatureCount, int... First, class Residual, class Features>
 struct ProvenStructure<
@@ -78,14 +76,6 @@ struct ProvenStructure<
     : ProvenStructure<AxisAligned<Scalar, FeatureCount, First...>, Features> {
   static constexpr bool has_residual = true;
 };
-template <class Scalar, int FeatureCount, int... First, class Residual, class Features>
-struct ProvenStructure<Sum<AxisAligned<Scalar, FeatureCount, First...>, Saturated<PathBounded<Residual>>>, Features>
-    : ProvenStructure<AxisAligned<Scalar, FeatureCount, First...>, Features> {
-  static constexpr bool has_residual = true;
-  static constexpr bool has_paths = true;
-  using Seeing = PathBounded<Residual>;
-};
-
 /// True where the mix times its inverse is the identity without rounding (entries are quarters), and each rotor has the
 /// same sign in an axis command and in its inverse.
 template <class Scalar>
@@ -102,18 +92,6 @@ constexpr bool exact_mix(const SignedMix<Scalar>& mix) noexcept {
         quarters += sign * whole;
       }
       if (quarters != (row == column ? 4 : 0)) return false;
-    }
-  }
-  return true;
-}
-
-/// True where each rotor takes the same share of each axis command.
-template <class Scalar>
-constexpr bool even_mix(const SignedMix<Scalar>& mix) noexcept {
-  for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Scalar entry = mix.by[rotor][k];
-      if (!equal(entry, Scalar(0.25)) && !equal(entry, Scalar(-0.25))) return false;
     }
   }
   return true;
@@ -198,16 +176,14 @@ constexpr CertifiedVehicle<Scalar> certified_vehicle(const Airframe<Scalar>& air
 /// constant expression under g++ -fsanitize=undefined.
 template <class Scalar>
 struct CertifiedNumbers {
-  int inputs;                 ///< features
-  int taps;                   ///< with an angular acceleration; most_certified_taps at most
-  const int* places;          ///< of each tap's angular acceleration among the features, the present first
-  int thrust_count;           ///< features that are the specific force along the thrust axis, of all taps
-  int thrust_present;         ///< of them, how many are of the present instant
-  const int* thrusts;         ///< where they are, the present first
-  const Scalar* affine;       ///< parameters in the order of AxisAligned
-  bool has_residual;          ///< its bounds follow the affine part's parameters
-  const PathBound<4>* paths;  ///< of a residual that is shown the angular acceleration, tap by tap, axis by axis
-  bool has_paths;
+  int inputs;            ///< features
+  int taps;              ///< with an angular acceleration; most_certified_taps at most
+  const int* places;     ///< of each tap's angular acceleration among the features, the present first
+  int thrust_count;      ///< features that are the specific force along the thrust axis, of all taps
+  int thrust_present;    ///< of them, how many are of the present instant
+  const int* thrusts;    ///< where they are, the present first
+  const Scalar* affine;  ///< parameters in the order of AxisAligned
+  bool has_residual;     ///< its bounds follow the affine part's parameters
   Scales<Scalar> scales;
   CertifiedVehicle<Scalar> vehicle;
 

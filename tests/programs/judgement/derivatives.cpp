@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "pinnquad/deploy/block_model.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
 #include "pinnquad/dynamics/airframes/crazyflie.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/features/motion_parts.hpp"
@@ -41,6 +43,21 @@ std::vector<Sample> samples(std::size_t count, std::mt19937_64& engine) {
   return rows;
 }
 
+/// The block of a model. Its envelope is about the features' mean.
+template <class Model>
+BlockModel block_of(Model model) {
+  for (std::size_t i = 0; i < model.input.mean.size(); ++i) {
+    model.envelope_lower[i] = model.input.mean[i] - model.input.standard_deviation[i];
+    model.envelope_upper[i] = model.input.mean[i] + model.input.standard_deviation[i];
+  }
+  return BlockModel("model.block", model_block(model, {model.input.mean}, {"none", 0, 1, 0, 0, "none"}));
+}
+
+template <class FeatureVector>
+std::vector<double> as_vector(const FeatureVector& x) {
+  return {x.begin(), x.end()};
+}
+
 /// The model's commands by its own arithmetic, in double.
 template <class Network, class Outputs>
 void check_against_differences(const char* what) {
@@ -68,10 +85,10 @@ void check_against_differences(const char* what) {
   }
   const std::array<std::array<double, rotor_count>, 3> signs = {
       model.template signs<Roll>(), model.template signs<Pitch>(), model.template signs<Yaw>()};
-  const auto derivatives = ExactDerivatives::of_trained(model);
+  const BlockModel block = block_of(model);
   int both_signs[2] = {0, 0};
   for (const Sample& row : samples(50, engine)) {
-    const programs::AxisSlopes found = derivatives(sample_features<PaperFeatures, double>(row).data());
+    const AxisSlopes found = block.derivatives(as_vector(sample_features<PaperFeatures, double>(row)));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       CAPTURE(axis);
       // small: a kink of ReLU in between is not to be expected
@@ -113,13 +130,13 @@ TEST_CASE("derivatives of a sum through a window: by an angular acceleration tha
   for (double& spread : model.input.standard_deviation) spread = 1.5 + any(engine);
   for (double& spread : model.output.standard_deviation) spread = 1.5 + any(engine);
   for (double& mean : model.input.mean) mean = any(engine);
-  const auto derivatives = ExactDerivatives::of_trained(model);
+  const BlockModel block = block_of(model);
   const std::array<std::array<double, rotor_count>, 3> signs = {
       model.template signs<Roll>(), model.template signs<Pitch>(), model.template signs<Yaw>()};
   for (int draw = 0; draw < 50; ++draw) {
     Model::FeatureVector x{};
     for (double& feature : x) feature = any(engine);
-    const programs::AxisSlopes found = derivatives(x.data());
+    const AxisSlopes found = block.derivatives(as_vector(x));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       constexpr double step = 1e-6;
       auto above = x, below = x;
@@ -141,10 +158,10 @@ TEST_CASE("derivatives of a residual are its base's too") {
   Model model{GivenAirframe("paper", airframe)};
   model.input.standard_deviation.fill(1);
   model.output.standard_deviation.fill(1);
-  const auto derivatives = ExactDerivatives::of_trained(model);
+  const BlockModel block = block_of(model);
   std::mt19937_64 engine(3);
   for (const Sample& row : samples(3, engine)) {
-    const programs::AxisSlopes found = derivatives(sample_features<PaperFeatures, double>(row).data());
+    const AxisSlopes found = block.derivatives(as_vector(sample_features<PaperFeatures, double>(row)));
     const double thrust_N = airframe.max_rotor_thrust_N();
     CHECK(found[0] == doctest::Approx(airframe.inertia_kg_m2[0] / (std::abs(airframe.rotors[0].y_m) * thrust_N)));
     CHECK(found[1] == doctest::Approx(airframe.inertia_kg_m2[1] / (std::abs(airframe.rotors[0].x_m) * thrust_N)));
@@ -175,23 +192,6 @@ TEST_CASE("rows that a window leaves without an answer are told by NaN, the othe
     const bool complete = row % 5 > 0 && row % 5 < 4;
     CHECK(std::isfinite(predictions[row][0]) == complete);
     if (complete) CHECK(predictions[row][0] == doctest::Approx(rows[row].angular_acceleration_rad_s2[0]));
-  }
-}
-
-TEST_CASE("model 1 commands J / (lever x thrust) per angular acceleration") {
-  constexpr Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
-  const GivenAirframe given("paper", airframe);
-  const auto derivatives = programs::linear_derivatives(given);
-  std::mt19937_64 engine(3);
-  for (const Sample& row : samples(5, engine)) {
-    const Site<double> site = paper_site<double>();
-    const double scale =
-        standard_atmosphere_density_kg_m3(site.elevation_m + row.altitude_m) / standard_air_density_kg_m3<double>;
-    const double thrust_N = scale * airframe.max_rotor_thrust_N();
-    const programs::AxisSlopes found = derivatives(row);
-    CHECK(found[0] == doctest::Approx(airframe.inertia_kg_m2[0] / (std::abs(airframe.rotors[0].y_m) * thrust_N)));
-    CHECK(found[1] == doctest::Approx(airframe.inertia_kg_m2[1] / (std::abs(airframe.rotors[0].x_m) * thrust_N)));
-    CHECK(found[2] == doctest::Approx(airframe.inertia_kg_m2[2] / (scale * airframe.max_rotor_torque_N_m())));
   }
 }
 

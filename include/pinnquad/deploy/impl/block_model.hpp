@@ -3,14 +3,16 @@
 #pragma once
 
 #include "pinnquad/deploy/block_model.hpp"
+#include "pinnquad/nn/kernel/pack.hpp"
 
 namespace pinnquad {
 namespace detail {
 
+/// No activation, no bound.
 PINNQUAD_BODY bool is_affine(const RunTimeNetwork& network) {
   for (int i = 0; i < network.part_count(); ++i) {
     const RunTimePart& part = network.part(i);
-    if (part.bounded || part.path_bounded) return false;
+    if (part.bounded) return false;
     for (int layer = 0; layer < part.layer_count; ++layer) {
       if (part.layers[layer].outputs == 0) return false;
     }
@@ -21,22 +23,33 @@ PINNQUAD_BODY bool is_affine(const RunTimeNetwork& network) {
 }  // namespace detail
 
 template <class Scalar>
+void BlockModel::take_derivatives(const RunTimeModel<Scalar>& model) {
+  signs_ = axis_signs(model.airframe());
+  if (!outputs_.find(model.schema())) {
+    const Scalar* affine = model.records().affine;
+    const std::vector<double> numbers(affine, affine + rotor_count * (1 + model.network().outputs()));
+    outputs_.take_affine(numbers.data(), model.network().outputs());
+  }
+  outputs_.prepare(model.airframe());
+  for (int i = 0; i < model.features().size(); ++i) {
+    const ShownAcceleration shown = shown_acceleration(model, i);
+    if (shown == ShownAcceleration::none || shown == ShownAcceleration::unknown) continue;
+    places_.push_back({static_cast<std::size_t>(i), static_cast<std::size_t>(shown),
+                       detail::is_of_present(model.features()[i].name)});
+  }
+}
+
+template <class Scalar>
 void BlockModel::open_as() {
   auto model = std::make_unique<RunTimeModel<Scalar>>();
   BlockFault fault;
   if (RunTimeModel<Scalar>::open(data(), length_, *model, fault) != Status::ok) {
     refuse(fault.expected, *fault.found == 0 ? number_text(fault.number) : fault.found);
   }
-  derivatives_ = ExactDerivatives(*model);
-  const auto& said = model->records();
-  const bool claims_proof = said.claims_proof(), brings_certificate = said.said(BlockRecord::certificate);
+  take_derivatives(*model);
   model_ = std::unique_ptr<const RunTimeModel<Scalar>>(std::move(model));
   require_words();
   if (!(golden_difference() <= golden_tolerance)) refuse("golden commands that its weights give", "others");
-  if (!claims_proof) return;
-  const std::optional<Certificate> proof = certificate();
-  if (proof && !proof->proven()) refuse("slopes and bounds of which its certificate is proven", "others");
-  if (!proof && brings_certificate) refuse(detail::StatedNumber::certificate, "others");
 }
 
 PINNQUAD_BODY void BlockModel::open() {
@@ -141,11 +154,8 @@ PINNQUAD_BODY double BlockModel::golden_difference() const {
 }
 
 PINNQUAD_BODY std::optional<Certificate> BlockModel::certificate() const {
-  std::vector<double> work;
-  for (int i = 0; i < network().part_count(); ++i) work.resize(work.size() + path_workspace(network().part(i)));
   Certificate certificate;
-  const bool has_structure =
-      with([&](const auto& model) { return run_time_certificate(model, work.data(), certificate); });
+  const bool has_structure = with([&](const auto& model) { return run_time_certificate(model, certificate); });
   return has_structure ? std::optional(certificate) : std::nullopt;
 }
 
@@ -154,7 +164,6 @@ PINNQUAD_BODY std::optional<ProvenSigns> BlockModel::proven_signs() const {
   ProvenSigns proof;
   proof.structure = certificate();
   if (proof.structure && proof.structure->proven()) {
-    proof.path_bounded = network().part(network().part_count() - 1).path_bounded;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       proof.slope[axis] = proof.structure->slope[axis];
       proof.held_slope[axis] = proof.structure->held_slope[axis];
@@ -185,8 +194,52 @@ PINNQUAD_BODY Commands<double> BlockModel::commands(const std::vector<double>& x
   });
 }
 
+PINNQUAD_BODY std::array<double, 3> BlockModel::signed_sums(const Commands<double>& u) const {
+  return {signed_sum(signs_[0], u), signed_sum(signs_[1], u), signed_sum(signs_[2], u)};
+}
+
 PINNQUAD_BODY AxisSlopes BlockModel::derivatives(const std::vector<double>& x, bool held) const {
-  return derivatives_(x.data(), held);
+  // a value, its derivatives by three angular accelerations, and zeros that fill a pack
+  constexpr int numbers = padded<NativePack<double>>(4);
+  using Entry = RunTimeNetwork::Values<double, numbers>;
+  constexpr std::size_t read = RunTimeOutputs<double>::base_features;
+  const auto inputs = std::size_t(network().inputs()), outputs = std::size_t(network().outputs());
+  std::vector<Entry> work(inputs + outputs + network().workspace());
+  Entry* const y = work.data() + inputs;
+  std::vector<double> made(outputs), by_outputs(std::size_t(rotor_count) * outputs);
+  std::array<Commands<double>, 3> by_acceleration{};
+  double by_x[rotor_count * read];
+  with([&](const auto& model) {
+    const auto exact = [](auto number) { return static_cast<double>(number); };
+    const auto& scales = model.scales();
+    for (std::size_t i = 0; i < inputs; ++i) {
+      work[i] = {(x[i] - exact(scales.input_mean[i])) / exact(scales.input_deviation[i])};
+    }
+    for (const AccelerationPlace& place : places_) {
+      if (held || place.is_present)
+        work[place.feature][place.axis + 1] = 1 / exact(scales.input_deviation[place.feature]);
+    }
+    network().forward<double, numbers>(model.parameters(), static_cast<const Entry*>(work.data()), y, y + outputs);
+    for (std::size_t k = 0; k < outputs; ++k) {
+      made[k] = y[k][0] * exact(scales.output_deviation[k]) + exact(scales.output_mean[k]);
+    }
+    outputs_.slopes(x.data(), made.data(), by_outputs.data(), static_cast<double*>(by_x));
+    for (std::size_t rotor = 0; rotor < std::size_t(rotor_count); ++rotor) {
+      for (std::size_t k = 0; k < outputs; ++k) {
+        const double slope = by_outputs[rotor * outputs + k] * exact(scales.output_deviation[k]);
+        for (std::size_t axis = 0; axis < 3; ++axis) by_acceleration[axis][rotor] += slope * y[k][axis + 1];
+      }
+    }
+  });
+  for (const AccelerationPlace& place : places_) {
+    for (std::size_t rotor = 0; (held || place.is_present) && place.feature < read && rotor < std::size_t(rotor_count);
+         ++rotor) {
+      by_acceleration[place.axis][rotor] += by_x[rotor * read + place.feature];
+    }
+  }
+  AxisSlopes result{};
+  for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = signed_sum(signs_[axis], by_acceleration[axis]);
+  return result;
 }
 
 PINNQUAD_BODY void BlockModel::require_words() const {
@@ -244,7 +297,7 @@ PINNQUAD_BODY void BlockModel::answer(const RowSet& rows,
         answered.inside_envelope = model.inside_envelope(x.data());
         if (with_derivatives && own_in_double.read(row, exact.data())) {
           model.features().extract(static_cast<const RunTimeInputs<double>*>(exact.data()), exact_x.data());
-          answered.derivatives = derivatives_(exact_x.data());
+          answered.derivatives = derivatives(exact_x);
         }
         take(first + row - piece.rows.begin, answered);
       }

@@ -18,7 +18,6 @@ PINNQUAD_BODY Certificate certificate_of_structured(const WrittenModel<float>& m
   const auto of_present = std::count_if(thrusts.begin(), thrusts.end(), [&](int place) {
     return is_of_present(features.names[static_cast<std::size_t>(place)]);
   });
-  const PathBound<4> none{};
   return certificate_of(
       CertifiedNumbers<float>{context.inputs(),
                               static_cast<int>(features.accelerations.size()),
@@ -28,8 +27,6 @@ PINNQUAD_BODY Certificate certificate_of_structured(const WrittenModel<float>& m
                               thrusts.data(),
                               model.parameters.data(),
                               has_residual,
-                              &none,
-                              false,
                               {model.input_mean.data(), model.input_deviation.data(), model.output_mean.data(),
                                model.output_deviation.data(), model.envelope_lower.data(), model.envelope_upper.data()},
                               certified_vehicle<AxisCommandOutputs>(airframe_in<float>(model.airframe))});

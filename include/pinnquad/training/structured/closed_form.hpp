@@ -92,39 +92,17 @@ auto regression_sums(const ContextType& context, const Rows& rows) {
   return regression_sums(fit_context(context), rows);
 }
 
-/// The sizes and scales of a base, without its types: the equations are compiled once for all feature sets.
-struct MonotoneShape {
-  int inputs = 0;
-  std::vector<int> places;  ///< of each tap's angular acceleration among the features, the present first
-  std::vector<double> input_deviation, output_deviation;
-  AxisSlopes airframe_slopes{};  ///< hover_slopes()
-  /// Features that a gyro's or an accelerometer's noise is in, by their units. None of a window: its taps would be
-  /// their own instruments.
-  std::vector<int> noisy;
-  std::vector<int> thrusts;  ///< places of each tap's specific force along the thrust axis, the present first
-  double held_thrust = 0;    ///< what a window's thrust slope, the sum over all taps, is held at, s^2/m; 0: learnt
-};
-
-/// The places and scales of a context's features, as the equations of the fit read them.
-MonotoneShape monotone_shape(const FitContext& context);
-/// The same for a context whose types are known.
-template <class ContextType>
-MonotoneShape monotone_shape(const ContextType& context) {
-  static_assert(is_signed_sums<typename ContextType::Outputs>,
-                "pinnquad: a monotone base answers signed sums: Context<Features, Vehicle, AxisCommandOutputs>");
-  return monotone_shape(fit_context(context));
-}
-
 namespace detail {
 
 /// All but the angular accelerations about the other axes.
-std::vector<bool> features_of_output(const MonotoneShape& shape, int output);
+std::vector<bool> features_of_output(const FitContext& context, int output);
 
 /// The slope of a sum as a sum of factor x weight over all taps; that of the thrust is below 0.
-std::vector<std::pair<int, double>> slope_terms(const MonotoneShape& shape, int output);
+std::vector<std::pair<int, double>> slope_terms(const FitContext& context, int output);
 
 /// Of an axis command; of the sum of the commands where a window's is held. See fit_monotone_base().
-std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, int output, const std::optional<AxisSlopes>& pinned);
+std::vector<WeightBound> slope_bounds(const FitContext& context, int output, const std::optional<AxisSlopes>& pinned,
+                                      double held_thrust);
 
 }  // namespace detail
 
@@ -132,16 +110,20 @@ std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, int output, co
 /// with a slope above 0. Standardised features to standardised axis commands. Each penalty is chosen by leaving out one
 /// group in turn. A slope is learnt, and at least a hundredth of the airframe's own, also where the rows say otherwise.
 /// `pinned`, s^2/rad, fixes it, such as at hover_slopes() for a model of quiet flights that is to fly agile ones. In a
-/// window this holds for the slope of the present and for the sum over all taps; `pinned` is the sum. Throws
-/// std::invalid_argument for no rows, and for pinned slopes that are not above this hundredth.
-AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector<RegressionSums>& groups,
-                            const std::optional<AxisSlopes>& pinned = {});
+/// window this holds for the slope of the present and for the sum over all taps; `pinned` is the sum. `held_thrust`,
+/// s^2/m: the thrust slope is held at it; 0: learnt. Throws std::invalid_argument for no rows, and for pinned slopes
+/// that are not above this hundredth.
+AffineMap fit_monotone_base(const FitContext& context, const std::vector<RegressionSums>& groups,
+                            const std::optional<AxisSlopes>& pinned = {}, double held_thrust = 0);
 
 /// The same from rows, in the groups of left_out_groups().
 template <class ContextType>
 AffineMap fit_monotone_base(const ContextType& context, const RowSet& rows,
                             const std::optional<AxisSlopes>& pinned = {}) {
-  return fit_monotone_base(monotone_shape(context), regression_sums(context, left_out_groups(rows)), pinned);
+  static_assert(is_signed_sums<typename ContextType::Outputs>,
+                "pinnquad: a monotone base answers signed sums: Context<Features, Vehicle, AxisCommandOutputs>");
+  const FitContext value = fit_context(context);
+  return fit_monotone_base(value, regression_sums(value, left_out_groups(rows)), pinned);
 }
 
 /// The parameters of the MonotoneBase of such a map. `accelerations`: FitContext's.

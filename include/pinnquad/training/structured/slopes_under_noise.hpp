@@ -36,7 +36,7 @@ struct MeasuredSlopes {
   };
 
   SlopesOfSums of;
-  std::vector<int> noisy;          ///< MonotoneShape::noisy, or a window's MonotoneShape::thrusts
+  std::vector<int> noisy;          ///< detail::noisy_features()
   std::vector<Denoised> denoised;  ///< of the slopes by smoothed rows
   bool smoothed() const {
     return std::any_of(of.begin(), of.end(), [](const MeasuredSlope& slope) { return slope.smoothed(); });
@@ -56,9 +56,13 @@ using NeighboursVisit =
 /// neighbour_lag_s away, two rows at least.
 void each_with_neighbours(const FitContext& context, const FlightRows& piece, const NeighboursVisit& visit);
 
+/// Features that a gyro's or an accelerometer's noise is in, by their units. Of a window the thrusts alone: its other
+/// taps would be their own instruments.
+std::vector<int> noisy_features(const FitContext& context);
+
 /// A noisy feature as the others that `told` names, and the noisy ones of the neighbours, tell it:
 /// MeasuredSlopes::Denoised. `all`: sums of features, then of noisy ones of the neighbours.
-AffineMap by_neighbours(const MonotoneShape& shape, const std::vector<int>& noisy, const RegressionSums& all, int place,
+AffineMap by_neighbours(const FitContext& context, const std::vector<int>& noisy, const RegressionSums& all, int place,
                         std::vector<bool> told);
 
 /// Sums of standardised features and outputs in blocks of consecutive rows: fifty, of two seconds at least; the last

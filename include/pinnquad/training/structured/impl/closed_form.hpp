@@ -70,48 +70,33 @@ PINNQUAD_BODY std::vector<RegressionSums> regression_sums(const FitContext& cont
   return sums;
 }
 
-PINNQUAD_BODY MonotoneShape monotone_shape(const FitContext& context) {
-  MonotoneShape shape;
-  shape.inputs = context.inputs();
-  shape.places = context.features.accelerations;
-  shape.input_deviation = context.input_deviation;
-  shape.output_deviation = context.output_deviation;
-  shape.airframe_slopes = hover_slopes(context.airframe);
-  shape.thrusts = context.features.thrusts();
-  for (int i = 0; i < shape.inputs && !context.is_windowed(); ++i) {
-    const std::string_view unit = context.features.units[static_cast<std::size_t>(i)];
-    if (unit == "m/s^2" || unit == "rad/s" || unit == "rad/s^2" || unit == "rad^2/s^2") shape.noisy.push_back(i);
-  }
-  return shape;
-}
-
 namespace detail {
 
-PINNQUAD_BODY std::vector<bool> features_of_output(const MonotoneShape& shape, int output) {
-  std::vector<bool> taken(static_cast<std::size_t>(shape.inputs), true);
-  for (const int place : shape.places) {
+PINNQUAD_BODY std::vector<bool> features_of_output(const FitContext& context, int output) {
+  std::vector<bool> taken(static_cast<std::size_t>(context.inputs()), true);
+  for (const int place : context.features.accelerations) {
     for (int i = 0; i < 3; ++i) taken[static_cast<std::size_t>(place + i)] = i == output - 1;
   }
   return taken;
 }
 
-PINNQUAD_BODY std::vector<std::pair<int, double>> slope_terms(const MonotoneShape& shape, int output) {
+PINNQUAD_BODY std::vector<std::pair<int, double>> slope_terms(const FitContext& context, int output) {
   std::vector<std::pair<int, double>> terms;
-  for (const int tap : output == 0 ? shape.thrusts : shape.places) {
+  for (const int tap : output == 0 ? context.features.thrusts() : context.features.accelerations) {
     const int place = output == 0 ? tap : tap + output - 1;
-    terms.emplace_back(place, shape.output_deviation[static_cast<std::size_t>(output)] /
-                                  shape.input_deviation[static_cast<std::size_t>(place)]);
+    terms.emplace_back(place, context.output_deviation[static_cast<std::size_t>(output)] /
+                                  context.input_deviation[static_cast<std::size_t>(place)]);
   }
   return terms;
 }
 
-PINNQUAD_BODY std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, int output,
-                                                    const std::optional<AxisSlopes>& pinned) {
+PINNQUAD_BODY std::vector<WeightBound> slope_bounds(const FitContext& context, int output,
+                                                    const std::optional<AxisSlopes>& pinned, double held_thrust) {
   constexpr double least_share = least_fitted_slope_share;
-  WeightBound held{slope_terms(shape, output), -shape.held_thrust, true};  // the specific force of thrust is below 0
-  if (output == 0) return shape.held_thrust > 0 ? std::vector{held} : std::vector<WeightBound>{};
+  WeightBound held{slope_terms(context, output), -held_thrust, true};  // the specific force of thrust is below 0
+  if (output == 0) return held_thrust > 0 ? std::vector{held} : std::vector<WeightBound>{};
   const auto of_axis = static_cast<std::size_t>(output - 1);
-  const double least = least_share * shape.airframe_slopes[of_axis];
+  const double least = least_share * hover_slopes(context.airframe)[of_axis];
   if (!(least > 0) || (pinned && !((*pinned)[of_axis] > least))) {
     throw std::invalid_argument("monotone base: expected slopes above 0 and above the least share of the airframe's");
   }
@@ -122,15 +107,15 @@ PINNQUAD_BODY std::vector<WeightBound> slope_bounds(const MonotoneShape& shape, 
 
 }  // namespace detail
 
-PINNQUAD_BODY AffineMap fit_monotone_base(const MonotoneShape& shape, const std::vector<RegressionSums>& groups,
-                                          const std::optional<AxisSlopes>& pinned) {
+PINNQUAD_BODY AffineMap fit_monotone_base(const FitContext& context, const std::vector<RegressionSums>& groups,
+                                          const std::optional<AxisSlopes>& pinned, double held_thrust) {
   if (groups.empty()) throw std::invalid_argument("monotone base: expected rows with all features, found none");
   AffineMap all;
-  all.inputs = shape.inputs;
+  all.inputs = context.inputs();
   all.outputs = AxisCommandOutputs::size;
   for (int output = 0; output < all.outputs; ++output) {
-    const std::vector<bool> taken = detail::features_of_output(shape, output);
-    const std::vector<detail::WeightBound> bounds = detail::slope_bounds(shape, output, pinned);
+    const std::vector<bool> taken = detail::features_of_output(context, output);
+    const std::vector<detail::WeightBound> bounds = detail::slope_bounds(context, output, pinned, held_thrust);
     std::vector<RegressionSums> parts;
     for (const RegressionSums& group : groups) parts.push_back(group.of_output(output));
     const double penalty = parts.size() < 2 ? 0.0 : choose_penalty(parts, usual_penalties(), taken);

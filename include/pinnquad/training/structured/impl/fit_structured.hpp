@@ -41,8 +41,7 @@ class StructuredFitter {
         settings_(settings),
         kind_(set.residual),
         fitted_(fitted_rows(split, settings)),
-        context_(set.context(fitted_)),
-        shape_(monotone_shape(context_)) {
+        context_(set.context(fitted_)) {
     if (settings.pinned_slopes) pinned_ = hover_slopes(context_.airframe);
     for (const RowSet& group : left_out_groups(fitted_)) {
       RegressionSums sums = regression_sums(context_, group);
@@ -50,7 +49,7 @@ class StructuredFitter {
       groups_.push_back(group);
       sums_.push_back(std::move(sums));
     }
-    measured_ = map_ = fit_monotone_base(shape_, sums_, pinned_);
+    measured_ = map_ = fit_monotone_base(context_, sums_, pinned_);
     slopes_ = measure_slopes(context_, fitted_, pinned_, measured_);
     whole_flights_ = whole_flight_groups(fitted_).size() > 1 && groups_.size() > 1;
   }
@@ -101,7 +100,7 @@ class StructuredFitter {
       std::vector<RegressionSums> sums = sums_;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
       sums.erase(sums.begin() + static_cast<std::ptrdiff_t>(out));
-      use(rows_of(others), fit_monotone_base(shape_, sums, pinned_), groups_[out]);
+      use(rows_of(others), fit_monotone_base(context_, sums, pinned_), groups_[out]);
     }
   }
 
@@ -193,7 +192,6 @@ class StructuredFitter {
   const ResidualKind& kind_;
   RowSet fitted_;
   FitContext context_;
-  MonotoneShape shape_;
   std::optional<AxisSlopes> pinned_;
   std::vector<RowSet> groups_;
   std::vector<RegressionSums> sums_;  ///< of the groups

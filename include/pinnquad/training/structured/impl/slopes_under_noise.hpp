@@ -51,20 +51,29 @@ PINNQUAD_BODY std::vector<double> with_neighbours(const FitContext& context, con
   return all;
 }
 
-PINNQUAD_BODY AffineMap by_neighbours(const MonotoneShape& shape, const std::vector<int>& noisy,
+PINNQUAD_BODY std::vector<int> noisy_features(const FitContext& context) {
+  if (context.is_windowed()) return context.features.thrusts();
+  std::vector<int> noisy;
+  for (int i = 0; i < context.inputs(); ++i) {
+    const std::string_view unit = context.features.units[static_cast<std::size_t>(i)];
+    if (unit == "m/s^2" || unit == "rad/s" || unit == "rad/s^2" || unit == "rad^2/s^2") noisy.push_back(i);
+  }
+  return noisy;
+}
+
+PINNQUAD_BODY AffineMap by_neighbours(const FitContext& context, const std::vector<int>& noisy,
                                       const RegressionSums& all, int place, std::vector<bool> told) {
   for (const int feature : noisy) told[static_cast<std::size_t>(feature)] = false;
-  for (const int first : shape.places) {
+  for (const int first : context.features.accelerations) {
     for (int i = 0; i < 3; ++i) told[static_cast<std::size_t>(first + i)] = false;
   }
   return fit_ridge(all.of_input(place), usual_penalties().front(), told);
 }
 
 /// Each tap of the bent slopes as its neighbours tell it: those that have neighbour_lag_s off this tap.
-PINNQUAD_BODY void add_denoised(const FitContext& context, const MonotoneShape& shape, const RowSet& rows,
-                                MeasuredSlopes& slopes) {
+PINNQUAD_BODY void add_denoised(const FitContext& context, const RowSet& rows, MeasuredSlopes& slopes) {
   const std::size_t count = slopes.noisy.size();
-  RegressionSums all(shape.inputs + 2 * static_cast<int>(count), 0);
+  RegressionSums all(context.inputs() + 2 * static_cast<int>(count), 0);
   for (const FlightRows& piece : rows.pieces()) {
     each_with_neighbours(context, piece, [&](std::size_t, const double* x, const double* before, const double* after) {
       all.add(with_neighbours(context, slopes.noisy, x, before, after).data(), nullptr);
@@ -77,15 +86,15 @@ PINNQUAD_BODY void add_denoised(const FitContext& context, const MonotoneShape& 
   };
   for (int output = 0; output < AxisCommandOutputs::size; ++output) {
     if (!slopes.of[static_cast<std::size_t>(output)].smoothed()) continue;
-    const std::vector<std::pair<int, double>> taps = slope_terms(shape, output);
+    const std::vector<std::pair<int, double>> taps = slope_terms(context, output);
     for (std::size_t tap = 0; tap < taps.size(); ++tap) {
       std::vector<bool> told(static_cast<std::size_t>(all.inputs()), true);
       for (std::size_t i = 0; i < 2 * count && taps.size() > 1; ++i) {
         const double lag_s = i < count ? -neighbour_lag_s : neighbour_lag_s;
-        told[static_cast<std::size_t>(shape.inputs) + i] =
+        told[static_cast<std::size_t>(context.inputs()) + i] =
             std::abs(time_s(i % count) + lag_s - time_s(tap)) > neighbour_lag_s - window.tolerance_s;
       }
-      slopes.denoised.push_back({taps[tap].first, by_neighbours(shape, slopes.noisy, all, taps[tap].first, told)});
+      slopes.denoised.push_back({taps[tap].first, by_neighbours(context, slopes.noisy, all, taps[tap].first, told)});
     }
   }
 }
@@ -180,12 +189,11 @@ PINNQUAD_BODY std::vector<RegressionSums> row_blocks(const FitContext& context, 
 
 PINNQUAD_BODY SlopeOfBlocks::SlopeOfBlocks(const FitContext& context, const std::vector<RegressionSums>& blocks,
                                            int output) {
-  const MonotoneShape shape = monotone_shape(context);
-  std::vector<bool> taken = features_of_output(shape, output);
+  std::vector<bool> taken = features_of_output(context, output);
   for (std::size_t i = 0; i < taken.size(); ++i) {
     taken[i] = taken[i] && is_of_present(context.features.names[i]);
   }
-  const auto [present, factor] = slope_terms(shape, output).front();
+  const auto [present, factor] = slope_terms(context, output).front();
   const double unit = output == 0 ? -factor : factor;
   const auto slope = [&, place = static_cast<std::size_t>(present)](const RegressionSums& sums) {
     return unit * fit_ridge(sums, usual_penalties().front(), taken).weights[place];
@@ -293,14 +301,15 @@ PINNQUAD_BODY void each_denoised(const FitContext& context, const MeasuredSlopes
 PINNQUAD_BODY MeasuredSlopes measure_slopes(const FitContext& context, const RowSet& rows,
                                             const std::optional<AxisSlopes>& pinned, AffineMap& map) {
   const bool windowed = context.is_windowed();
-  MonotoneShape shape = monotone_shape(context);
   MeasuredSlopes slopes;
-  slopes.noisy = windowed ? shape.thrusts : shape.noisy;
+  slopes.noisy = detail::noisy_features(context);
+  const bool sees_thrust = !context.features.thrusts().empty();
+  double held_thrust = 0;
   detail::BlocksByWindow blocks(context, rows);
   if (!blocks.told(0)) return slopes;
   const double half = student_t_975(static_cast<double>(blocks[0].size()) - 1);
   for (int output = 0; output < map.outputs; ++output) {
-    if (output == 0 ? shape.thrusts.empty() : pinned || windowed) continue;
+    if (output == 0 ? !sees_thrust : pinned || windowed) continue;
     const detail::SteepestSlope found(context, blocks, output);
     if (windowed && found.window == 0) continue;  // its taps are not what was examined
     const auto begin = std::ptrdiff_t{output} * map.inputs;
@@ -313,30 +322,31 @@ PINNQUAD_BODY MeasuredSlopes measure_slopes(const FitContext& context, const Row
     if (found.window > 0 && found.next) upper = found.next->all + half * detail::block_error(1, *found.next);
     if (found.window > 0) {
       if (output == 0) {
-        shape.held_thrust = found.slope.all;
+        held_thrust = found.slope.all;
         const Identification vehicle = identify(rows, axis_signs(context.airframe));
         const Estimate& thrust = vehicle.thrust_m_s2;
         // commands with another zero, and flights of several masses, have no such thrust: the slope of smoothed rows
         // stays
         if (thrust.low() > 0 && vehicle.thrust_slope_m_s2.holds(thrust.value)) {
-          shape.held_thrust = 1 / thrust.value;
+          held_thrust = 1 / thrust.value;
           slope.standard_error = thrust.half_width / (half * thrust.value * thrust.value);
           upper = 1 / thrust.low();
         }
       }
-      const AffineMap mended = fit_monotone_base(shape, {detail::total(blocks[windowed ? 0 : found.window])}, pinned);
+      const AffineMap mended =
+          fit_monotone_base(context, {detail::total(blocks[windowed ? 0 : found.window])}, pinned, held_thrust);
       std::copy_n(mended.weights.begin() + begin, map.inputs, map.weights.begin() + begin);
       map.intercept[static_cast<std::size_t>(output)] = mended.intercept[static_cast<std::size_t>(output)];
     }
     double fitted = 0;
-    for (const auto& [place, factor] : detail::slope_terms(shape, output)) {
+    for (const auto& [place, factor] : detail::slope_terms(context, output)) {
       fitted += factor * map.weights[static_cast<std::size_t>(begin + place)];
     }
     slope.slope = output == 0 ? -fitted : fitted;
     slope.lower = slope.slope - half * slope.standard_error;
     slope.upper = std::max(slope.slope + half * slope.standard_error, upper);
   }
-  if (slopes.smoothed()) detail::add_denoised(context, shape, rows, slopes);
+  if (slopes.smoothed()) detail::add_denoised(context, rows, slopes);
   return slopes;
 }
 
