@@ -120,6 +120,11 @@ def test_logs_of_several_kinds_and_several_flights_in_one_list(pinnquad):
     pinnquad.refused("import two.bbl --mapping px4 --out other", keyword="vehicle_attitude")
 
 
+def test_a_craft_without_accelerometer_is_named(pinnquad):
+    Path("none.bbl").write_bytes(betaflight().replace(b"acc_1G:2048", b"acc_1G:0"))
+    pinnquad.refused("import none.bbl --out dataset", keyword="one that flew without (acc_1G 0")
+
+
 def test_a_hexacopter_is_named(pinnquad):
     log = dataflash().replace(struct.pack("<16sf", b"FRAME_CLASS", 1), struct.pack("<16sf", b"FRAME_CLASS", 2))
     Path("hexa.bin").write_bytes(log)
