@@ -9,7 +9,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from conftest import column, edited, no_partial_files, replaced
+from conftest import column, edited, no_partial_files, replaced, table
 
 FLOWN = "d1 --airframe px4_sih --seed 3 --samples 6000"
 FLIGHT = {name: at for at, name in enumerate(
@@ -82,6 +82,62 @@ def test_a_thrust_curve(pinnquad, flight):
     assert value(found, "thrust_curve") == pytest.approx(1, abs=0.05)
     assert value(found, "thrust_m_s2") == pytest.approx(4.925, rel=0.02)
     assert tomllib.loads(Path("curved.toml").read_text())["rotor"][3]["thrust_curve"] > 0.9
+
+
+THROTTLE = """world = "ned"
+body = "frd"
+[time]
+column = "t"
+unit = "s"
+[attitude]
+euler = ["roll", "pitch", "yaw"]
+[body_rates]
+columns = ["w_x", "w_y", "w_z"]
+[velocity]
+columns = ["v_bx", "v_by", "v_bz"]
+axes = "body"
+[motors]
+columns = ["u1", "u2", "u3", "u4"]
+order = "px4"
+numbers = "signal"
+least = 1000
+most = 2000
+"""
+
+
+def test_a_throttle(pinnquad, flown):
+    """Pulse widths whose thrust follows 0.4 u + 0.6 u^2: the curve is found by default, and commands stay what the
+    motors are given."""
+    def pulses(curve):
+        def edit(line, cells):
+            for at in MOTORS if line > 1 else ():
+                share = float(cells[at - 1])
+                u = 2 * share / (1 - curve + ((1 - curve) ** 2 + 4 * curve * share) ** 0.5)
+                cells[at - 1] = repr(1000 + 1000 * u)
+        return edit
+
+    flight = flown("d1 --airframe px4_sih --seed 3 --interval 10 --samples 6000")
+    edited(flight, "throttle.csv", pulses(0.6))
+    edited(flight, "straight.csv", pulses(0))
+    Path("throttle.toml").write_text(THROTTLE)
+    Path("stated.toml").write_text(THROTTLE + "thrust_curve = 0.6\n")
+    said = pinnquad("import throttle.csv --mapping throttle.toml --out throttle").out
+    assert re.search(r"^thrust curve of the commands, .*: k = 0\.(59|6|61) \(.* in flight throttle by roll 0\.\d.*overrules", said,
+                     re.M), said
+    assert "by its slope" not in said
+    for words in ("throttle.csv --mapping throttle.toml", "throttle", "throttle.csv --mapping stated.toml"):
+        found = identified(pinnquad, *words.split(), "--out", "found.toml")
+        assert value(found, "thrust_m_s2") == pytest.approx(4.925, rel=0.02), words
+        rotors = tomllib.loads(Path("found.toml").read_text())["rotor"]
+        assert [rotor["thrust_curve"] for rotor in rotors] == pytest.approx([0.6] * 4, abs=0.02), words
+    imported = {}
+    for name in ("throttle", "stated"):
+        pinnquad(f"import throttle.csv --mapping {name}.toml --lag 0 --out {name}")
+        imported[name] = [row["u1"] for row in table(next(Path(name).glob("*.csv")))]
+        about = json.loads((Path(name) / "dataset.json").read_text())["thrust_curve"]
+        assert about["k"] == pytest.approx(0.6, abs=0.02) and about["fitted"] == (name == "throttle")
+    assert imported["throttle"] == imported["stated"]
+    assert "straight, k = 0 taken" in pinnquad("import straight.csv --mapping throttle.toml --out straight").out
 
 
 @pytest.fixture(scope="module")

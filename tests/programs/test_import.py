@@ -186,6 +186,15 @@ def test_between_two_rows(pinnquad):
                 assert abs(command - before - weight * (after - before)) < 1e-6, (words, at)
 
 
+def test_logs_of_two_rates_are_named(pinnquad):
+    names, *rows = Path("ned.csv").read_text().splitlines()
+    Path("a.csv").write_text("\n".join([names, *rows[:1000]]))
+    Path("b.csv").write_text("\n".join([names, *rows[1000::2]]))
+    rates = "logged at 50 Hz, the first log at 100 Hz: all have rows at 100 Hz"
+    assert rates in imported(pinnquad, "a.csv", "b.csv", *NED_LAG, out="both")
+    assert rates not in imported(pinnquad, "a.csv", "b.csv", *NED_LAG, "--rate", "50", out="both")
+
+
 def test_replaces_a_dataset_alone(pinnquad, logs):
     shutil.copytree(logs / "ned", "ned")
     assert imported(pinnquad, "ned.csv", *NED) == (logs / "ned.txt").read_text(), "the same log gave another dataset"

@@ -129,11 +129,11 @@ def test_logs_of_one_name_are_called_by_their_folders(pinnquad):
     assert [one["trajectory"] for one in flights] == ["monday_00000001", "tuesday_00000001"]
 
 
-def test_an_accelerometer_that_is_off_is_named(pinnquad):
-    log = blackbox("Betaflight 3.1.3 (abc) OMNIBUS", [], lambda t: [], (1000, 2000))
-    log = log.replace(b"acc_1G:2048", b"acc_1G:0").replace(b"accSmooth", b"debugging")
-    Path("off.bfl").write_bytes(log)
-    pinnquad.refused("import off.bfl --out dataset", at="off.bfl", keyword="accelerometer that is on")
+def test_a_craft_without_accelerometer_is_named(pinnquad):
+    none = betaflight().replace(b"acc_1G:2048", b"acc_1G:0")
+    for log in none, none.replace(b"accSmooth", b"debugging"):
+        Path("none.bbl").write_bytes(log)
+        pinnquad.refused("import none.bbl --out dataset", at="none.bbl", keyword="one that flew without (acc_1G 0")
 
 
 def test_an_old_plus_frame_is_named(pinnquad):

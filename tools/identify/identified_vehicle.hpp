@@ -41,6 +41,7 @@ inline NamedAirframe airframe_of(const pinnquad::logs::ImportedDataset& dataset)
   like.value.thrust_coefficient = 0.1;
   like.value.power_coefficient = 0.05;
   like.value.rotor_time_constant_s = lag_s;
+  for (auto& rotor : like.value.rotors) rotor.thrust_curve = dataset.curve.k;
   return like;
 }
 

@@ -75,6 +75,7 @@ void print_json(const programs::ToldVehicle& vehicle, const logs::ImportedDatase
 
 void print_table(const programs::ToldVehicle& vehicle, const logs::ImportedDataset& dataset) {
   for (const std::string& taken : dataset.taken) std::printf("%s\n", taken.c_str());
+  if (!dataset.curve.told.empty()) std::printf("%s\n", dataset.curve.told.c_str());
   for (const std::string& warning : dataset.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("%zu flights, %.1f s of them, in %zu blocks\n", dataset.flights.size(), vehicle.found.duration_s,
               vehicle.found.blocks);
@@ -102,6 +103,7 @@ int run(const IdentifyOptions& options) {
     throw std::invalid_argument("--out " + options.out + ": a name that ends in .toml was expected");
   }
   logs::ImportedDataset dataset = read(options);
+  if (options.curve) dataset.curve.told.clear();
   const programs::ToldVehicle vehicle =
       programs::told_vehicle(dataset, said_by(options), !options.mapping.empty() || !dataset.taken.empty());
   if (!vehicle.airframe) {
@@ -150,9 +152,9 @@ Command identify_command(CLI::App& program) {
     }
     options->curve = curve;
   };
-  line->add_option_function<std::string>(
-          "--thrust-curve", take_curve,
-          "from thrust proportional to the command, 0, to its square, 1; fit finds it (default: that of the airframe)")
+  line->add_option_function<std::string>("--thrust-curve", take_curve,
+                                         "from thrust proportional to the command, 0, to its square, 1; fit finds it "
+                                         "(default: that of the airframe; of logs without one as import finds it)")
       ->type_name("0..1|fit");
   add_path(*line, "--out", options->out, "FILE.toml", "the airframe file to write");
   line->add_option("--name", options->name, "name in the airframe file")->capture_default_str();

@@ -58,6 +58,7 @@ void print_text(const logs::ImportedDataset& dataset, const std::string& out) {
   for (const std::string& taken : dataset.taken) std::printf("%s\n", taken.c_str());
   print_steps(dataset);
   for (const std::string& note : dataset.notes) std::printf("%s\n", note.c_str());
+  if (!dataset.curve.told.empty()) std::printf("%s\n", dataset.curve.told.c_str());
   for (const pinnquad::Flight& flight : dataset.flights.flights()) {
     std::printf("%-34s %10zu rows, %.1f s, trajectory %s\n", flight.name.c_str(), flight.size(),
                 flight.back().time_s - flight.front().time_s, flight.trajectory.c_str());

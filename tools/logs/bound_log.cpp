@@ -98,7 +98,7 @@ double thrust_curve(const std::optional<NamedAirframe>& airframe, std::size_t ro
 
 /// Replaces the columns of `motors` by commands. A number below `least` is a stopped motor: 0; what is above `most` is
 /// 1, and falls to the rule for saturated rows. `curve`: thrust = s ((1 - k) + k s) of a signal, where the log or the
-/// mapping says so; then the command is the airframe's of that thrust, and else the signal itself.
+/// mapping says so; with an airframe the command is then the airframe's of that thrust, and else the signal itself.
 void to_commands(const Source& source, const std::optional<NamedAirframe>& airframe, double curve,
                  const MotorRange& range, std::vector<std::vector<double>>& values) {
   std::vector<std::vector<double>> commands;
@@ -113,7 +113,7 @@ void to_commands(const Source& source, const std::optional<NamedAirframe>& airfr
       value = (value - range.least) / (range.most - range.least);
       if (ranged && value < 0) value = 0;
       if (ranged && value > 1) value = 1;
-      const bool straight = source.numbers == MotorNumbers::signal && !(curve > 0);
+      const bool straight = source.numbers == MotorNumbers::signal && (!airframe || !(curve > 0));
       if (straight) continue;
       const double share = source.numbers == MotorNumbers::thrust ? value : thrust_fraction(curve, value);
       value = command_of_fraction(thrust_curve(airframe, place), share);
@@ -275,14 +275,16 @@ Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& s
     }
     const MotorRange range{*least, *most};
     require_four_motors(log, *topic, source, range.least, range.most, mapping.file);
-    double curve = source.thrust_curve;
+    std::optional<double> curve = source.thrust_curve;
     const auto logged = log.parameters.find(source.thrust_curve_parameter);
     if (logged != log.parameters.end()) curve = std::clamp(logged->second, 0.0, 1.0);
     if (source.numbers == MotorNumbers::speed && !airframe) {
       throw InputError(mapping.file, source.place.line, source.place.column,
                        "--airframe, which says what rotor speeds command", "none");
     }
-    to_commands(source, airframe, curve, range, signal.values);
+    if (source.numbers == MotorNumbers::speed) curve = 0;
+    signal.thrust_curve = curve;
+    to_commands(source, airframe, curve.value_or(0), range, signal.values);
     require_commands(signal, range);
   }
   if (source.quantity == Quantity::torque_and_thrust) {
@@ -450,10 +452,6 @@ BoundLog bind_log(FlightLog& log, const Mapping& mapping, const std::optional<Na
     const bool optional =
         std::any_of(sources.begin(), sources.end(), [](const Source* source) { return source->optional; });
     if (optional && !needed) return;
-    const auto one_g = log.parameters.find("acc_1G");
-    if (&signal == &bound.of(Quantity::attitude) && one_g != log.parameters.end() && !(one_g->second > 0)) {
-      throw InputError(log.source, 0, 0, "an accelerometer that is on, of which roll and pitch are made", "acc_1G 0");
-    }
     static_cast<void>(bind_source(log, mapping, *sources.front(), airframe, true));
     throw InputError(mapping.file, sources.front()->place.line, sources.front()->place.column,
                      "a topic with rows in " + log.source, "none");

@@ -28,6 +28,7 @@ struct Signal {
   std::vector<std::vector<double>> values;  ///< by component, by the topic's row; NaN where it has none
   std::string told;                         ///< where it is from: "actuator_motors"
   std::string note;                         ///< how its numbers were taken; empty: as the mapping says
+  std::optional<double> thrust_curve{};     ///< of motors that are no speeds: as the mapping or the log says
   bool sparse = false;                      ///< the table has rows without it between its own: its clock has these
 
   bool present() const noexcept { return source != nullptr; }

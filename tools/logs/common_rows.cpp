@@ -116,15 +116,11 @@ std::vector<const Signal*> needed_signals(const BoundLog& log) {
   return needed;
 }
 
-/// That of the slowest of commands, body rates and force, at most 100 Hz: a usual one where it is within a tenth of it
+/// That of the log's own rows, at most 100 Hz: a usual one where it is within a tenth of it
 /// (loggers whose rate is 50 Hz drop a row now and then), else a whole number of microseconds.
 double usual_period_s(const BoundLog& log) {
   constexpr double shortest_s = 0.01, near = 0.1;
-  double period_s = shortest_s;
-  for (const Quantity quantity :
-       {Quantity::motors, Quantity::body_rates, Quantity::specific_force, Quantity::acceleration}) {
-    if (log.of(quantity).present()) period_s = std::max(period_s, log.of(quantity).period_s());
-  }
+  const double period_s = std::max(shortest_s, own_rows_period_s(log));
   for (const double usual_s : {0.01, 0.02, 0.04, 0.05, 0.1}) {
     if (std::abs(period_s - usual_s) <= near * usual_s) return usual_s;
   }
@@ -132,6 +128,15 @@ double usual_period_s(const BoundLog& log) {
 }
 
 }  // namespace
+
+double own_rows_period_s(const BoundLog& log) {
+  double period_s = 0;
+  for (const Quantity quantity :
+       {Quantity::motors, Quantity::body_rates, Quantity::specific_force, Quantity::acceleration}) {
+    if (log.of(quantity).present()) period_s = std::max(period_s, log.of(quantity).period_s());
+  }
+  return period_s;
+}
 
 CommonRows common_rows(BoundLog& log, const std::optional<double>& period_s, bool hold_commands) {
   CommonRows rows;

@@ -25,6 +25,9 @@ struct CommonRows {
   std::size_t rows() const noexcept { return time_s.size(); }
 };
 
+/// Step of the log's slowest of commands, body rates and force; 0 for none.
+double own_rows_period_s(const BoundLog& log);
+
 /// The values of the log's signals are gone afterwards.
 CommonRows common_rows(BoundLog& log, const std::optional<double>& period_s, bool hold_commands);
 

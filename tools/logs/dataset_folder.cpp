@@ -77,17 +77,20 @@ std::vector<std::string> flight_files(const ImportedDataset& dataset) {
 
 std::string dataset_json(const ImportedDataset& dataset) {
   const std::vector<std::string> files = flight_files(dataset);
-  nlohmann::json json = {{"format", dataset_format},
-                         {"sample_period_s", dataset.sample_period_s},
-                         {"lag_removed_s", dataset.lag_removed_s},
-                         {"absent", dataset.absent},
-                         {"airframe", printable(dataset.airframe)},
-                         {"mapping", printable(dataset.mapping)},
-                         {"rows", dataset.flights.rows()},
-                         {"flights", nlohmann::json::array()},
-                         {"steps", nlohmann::json::array()},
-                         {"notes", nlohmann::json::array()},
-                         {"warnings", nlohmann::json::array()}};
+  nlohmann::json json = {
+      {"format", dataset_format},
+      {"sample_period_s", dataset.sample_period_s},
+      {"lag_removed_s", dataset.lag_removed_s},
+      {"absent", dataset.absent},
+      {"airframe", printable(dataset.airframe)},
+      {"mapping", printable(dataset.mapping)},
+      {"thrust_curve",
+       {{"k", dataset.curve.k}, {"fitted", dataset.curve.fitted}, {"told", printable(dataset.curve.told)}}},
+      {"rows", dataset.flights.rows()},
+      {"flights", nlohmann::json::array()},
+      {"steps", nlohmann::json::array()},
+      {"notes", nlohmann::json::array()},
+      {"warnings", nlohmann::json::array()}};
   for (std::size_t i = 0; i < dataset.flights.size(); ++i) {
     const Flight& flight = dataset.flights[i];
     json["flights"].push_back({{"name", printable(flight.name)},
@@ -162,6 +165,12 @@ ImportedDataset read_dataset_folder(const std::string& path, const OnProgress& o
   dataset.lag_removed_s = number(json, "lag_removed_s", -4);
   if (json.contains("airframe")) dataset.airframe = text(json, "airframe");
   if (json.contains("mapping")) dataset.mapping = text(json, "mapping");
+  if (json.contains("thrust_curve")) {
+    const nlohmann::json& curve = json["thrust_curve"];
+    dataset.curve = {number(curve, "k", 0), curve.value("fitted", nlohmann::json()) == nlohmann::json(true),
+                     text(curve, "told")};
+    if (dataset.curve.k > 1) refuse("a thrust curve `k` from 0 to 1", number_text(dataset.curve.k));
+  }
   const nlohmann::json flights = list("flights");
   for (const nlohmann::json& entry : flights) {
     if (on_progress)

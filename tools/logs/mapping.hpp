@@ -132,7 +132,7 @@ struct Source {
   MotorNumbers numbers = MotorNumbers::thrust;
   std::array<MotorOrder::Corner, rotor_count> corners = px4_motor_order.corners;
   MappedNumber least{0, {}, false}, most{1, {}, false};  ///< of a motor's number: stopped or idle, and full
-  double thrust_curve = 0;                               ///< of a signal: thrust = s ((1 - k) + k s)
+  std::optional<double> thrust_curve;                    ///< of a signal: thrust = s ((1 - k) + k s)
   std::string thrust_curve_parameter;                    ///< that the log has it by
   bool thrust_is_up = false;  ///< of torque_and_thrust: positive for thrust, PX4's z is negative
   bool wrench = false;        ///< torque and thrust are in units, not shares: the airframe makes the commands

@@ -15,6 +15,7 @@
 #include "logs/attitude_convention.hpp"
 #include "logs/bound_log.hpp"
 #include "logs/clock.hpp"
+#include "logs/command_curve.hpp"
 #include "logs/command_lag.hpp"
 #include "logs/common_rows.hpp"
 #include "logs/derived_motion.hpp"
@@ -152,8 +153,14 @@ class Import {
     remove_lag();
     drop_rows();
     make_flights();
-    check_vehicle(dataset_, airframe_ ? airframe_->value : airframe_value<PaperQuadrotor, double>(),
-                  !settings_.airframe.empty(), settings_.on_progress);
+    Airframe<double> airframe = airframe_ ? airframe_->value : airframe_value<PaperQuadrotor, double>();
+    if (!airframe_) {
+      report("fitting the thrust curve", 0);
+      dataset_.curve = command_curve(dataset_.flights, stated_curve_);
+      for (RotorMount<double>& rotor : airframe.rotors) rotor.thrust_curve = dataset_.curve.k;
+    }
+    check_vehicle(dataset_, airframe, !settings_.airframe.empty(), settings_.on_progress);
+    merge_warnings();
     return std::move(dataset_);
   }
 
@@ -259,11 +266,15 @@ class Import {
 
   /// The part's columns are gone afterwards.
   void take(LogPart& part, const LogPlace& place) {
+    require_accelerometer(part.log);
     BoundLog bound = bind_log(part.log, mapping_, airframe_);
     count_topics(bound, part.name);
+    take_curve(bound);
     const std::size_t base = bound.of(Quantity::body_rates).clock->size();
+    const double own_period_s = own_rows_period_s(bound);
     CommonRows rows = common_rows(bound, period_s_, settings_.hold_commands);
     if (!period_s_) period_s_ = rows.period_s;
+    tell_other_rate(own_period_s, part.name);
     check_signals(bound, rows, part);
     const std::size_t all = rows.rows();
     steps_.add("one clock", base, all,
@@ -295,6 +306,63 @@ class Import {
     has_velocity_.push_back(log_rows.has_velocity);
     has_altitude_.push_back(log_rows.has_altitude);
     passages_.push_back(std::move(passage));
+  }
+
+  /// Four warnings or more that say the same are one line.
+  void merge_warnings() {
+    constexpr std::size_t fewest = 4;
+    const auto rest_of = [](const std::string& warning) {
+      const std::size_t colon = warning.find(": ");
+      return colon == std::string::npos ? warning : warning.substr(colon + 2);
+    };
+    std::map<std::string, std::vector<std::string>> names;  // by the rest
+    for (const std::string& warning : dataset_.warnings) {
+      names[rest_of(warning)].push_back(warning.substr(0, warning.find(": ")));
+    }
+    std::vector<std::string> merged;
+    for (const std::string& warning : dataset_.warnings) {
+      const std::string rest = rest_of(warning);
+      const std::vector<std::string>& of = names[rest];
+      if (of.size() < fewest) {
+        merged.push_back(warning);
+      } else {
+        add(merged,
+            std::to_string(of.size()) + " flights, " + of[0] + ", " + of[1] + " ... " + of.back() + ": " + rest);
+      }
+    }
+    dataset_.warnings = std::move(merged);
+  }
+
+  /// Attitude and force of a blackbox log are the accelerometer's.
+  void require_accelerometer(const FlightLog& log) const {
+    const auto counts = log.parameters.find("acc_1G");
+    const bool flew_without = counts != log.parameters.end() && !(counts->second > 0);
+    if (!flew_without || (mapping_.name != "betaflight" && mapping_.name != "inav")) return;
+    throw InputError(log.source, 0, 0, "a craft with an accelerometer, which attitude and force are made of",
+                     "one that flew without (acc_1G 0 in the log's head)");
+  }
+
+  /// The first log's rate is that of all, unless one was asked for.
+  void tell_other_rate(double own_period_s, const std::string& name) {
+    constexpr double alike = 0.1;
+    if (first_period_s_ <= 0) first_period_s_ = own_period_s;
+    const double ratio = own_period_s / first_period_s_;
+    if (settings_.rate_hz || (ratio < 1 + alike && ratio > 1 - alike)) return;
+    warn(name + ": logged at " + short_number(1 / own_period_s) + " Hz, the first log at " +
+         short_number(1 / first_period_s_) + " Hz: all have rows at " + short_number(1 / *period_s_) +
+         " Hz; --rate says another");
+  }
+
+  /// Logs of one vehicle have one curve: commands are what its motors are given.
+  void take_curve(const BoundLog& bound) {
+    const Signal& motors = bound.of(Quantity::motors);
+    const std::optional<double> curve = motors.present() ? motors.thrust_curve : std::nullopt;
+    const bool first = passages_.empty();
+    const bool same = curve.has_value() == stated_curve_.has_value() &&
+                      std::abs(curve.value_or(0) - stated_curve_.value_or(0)) < 1e-9;
+    if (first) stated_curve_ = curve;
+    if (first || same || airframe_) return;
+    throw std::invalid_argument("logs with several thrust curves: --airframe says which commands they become");
   }
 
   /// Leaves out the rows that are not asked for, and crashes. How many.
@@ -563,7 +631,8 @@ class Import {
   std::optional<NamedAirframe> airframe_;
   ImportedDataset dataset_;
   Steps steps_;
-  std::optional<double> period_s_;
+  std::optional<double> period_s_, stated_curve_;
+  double first_period_s_ = 0;  ///< own rows of the first log
   std::vector<Passage> passages_;
   std::map<std::string, std::string> causes_;  ///< of a flight that will be refused, by its name
   std::vector<bool> has_velocity_, has_altitude_;

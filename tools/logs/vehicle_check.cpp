@@ -138,10 +138,23 @@ class VehicleCheck {
     check_voltages();
     check_slopes();
     compare();
+    for (VehicleFinding& finding : findings_) shorten(finding.sentence);
     return std::move(findings_);
   }
 
  private:
+  /// "a, b, c, d: ..." to "4 flights, a, b ... d: ...".
+  static void shorten(std::string& sentence) {
+    constexpr std::size_t most_named = 3;
+    const std::size_t end = sentence.find(": ");
+    std::vector<std::size_t> commas;
+    for (std::size_t at = sentence.find(", "); at < end; at = sentence.find(", ", at + 1)) commas.push_back(at);
+    const std::size_t count = commas.size() + 1;
+    if (count <= most_named) return;
+    const std::string last = sentence.substr(commas.back() + 2, end - commas.back() - 2);
+    sentence.replace(0, end, std::to_string(count) + " flights, " + sentence.substr(0, commas[1]) + " ... " + last);
+  }
+
   void say(std::size_t flight, const std::string& what, bool contradicts = false) {
     for (VehicleFinding& finding : findings_) {
       const std::size_t colon = finding.sentence.find(": ");

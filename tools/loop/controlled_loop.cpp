@@ -60,11 +60,15 @@ struct Errors {
   template <class Visit>
   void seconds(double from_s, double to_s, const Visit& visit) const {
     const std::size_t window = at(1), first = at(from_s);
+    std::vector<double> left(window + 1, 0.0);  // of the window before: sums to its end. Nothing is taken off a sum
     double sum = 0;
     for (std::size_t i = first; i < std::min(at(to_s), squares.size()); ++i) {
-      sum += squares[i];
-      if (i >= first + window) sum -= squares[i - window];
-      if (i + 1 >= first + window) visit(i, std::sqrt(std::max(0.0, sum) / static_cast<double>(window)));
+      const std::size_t place = (i - first) % window;
+      sum = (place == 0 ? 0.0 : sum) + squares[i];
+      if (i + 1 >= first + window) visit(i, std::sqrt((sum + left[place + 1]) / static_cast<double>(window)));
+      if (place + 1 < window) continue;
+      for (std::size_t k = window; k-- > 0;)
+        left[k] = (k + 1 == window ? 0.0 : left[k + 1]) + squares[i + k + 1 - window];
     }
   }
   std::size_t at(double time_s) const { return static_cast<std::size_t>(std::lround(time_s / period_s)); }

@@ -119,6 +119,7 @@ inline pinnquad::logs::ImportedDataset not_held_out(const pinnquad::logs::Import
   pinnquad::logs::ImportedDataset left;
   left.lag_removed_s = dataset.lag_removed_s;
   left.airframe = dataset.airframe;
+  left.curve = dataset.curve;
   for (std::size_t i = 0; i < dataset.flights.size(); ++i) {
     const pinnquad::Flight& flight = dataset.flights[i];
     const std::vector<std::string>& held = folds.front().held_out;
@@ -141,9 +142,10 @@ inline FlownVehicle flown_vehicle(const std::optional<NamedAirframe>& given,
   FlownVehicle vehicle;
   vehicle.given = given.has_value();
   for (const pinnquad::Flight& flight : asked.flights.flights()) vehicle.flights.push_back(flight.name);
+  pinnquad::IdentificationSettings settings;
   try {
-    pinnquad::IdentificationSettings settings;
     settings.thrust_curve = like.value.rotors[0].thrust_curve;
+    settings.fit_thrust_curve = !given && dataset.curve.fitted;  // again: the held-out flights are in the dataset's
     vehicle.asked = identified_vehicle(asked, like.value, settings);
   } catch (const pinnquad::InputError& refused) {
     vehicle.asked = IdentifiedVehicle{};
@@ -157,6 +159,7 @@ inline FlownVehicle flown_vehicle(const std::optional<NamedAirframe>& given,
     vehicle.airframe = {"identified", vehicle.asked->airframe->value};
   } else {
     if (like.name.empty()) like = chosen_airframe(pinnquad::PaperQuadrotor::name);
+    for (auto& rotor : like.value.rotors) rotor.thrust_curve = settings.thrust_curve;
     vehicle.airframe = detail::assumed_airframe(like, vehicle.asked->found, asked.flights, vehicle.unknown);
   }
   return vehicle;
@@ -166,7 +169,7 @@ inline FlownVehicle flown_vehicle(const std::optional<NamedAirframe>& given,
 inline std::string identified_in_words(const pinnquad::Identification& found) {
   std::string words;
   for (const IdentifiedNumber& number : identified_numbers(found)) {
-    for (const char* key : {"thrust_m_s2", "roll_effectiveness_rad_s2", "pitch_effectiveness_rad_s2",
+    for (const char* key : {"thrust_m_s2", "thrust_curve", "roll_effectiveness_rad_s2", "pitch_effectiveness_rad_s2",
                             "yaw_effectiveness_rad_s2", "rotor_lag_s"}) {
       if (number.key != key) continue;
       char value[32];

@@ -649,6 +649,7 @@ int programs::train(const TrainOptions& options) {
   std::vector<Fold> folds = folds_asked_for(options, dataset);
   require_sound(options, dataset, folds);
   if (!options.dataset.empty()) {  // of logs it was checked when they were read
+    for (auto& rotor : vehicle.airframe.value.rotors) rotor.thrust_curve = given ? rotor.thrust_curve : dataset.curve.k;
     check_vehicle(dataset, vehicle.airframe.value, given.has_value());
     folds = folds_asked_for(options, dataset);  // without the flights that it found unlike
   }
@@ -663,6 +664,7 @@ int programs::train(const TrainOptions& options) {
     announce("      " + dataset.steps.back().told + "; --lag 0 leaves the commands as they are");
   }
   print_folds(folds);
+  if (!given && !dataset.curve.told.empty()) announce("      " + dataset.curve.told);
   if (options.flights.empty()) {
     vehicle = flown_vehicle(given, dataset, places_of(options, dataset), folds);
     print_vehicle(vehicle);

@@ -56,25 +56,18 @@ inline std::vector<WorstMoment> moments_of(const pinnquad::FlightRows& piece, st
   }
   std::vector<WorstMoment> moments;
   std::size_t begin = 0, end = 0;
-  MotorFigures sum{};
   for (std::size_t i = 0; i < squares.size(); ++i) {
-    while (end < squares.size() && squares[end].time_s <= squares[i].time_s + moment_s / 2) {
-      for (std::size_t motor = 0; motor < sum.size(); ++motor) sum[motor] += squares[end].of_motor[motor];
-      ++end;
-    }
-    while (squares[begin].time_s < squares[i].time_s - moment_s / 2) {
-      for (std::size_t motor = 0; motor < sum.size(); ++motor) sum[motor] -= squares[begin].of_motor[motor];
-      ++begin;
+    while (end < squares.size() && squares[end].time_s <= squares[i].time_s + moment_s / 2) ++end;
+    while (squares[begin].time_s < squares[i].time_s - moment_s / 2) ++begin;
+    MotorFigures sum{};  // anew: a running sum keeps what a wild value rounded off
+    for (std::size_t k = begin; k < end; ++k) {
+      for (std::size_t motor = 0; motor < sum.size(); ++motor) sum[motor] += squares[k].of_motor[motor];
     }
     double all = 0;
     for (const double of_motor : sum) all += of_motor;
     const double count = static_cast<double>(end - begin) * static_cast<double>(sum.size());
-    WorstMoment moment{piece.flight,
-                       fold,
-                       squares[i].row,
-                       first + squares[i].row - piece.rows.begin,
-                       std::sqrt(std::max(0.0, all) / count),
-                       0};
+    WorstMoment moment{piece.flight,           fold, squares[i].row, first + squares[i].row - piece.rows.begin,
+                       std::sqrt(all / count), 0};
     moment.motor = static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
     moments.push_back(moment);
   }

@@ -29,14 +29,15 @@ namespace pinnquad {
 struct IdentificationSettings {
   double window_s = 0.16;         ///< of the smoothing: motion up to some 6 Hz counts
   double thrust_curve = 0;        ///< of thrust_fraction()
-  bool fit_thrust_curve = false;  ///< finds it, in place of taking that one
+  bool fit_thrust_curve = false;  ///< finds it where flights tell it (tells_curve()), in place of taking that one
 };
 
 /// An interval is infinite where the flights do not tell.
 struct Identification {
   Estimate thrust_m_s2;                          ///< A: specific force of one rotor at command 1
   Estimate thrust_slope_m_s2;                    ///< A beside a constant: another one where commands have another zero
-  Estimate thrust_curve;                         ///< k of thrust_fraction(), where it was to be found
+  Estimate thrust_curve;                         ///< k of thrust_fraction(), where it was to be found: all motions
+  std::array<Estimate, 4> curve_by;              ///< k by roll, pitch, yaw and the force along z
   Estimate battery;                              ///< E: relative change of the thrust over that of the voltage
   std::array<Estimate, 3> effectiveness_rad_s2;  ///< B: angular acceleration of one rotor at command 1
   std::array<Estimate, 3> imbalance;             ///< C / B: of all rotors together, over that of one; of roll and pitch
@@ -61,6 +62,12 @@ struct Identification {
   std::array<double, 3> speed_deviation_m_s{};
 };
 
+/// True for a thrust curve that flights tell and that is none: its interval is narrow and begins above 0.
+inline bool tells_curve(const Estimate& curve) noexcept {
+  constexpr double narrow = 0.2, bent = 0.05;
+  return curve.half_width <= narrow && curve.low() > bent;
+}
+
 namespace detail {
 
 /// The regressions of one identification.
@@ -77,8 +84,9 @@ class Identifier {
 
   void find_rotation(double curve, Identification& result);
 
-  /// k of f_z = -A ((1 - k) sum s_linear + k sum s_square) - drag.
-  double find_curve(Identification& result) const;
+  /// k by each motion: w_a' = B_a ((1 - k) sum sigma_i s_linear + k sum sigma_i s_square) + ..., and
+  /// f_z = -A ((1 - k) sum s_linear + k sum s_square) - drag.
+  std::array<Estimate, 4> curves() const;
 
   /// Along z by the velocity where there is one: an accelerometer's offset of 0.1 m/s^2 would be 1 % of the thrust.
   const Series& force(std::size_t axis) const;

@@ -13,6 +13,29 @@ PINNQUAD_BODY Identification identify(const RowSet& rows, const std::array<std::
 
 namespace detail {
 
+/// The mean of those that are told, each by its interval; the force without a velocity, which drag bends too, counts
+/// only where no turning tells the curve. Where they are further apart than their intervals say, the interval grows.
+PINNQUAD_BODY Estimate agreed_curve(const std::array<Estimate, 4>& by, bool has_velocity) {
+  constexpr double loosest = 0.5;
+  double counts = 0, sum = 0, apart = 0;
+  const auto takes = [&](std::size_t i) {
+    return by[i].half_width <= loosest && (i < 3 || has_velocity || !(counts > 0));
+  };
+  for (std::size_t i = 0; i < by.size(); ++i) {
+    if (!takes(i)) continue;
+    const double count = 1 / (by[i].half_width * by[i].half_width + 1e-6);
+    counts += count;
+    sum += count * by[i].value;
+  }
+  if (!(counts > 0)) return {};
+  for (std::size_t i = 0; i < by.size(); ++i) {
+    if (!takes(i)) continue;
+    const double off = std::abs(by[i].value - sum / counts) - by[i].half_width;
+    apart = std::max(apart, off);
+  }
+  return {sum / counts, std::hypot(1 / std::sqrt(counts), apart)};
+}
+
 PINNQUAD_BODY Identification Identifier::run() {
   constexpr std::size_t fewest_instants = 100;
   Identification result;
@@ -22,8 +45,12 @@ PINNQUAD_BODY Identification Identifier::run() {
   double curve = settings_.thrust_curve;
   find_rotation(curve, result);
   if (settings_.fit_thrust_curve) {
-    curve = find_curve(result);
-    find_rotation(curve, result);
+    result.curve_by = curves();
+    result.thrust_curve = agreed_curve(result.curve_by, !rows_.flights().kinematic_force()[2].empty());
+    if (tells_curve(result.thrust_curve)) {
+      curve = std::min(result.thrust_curve.value, 1.0);
+      find_rotation(curve, result);
+    }
   }
   find_forces(curve, result);
   measure_excitation(result);
@@ -95,19 +122,47 @@ PINNQUAD_BODY void Identifier::find_rotation(double curve, Identification& resul
       two.estimate_of([](const std::vector<double>& values) { return values[first + 1] - values[first]; });
 }
 
-PINNQUAD_BODY double Identifier::find_curve(Identification& result) const {
-  const Fractions linear = rows_.flights().thrust_fractions(0, response_),
-                  square = rows_.flights().thrust_fractions(1, response_);
-  const BlockSolution solution = force_regression(2, 4, [&](std::size_t i, double* x) {
+PINNQUAD_BODY std::array<Estimate, 4> Identifier::curves() const {
+  const SmoothedFlights& flights = rows_.flights();
+  const Fractions linear = flights.thrust_fractions(0, response_), square = flights.thrust_fractions(1, response_);
+  const auto curve_of = [](const BlockSolution& solution) {
+    if (!solution.told(0) || !solution.told(1)) return Estimate{};
+    return solution.estimate_of([](const std::vector<double>& v) { return v[1] / (v[0] + v[1]); });
+  };
+  std::array<Estimate, 4> found;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    constexpr std::size_t unknowns = 6, each = unknowns + 1, instruments = InstrumentedFlights::shifts * each + 1;
+    const auto fill = [&](std::size_t i, double* x) {
+      x[0] = rows_.signed_sum(linear, axis, i);
+      x[1] = rows_.signed_sum(square, axis, i);
+      x[2] = InstrumentedFlights::sum(linear, i);
+      x[3] = flights.rates()[axis][i];
+      x[4] = flights.rate_products()[axis][i];
+      x[5] = flights.velocity()[axis == 1 ? 0 : 1][i];
+    };
+    BlockRegression regression(unknowns, instruments, rows_.blocks());
+    std::array<double, unknowns> x{};
+    std::array<double, instruments> z{};
+    for (std::size_t place = 0; place < rows_.instants().size(); ++place) {
+      const std::size_t i = rows_.instants()[place];
+      for (std::size_t k = 0; k < InstrumentedFlights::shifts; ++k) {
+        const std::size_t before = rows_.before(i, k);
+        fill(before, &z[k * each]);
+        z[k * each + unknowns] = flights.angular_acceleration()[axis][before];
+      }
+      z.back() = 1;
+      fill(i, x.data());
+      regression.add(rows_.block(place), x.data(), flights.angular_acceleration()[axis][i], z.data());
+    }
+    found[axis] = curve_of(regression.solve());
+  }
+  found[3] = curve_of(force_regression(2, 4, [&](std::size_t i, double* x) {
     x[0] = -InstrumentedFlights::sum(linear, i);
     x[1] = -InstrumentedFlights::sum(square, i);
-    x[2] = -rows_.flights().velocity()[2][i];
-    x[3] = -rows_.flights().squared_velocity()[2][i];
-  });
-  if (!solution.told(1)) return settings_.thrust_curve;
-  result.thrust_curve =
-      solution.estimate_of([](const std::vector<double>& values) { return values[1] / (values[0] + values[1]); });
-  return std::clamp(result.thrust_curve.value, 0.0, 1.0);
+    x[2] = -flights.velocity()[2][i];
+    x[3] = -flights.squared_velocity()[2][i];
+  }));
+  return found;
 }
 
 PINNQUAD_BODY const Identifier::Series& Identifier::force(std::size_t axis) const {

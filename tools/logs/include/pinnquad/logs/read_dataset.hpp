@@ -21,6 +21,13 @@ struct ImportStep {
   std::string told;  ///< how, in a few words: "a command below 0.005 or above 0.995"
 };
 
+/// From a command u, 0 to 1, to thrust over that at u = 1: (1 - k) u + k u^2. The airframe's where one was given.
+struct CommandCurve {
+  double k = 0;
+  bool fitted = false;  ///< to the flights; else as the mapping or the log says, or straight
+  std::string told;     ///< one line: which, from what, how to overrule it; empty: an airframe says it
+};
+
 /// Flights as a training takes them. Row k holds the commands that cause the motion of row k. Where velocity is absent,
 /// the linear acceleration is specific force + R^T g: what it is with v = 0.
 struct ImportedDataset {
@@ -30,6 +37,7 @@ struct ImportedDataset {
   double sample_period_s = 0;
   double lag_removed_s = 0;  ///< by how much later than told the commands stand in the rows
   std::string airframe;
+  CommandCurve curve;
   std::string mapping;
   std::vector<std::string> taken;  ///< the mapping that logs asked for, where none was given, and why
   std::vector<ImportStep> steps;
