@@ -548,10 +548,10 @@ def normalised(graph, how, width, rng):
 
 
 @pytest.mark.parametrize("how", ["layer_norm", "rms_operator", "layer_steps", "rms_steps"])
-@pytest.mark.parametrize("behind", ["relu", "gelu"])
+@pytest.mark.parametrize("behind", ["relu", "gelu", "tanh"])
 def test_norms(pinnquad, how, behind):
-    """LayerNorm and RMSNorm as operators and step by step, before an activation and behind it, in a skip connection,
-    and a GLU: as the source answers, back to ONNX, and flown."""
+    """LayerNorm and RMSNorm as operators and step by step, before an activation and behind it, a GLU, a skip connection
+    past all of them: as the source answers, back to ONNX, and flown."""
     onnx, numpy = has_onnx(), pytest.importorskip("numpy")
     first, second, third, last = (Network(inputs, outputs, seed=seed).layers[0]
                                   for seed, (inputs, outputs) in enumerate([(5, 12), (12, 24), (12, 12), (12, 4)]))
@@ -566,6 +566,7 @@ def test_norms(pinnquad, how, behind):
     graph.nodes.append(onnx.helper.make_node("Split", [graph.x], ["a", "b"], "Split", axis=-1))
     graph.node("Mul", graph.node("Sigmoid", "b"), "a")
     linear(graph, third, 12, "gemm")
+    activation(graph, behind)
     graph.node("Add", graph.x, skipped)
     linear(graph, last, 12, "gemm")
     graph.write()
@@ -580,7 +581,7 @@ def test_norms(pinnquad, how, behind):
                                                              for n, lower, upper in FEATURES]))]
         both = dense(second, two(h))
         gate = [a * ACTIVATIONS["sigmoid"](b) for a, b in zip(both[:12], both[12:])]
-        return dense(last, [a + b for a, b in zip(dense(third, gate), h)])
+        return dense(last, [ACTIVATIONS[behind](a) + b for a, b in zip(dense(third, gate), h)])
 
     assert worst(header, answer) <= TOLERANCE
     pinnquad("convert model/model.block --out back.onnx")

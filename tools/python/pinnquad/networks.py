@@ -580,6 +580,22 @@ class Lowering:
         stages, output = self.merged(output)
         count = len(stages)
         needed = [set(of.weights) for _, of in stages[1:]] + [set(output.weights)]
+        carried_past = lambda number: sorted({stage for later in needed[number:] for stage in later if stage < number})
+        for number in range(1, count):  # tanh(v) = 2 sigmoid(2 v) - 1 and clip(v) = relu(v + b) - relu(v - b) - b let pass
+            activation, q = stages[number]
+            size = len(q.shift)
+            if activation not in ("tanh", "clip") or not carried_past(number):
+                continue
+            eye, two, bound = np.eye(size), Affine({}, np.full(size, 2.0)), CLIP_BOUND
+            if activation == "tanh":
+                stages[number], made, off = ("glu", stacked([two, q.mapped(2 * eye, 0)])), eye, 1.0
+            else:
+                parts = [q.mapped(eye, bound), q.mapped(eye, -bound)]
+                stages[number], made, off = ("relu", stacked(parts)), np.hstack([eye, -eye]), bound
+            for one in [of for _, of in stages[number + 1 :]] + [output]:
+                if number in one.weights:
+                    one.shift = one.shift - off * one.weights[number].sum(1)
+                    one.weights[number] = one.weights[number] @ made
         place = {0: np.eye(self.graph.width)}  # stages by the numbers that the last layer made
         layers = []
 
@@ -621,7 +637,7 @@ class Lowering:
 
         for number in range(1, count):
             activation, q = stages[number]
-            carried = sorted({stage for later in needed[number:] for stage in later if stage < number})
+            carried = carried_past(number)
             if carried and activation == "elu":  # which is the identity of what a ReLU has made
                 split = self.halves(q)
                 advance("relu", split, "q", carried, 1)
@@ -639,7 +655,7 @@ class Lowering:
                 place[number] = np.eye(size + rest)[:size]
                 continue
             if carried and activation not in (*ODD_PARTS, *WHOLE_LAYERS):
-                raise Refused("a skip connection past relu, leaky_relu, elu, gelu, silu or softplus", f"past {activation}")
+                raise Refused("a skip connection past an activation other than sine, mish and softsign", f"past {activation}")
             advance(activation, q, number, carried, ODD_PARTS.get(activation, 1))
         dense(output, last=True)
         return layers
