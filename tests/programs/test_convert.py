@@ -6,6 +6,7 @@ import json
 import math
 import random
 import re
+import runpy
 import statistics
 import struct
 import sys
@@ -264,10 +265,21 @@ def test_wrong_features(pinnquad, case):
     refused_features(pinnquad, place, keyword)
 
 
+def test_networks_py_knows_each_activation(pinnquad):
+    """The program has them of the library's list, networks.py by hand."""
+    safetensors("net.safetensors", Network(len(FEATURES), 4).tensors)
+    features_toml('activations = "swish"')
+    said = refused_features(pinnquad, "*:15", "swish").lines[0]
+    words = re.findall(r'"(\w+)"', said.partition(", found")[0])
+    known = runpy.run_path(SOURCE / "tools/python/pinnquad/networks.py")["ACTIVATIONS"]
+    assert "relu" in words and set(words) == set(known)
+
+
 def refused_features(pinnquad, place, keyword):
-    pinnquad.refused("convert net.safetensors --features features.toml --out model",
-                     at="features.toml" + (f":{place}" if place else ""), keyword=keyword)
+    done = pinnquad.refused("convert net.safetensors --features features.toml --out model",
+                            at="features.toml" + (f":{place}" if place else ""), keyword=keyword)
     assert listing(".") == ["features.toml", "net.safetensors"], "nothing is left behind"
+    return done
 
 
 FEATURE = '{ name = "w_x", unit = "rad/s", lower = -5, upper = 5 }'

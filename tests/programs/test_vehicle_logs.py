@@ -154,7 +154,8 @@ def test_a_hexacopter_is_named(pinnquad):
     (struct.pack(">Q", 1_700_000_000_000_000) + b"\xfd\x09\0\0", "mavlogdump.py"), (b"\x89HDF\r\n\x1a\n", "HDF5"),
     (b"MATLAB 5.0 MAT-file, Platform", "writetable"), (b"PK\x03\x04" + 20 * b"\0" + b"archive/data.pkl", "PyTorch"),
     (b"PK\x03\x04" + 20 * b"\0" + b"flight.ulg", "unzip"), (b"\x1f\x8b\x08\0", "gzip -d"), (b"\xfd7zXZ\0\0", "xz -d"),
-    (b"<?xml version='1.0'?>\n<root><tabbed_widget/></root>", "PlotJuggler"), (b"FMT, 128, 89, FMT, BBnNZ", "the .bin")])
+    (b"<?xml version='1.0'?>\n<root><tabbed_widget/></root>", "PlotJuggler"), (b"FMT, 128, 89, FMT, BBnNZ", "the .bin"),
+    (b'{"t": 0.01, "w_x": 0.1}\n', "read_json")])
 def test_other_containers_are_named_with_what_to_do(pinnquad, begin, keyword):
     Path("flight.csv").write_bytes(begin + bytes(40))
     for command in "import flight.csv --out out", "train flight.csv --out out", "identify flight.csv":

@@ -8,8 +8,8 @@
 namespace pinnquad::logs {
 
 /// `begin`: the file's first bytes. Throws InputError, one line with the command that converts it: compressed files,
-/// MCAP, ROS bags, MAVLink telemetry, PlotJuggler layouts, HDF5, MATLAB, NumPy, PyTorch, Parquet, a DataFlash log as
-/// text.
+/// MCAP, ROS bags, MAVLink telemetry, PlotJuggler layouts, HDF5, MATLAB, NumPy, PyTorch, Parquet, JSON, a DataFlash
+/// log as text.
 void refuse_foreign(const std::string& path, std::string_view begin);
 
 }  // namespace pinnquad::logs
