@@ -90,6 +90,27 @@ TEST_CASE("rotors that have come to its commands make the motion that was asked 
   CHECK(std::abs(across[2]) <= 1e-12);
 }
 
+TEST_CASE("wind, thrust and force that it is told are in the answer") {
+  Inverse policy = inverse();
+  const State<double> state = forward_flight();
+  Commands<double> plain{}, weak{}, pushed{};
+  WindAndThrust<double> told;
+  REQUIRE(policy(state, {}, 0, plain) == Status::ok);
+  told.thrust_scale = 0.8;
+  policy.tell(told);
+  REQUIRE(policy(state, {}, 0, weak) == Status::ok);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(weak[i] == doctest::Approx(plain[i] / 0.8));
+  told = {};
+  told.wind_m_s = state.velocity_m_s;  // no air passes
+  policy.tell(told);
+  CHECK(policy.across_m_s2(state).norm() < 0.1);  // but what turning makes at the hubs
+  told = {};
+  told.force_m_s2 = {0, 0, 1};
+  policy.tell(told);
+  REQUIRE(policy(state, {}, 0, pushed) == Status::ok);
+  CHECK(pushed[0] + pushed[1] + pushed[2] + pushed[3] > plain[0] + plain[1] + plain[2] + plain[3]);
+}
+
 TEST_CASE("it leans along the trajectory: a draggy vehicle stays on a circle") {
   const auto known = vehicle();
   Circle<double> circle;
