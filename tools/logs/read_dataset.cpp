@@ -308,9 +308,9 @@ class Import {
     passages_.push_back(std::move(passage));
   }
 
-  /// Four warnings or more that say the same are one line.
+  /// Five warnings or more that say the same are one line.
   void merge_warnings() {
-    constexpr std::size_t fewest = 4;
+    constexpr std::size_t fewest = 5;
     const auto rest_of = [](const std::string& warning) {
       const std::size_t colon = warning.find(": ");
       return colon == std::string::npos ? warning : warning.substr(colon + 2);

@@ -143,9 +143,9 @@ class VehicleCheck {
   }
 
  private:
-  /// "a, b, c, d: ..." to "4 flights, a, b ... d: ...".
+  /// "a, b, c, d, e: ..." to "5 flights, a, b ... e: ...".
   static void shorten(std::string& sentence) {
-    constexpr std::size_t most_named = 3;
+    constexpr std::size_t most_named = 4;
     const std::size_t end = sentence.find(": ");
     std::vector<std::size_t> commas;
     for (std::size_t at = sentence.find(", "); at < end; at = sentence.find(", ", at + 1)) commas.push_back(at);
