@@ -88,9 +88,9 @@ pinnquad::autopilot::CoreSettings PinnquadControl::controller_settings() const {
   settings.climb_m_s = _param_speed_up.get();
   settings.descent_m_s = _param_speed_down.get();
   settings.take_off_s = _param_take_off.get();
-  for (size_t k = 0; k < 4; ++k) {  // the commands' sum; roll, pitch and yaw, whose sums are a third as great
+  for (size_t k = 0; k < 4; ++k) {  // the commands' sum; roll, pitch and yaw, whose sums are a quarter as great
     settings.bias_time_constants_s[k] = k == 0 ? _param_bias_thrust.get() : _param_bias_rotation.get();
-    settings.most_bias[k] = k == 0 ? _param_bias_most.get() : _param_bias_most.get() / 3;
+    settings.most_bias[k] = k == 0 ? _param_bias_most.get() : _param_bias_most.get() / 4;
   }
   settings.most_across_m_s2 = _param_bias_across.get();
   settings.state_delay_s = _param_bias_delay.get();

@@ -34,6 +34,7 @@ void copy_record(const pinnquad::autopilot::CoreRecord& from, Message& to) {
   memcpy(to.bias_sums, from.bias_sums, sizeof to.bias_sums);
   memcpy(to.analytic_bias_sums, from.analytic_bias_sums, sizeof to.analytic_bias_sums);
   memcpy(to.bias_across_m_s2, from.bias_across_m_s2, sizeof to.bias_across_m_s2);
+  memcpy(to.bias_across_rate_m_s3, from.bias_across_rate_m_s3, sizeof to.bias_across_rate_m_s3);
   to.bias_noise = from.bias_noise;
   to.analytic_bias_noise = from.analytic_bias_noise;
   to.bias_across_noise_m_s2 = from.bias_across_noise_m_s2;

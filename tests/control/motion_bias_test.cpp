@@ -93,7 +93,7 @@ TEST_CASE("where lag and delay are told a bias is quick; a sum without a bias ha
   BiasSettings<double> settings;
   settings.time_constants_s = {0.2, infinity, 0.01, 0.45};
   BiasSettings<double> quick = quick_where_told(settings);
-  CHECK(quick.time_constants_s == SignedSums<double>{0.0025, infinity, 0.0025, 0.1});
+  CHECK(quick.time_constants_s == SignedSums<double>{0.0025, infinity, 0.0025, 0.05});
   CHECK(quick.across_time_constant_s == 0.01);
   CHECK(quick.most == settings.most);
   quick.time_constants_s[0] = 0;
@@ -115,10 +115,10 @@ TEST_CASE("noise makes the time constants of roll, pitch and across longer, to a
       static_cast<void>(noisy.learn({now, now, now, now}, {100 * now, 0, 0}, period_s));
     }
     Bias next(airframe, quick);
-    next.resume({}, none, noisy.noise(), 0, Status::ok);
+    next.resume({}, none, none, noisy.noise(), 0, Status::ok);
     REQUIRE(next.learn({0.1, 0.1, 0.1, 0.1}, {1, 0, 0}, period_s) == Status::ok);
     CHECK(next.sums()[0] == doctest::Approx(0.1 * share(0.0025)));
-    CHECK(next.sums()[3] == doctest::Approx(0.1 * share(0.1)));
+    CHECK(next.sums()[3] == doctest::Approx(0.1 * share(0.05)));
     CHECK(next.sums()[1] == doctest::Approx(next.sums()[2]));
     return std::array<double, 2>{next.sums()[1] / 0.1, next.across_m_s2()[0]};
   };
@@ -138,19 +138,45 @@ TEST_CASE("it goes on from a logged noise, to the bit, and refuses one that is n
     static_cast<void>(bias.learn({now, now, -now, now}, {10 * now, now, 0}, period_s));
   };
   for (int i = 0; i < 50; ++i) next(flown, i);
-  replayed.resume(flown.sums(), flown.across_m_s2(), flown.noise(), flown.waited_s(), flown.status());
-  replayed.resume({}, none, {no_number, 0}, 0, Status::ok);
-  replayed.resume({}, none, {0, infinity}, 0, Status::ok);
+  replayed.resume(flown.sums(), flown.across_m_s2(), flown.across_rate_m_s3(), flown.noise(), flown.waited_s(),
+                  flown.status());
+  replayed.resume({}, none, none, {no_number, 0}, 0, Status::ok);
+  replayed.resume({}, none, none, {0, infinity}, 0, Status::ok);
+  replayed.resume({}, none, {0, no_number, 0}, {}, 0, Status::ok);
   for (int i = 50; i < 100; ++i) {
     next(flown, i);
     next(replayed, i);
     REQUIRE(replayed.sums() == flown.sums());
-    REQUIRE(replayed.across_m_s2() == flown.across_m_s2());
+    REQUIRE(replayed.across_ahead_m_s2() == flown.across_ahead_m_s2());
   }
 }
 
+TEST_CASE(
+    "the acceleration across is flown with its lead: by its trend, less in a swing, none unless told, in its bound") {
+  const BiasSettings<double> quick = quick_where_told(BiasSettings<double>{});
+  Bias bias(airframe, quick), plain(airframe), swinging(airframe, quick);
+  for (int i = 0; i < 100; ++i) {  // rises by 0.5 m/s^2 a second
+    const Vector3<double> across(0.5 * period_s * i, 0, 0.1 * period_s * i);
+    const double swing = i % 2 == 0 ? 0.12 : -0.12;
+    static_cast<void>(bias.learn({}, across, period_s));
+    static_cast<void>(plain.learn({}, across, period_s));
+    static_cast<void>(swinging.learn({0, swing, 0, 0}, across, period_s));
+  }
+  const auto lead = [](const Bias& of) { return (of.across_ahead_m_s2() - of.across_m_s2())[0]; };
+  CHECK(bias.across_rate_m_s3()[0] == doctest::Approx(0.5).epsilon(0.02));
+  CHECK(lead(bias) == doctest::Approx(0.5 * quick.across_lead_s).epsilon(0.02));
+  CHECK(lead(swinging) < 0.5 * lead(bias));
+  CHECK(lead(swinging) > 0);
+  CHECK(bias.across_rate_m_s3()[2] == doctest::Approx(0));  // the thrust's to answer
+  CHECK(plain.across_ahead_m_s2() == plain.across_m_s2());
+  bias.resume({}, {2.9, 0, 0}, {50, 0, 0}, {}, 0, Status::ok);
+  CHECK(bias.across_ahead_m_s2()[0] == doctest::Approx(quick.most_across_m_s2));
+  bias.reset();
+  CHECK(bias.across_ahead_m_s2() == none);
+}
+
 TEST_CASE("the most that it changes a command: of an X a quarter of the bounds' sum") {
-  for (const double most : largest_bias(airframe)) CHECK(most == doctest::Approx(0.25 * (1.2 + 3 * 0.4)));
+  for (const double most : largest_bias(airframe)) CHECK(most == doctest::Approx(0.25 * (1.6 + 3 * 0.4)));
   BiasSettings<double> bounded;
   bounded.most = {0.1, 0, 0.2, 0};
   for (const double most : largest_bias(airframe, bounded)) CHECK(most == doctest::Approx(0.075));
@@ -222,7 +248,8 @@ TEST_CASE("it goes on from what was logged, within its bounds, and forgets when 
   Bias flown(airframe, settings()), replayed(airframe, settings());
   for (int i = 0; i < 20; ++i) static_cast<void>(flown.learn({0.3, -0.1, 0.02, 0}, {1, 2, 0}, period_s));
   flown.wait(0.3);
-  replayed.resume(flown.sums(), flown.across_m_s2(), flown.noise(), flown.waited_s(), flown.status());
+  replayed.resume(flown.sums(), flown.across_m_s2(), flown.across_rate_m_s3(), flown.noise(), flown.waited_s(),
+                  flown.status());
   for (int i = 0; i < 20; ++i) {
     flown.wait(0.05);
     replayed.wait(0.05);
@@ -230,9 +257,9 @@ TEST_CASE("it goes on from what was logged, within its bounds, and forgets when 
     CHECK(replayed.across_m_s2() == flown.across_m_s2());
   }
   const SignedSums<double> before = replayed.sums();
-  replayed.resume({no_number, 0, 0, 0}, none, {}, 0, Status::ok);
-  replayed.resume({0, 0, 0, 0}, {no_number, 0, 0}, {}, 0, Status::ok);
-  replayed.resume({0, 0, 0, 0}, none, {}, no_number, Status::ok);
+  replayed.resume({no_number, 0, 0, 0}, none, none, {}, 0, Status::ok);
+  replayed.resume({0, 0, 0, 0}, {no_number, 0, 0}, none, {}, 0, Status::ok);
+  replayed.resume({0, 0, 0, 0}, none, none, {}, no_number, Status::ok);
   CHECK(replayed.sums() == before);
   replayed.reset();
   CHECK(replayed.sums() == SignedSums<double>{});

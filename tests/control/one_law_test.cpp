@@ -3,6 +3,7 @@
 // with what is learnt in flight.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -96,8 +97,9 @@ struct Both {
   static void check_same(const MotionBias<float>& one, const MotionBias<float>& other) {
     REQUIRE(one.sums() == other.sums());
     REQUIRE(one.across_m_s2() == other.across_m_s2());
-    REQUIRE(one.noise().roll_pitch <= other.noise().roll_pitch);
-    REQUIRE(one.noise().roll_pitch >= other.noise().roll_pitch);
+    REQUIRE(one.across_rate_m_s3() == other.across_rate_m_s3());
+    const std::array<float, 2> noise{one.noise().roll_pitch, one.noise().across_m_s2};
+    REQUIRE(noise == std::array<float, 2>{other.noise().roll_pitch, other.noise().across_m_s2});
     REQUIRE(one.status() == other.status());
     REQUIRE(one.waited_s() <= other.waited_s());
     REQUIRE(one.waited_s() >= other.waited_s());

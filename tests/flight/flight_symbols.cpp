@@ -390,8 +390,8 @@ unsigned char pinnquad_flight_learn(const float* state, const float* wanted, flo
   Commands<float> commands{u[0], u[1], u[2], u[3]};
   inverse.learn(static_cast<std::uint64_t>(wanted[6]), true, vehicle.body, commands);
   inverse.interrupt();
-  logged.resume(inverse.bias().sums(), inverse.across_m_s2(vehicle.body), inverse.bias().noise(),
-                inverse.bias().waited_s(), inverse.bias().status());
+  logged.resume(inverse.bias().sums(), inverse.across_m_s2(vehicle.body), inverse.bias().across_rate_m_s3(),
+                inverse.bias().noise(), inverse.bias().waited_s(), inverse.bias().status());
   const Status status = inverse(vehicle.body, motion(wanted), 0, commands);
   for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i] + logged.sums()[i];
   inverse.reset();

@@ -126,7 +126,7 @@ TEST_CASE("the biases have the time constants of the block that flies, unless th
   check({}, own, usual);
   CoreSettings told;
   told.state_delay_s = 0.004f;
-  check(told, {0.0025f, 0.0025f, 0.0025f, 0.1f}, {0.0025f, 0.0025f, 0.0025f, 0.1f});
+  check(told, {0.0025f, 0.0025f, 0.0025f, 0.05f}, {0.0025f, 0.0025f, 0.0025f, 0.05f});
   check(of_the_user, {1.5f, 0.2f, 0.2f, 3}, {1.5f, usual[1], usual[2], 3});
 }
 

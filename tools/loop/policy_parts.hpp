@@ -37,7 +37,7 @@ struct PolicyParts {
     bias.across_by_noise_s3_m /= gains.learning;
     at_once.across_time_constant_s = 0;
     for (pinnquad::BiasSettings<double>* plain : {&at_once, &slower}) {
-      plain->roll_pitch_by_noise_s = plain->across_by_noise_s3_m = 0;
+      plain->roll_pitch_by_noise_s = plain->across_by_noise_s3_m = plain->across_lead_s = 0;
     }
     slower.across_time_constant_s = 0.05 / gains.learning;
   }

@@ -32,6 +32,7 @@
   MANY(4, float, bias_sums)                   \
   MANY(4, float, analytic_bias_sums)          \
   MANY(3, float, bias_across_m_s2)            \
+  MANY(2, float, bias_across_rate_m_s3)       \
   ONE(float, bias_noise)                      \
   ONE(float, analytic_bias_noise)             \
   ONE(float, bias_across_noise_m_s2)          \
@@ -106,9 +107,10 @@ struct __attribute__((packed)) CrazyflieCoreSettings {
 
 /* Entries of an eventtriggerPayloadDesc[]. */
 #define PINNQUAD_EVENT_ONE(kind, label) {.type = eventtriggerType_##kind, .name = #label},
-#define PINNQUAD_EVENT_3(kind, label)                                                                               \
-  {.type = eventtriggerType_##kind, .name = #label "[0]"}, {.type = eventtriggerType_##kind, .name = #label "[1]"}, \
-      {.type = eventtriggerType_##kind, .name = #label "[2]"},
+#define PINNQUAD_EVENT_2(kind, label) \
+  {.type = eventtriggerType_##kind, .name = #label "[0]"}, {.type = eventtriggerType_##kind, .name = #label "[1]"},
+#define PINNQUAD_EVENT_3(kind, label) \
+  PINNQUAD_EVENT_2(kind, label){.type = eventtriggerType_##kind, .name = #label "[2]"},
 #define PINNQUAD_EVENT_4(kind, label) \
   PINNQUAD_EVENT_3(kind, label){.type = eventtriggerType_##kind, .name = #label "[3]"},
 #define PINNQUAD_EVENT_MANY(count, kind, label) PINNQUAD_EVENT_##count(kind, label)

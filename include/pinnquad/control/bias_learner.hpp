@@ -48,7 +48,7 @@ class BiasLearner {
   const MotionBias<Scalar>& last() const noexcept { return biases_.back(); }
   MotionBias<Scalar>& last() noexcept { return biases_.back(); }
   /// The acceleration across the thrust, whoever answers.
-  const Vector3<Scalar>& across_m_s2() const noexcept { return last().across_m_s2(); }
+  Vector3<Scalar> across_m_s2() const noexcept { return last().across_ahead_m_s2(); }
   const detail::FlownTrust<Trust>& trust() const noexcept { return trust_; }
   detail::FlownTrust<Trust>& trust() noexcept { return trust_; }
   /// True while the bias of the first inverse has been at its bound for too long.

@@ -26,13 +26,17 @@ using SignedSums = std::array<Scalar, 4>;
 template <class Scalar>
 struct BiasSettings {
   SignedSums<Scalar> time_constants_s{Scalar(0.2), Scalar(0.45), Scalar(0.45), Scalar(0.45)};
-  SignedSums<Scalar> most{Scalar(1.2), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way; 0: no bias
+  SignedSums<Scalar> most{Scalar(1.6), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way; 0: no bias
   Scalar across_time_constant_s = Scalar(0.2);
   Scalar most_across_m_s2 = Scalar(3);  ///< its length; 0: none
   // noise makes time constants longer: at least so many s for each unit of BiasNoise, up to longest_by_noise_s; 0: none
   Scalar roll_pitch_by_noise_s = Scalar(0);
   Scalar across_by_noise_s3_m = Scalar(0);
   static constexpr Scalar longest_by_noise_s = Scalar(0.1);
+  /// The acceleration across the thrust is flown as its trend, a mean over trend_s, has it so much later: the attitude
+  /// that answers it comes late. A swing of roll and pitch shortens it, to half at swing. 0: none.
+  Scalar across_lead_s = Scalar(0);
+  static constexpr Scalar trend_s = Scalar(0.2), swing = Scalar(0.06);
   Scalar hold_s = Scalar(0.5);  ///< without a residual it stays this long, then fades
   Scalar fade_s = Scalar(2);    ///< time constant of fading
 };
@@ -78,11 +82,11 @@ constexpr BiasSettings<Scalar> bias_settings(const ModelFacts& facts) noexcept {
 inline constexpr std::uint32_t quick_period_us = 14'000;
 
 /// For a loop that is told the rotors' lag and the delay of its states: as quick as the noise lets it be. The thrust is
-/// quick whatever the noise, the yaw slow, which costs no position. Told neither, such a bias follows its own answer
+/// quick whatever the noise; the yaw, which is the noisiest, slower. Told neither, such a bias follows its own answer
 /// (docs/adaptive.md).
 template <class Scalar>
 constexpr BiasSettings<Scalar> quick_where_told(BiasSettings<Scalar> settings) noexcept {
-  constexpr SignedSums<Scalar> most_s{Scalar(0.0025), Scalar(0.0025), Scalar(0.0025), Scalar(0.1)};
+  constexpr SignedSums<Scalar> most_s{Scalar(0.0025), Scalar(0.0025), Scalar(0.0025), Scalar(0.05)};
   constexpr Scalar most_across_s = Scalar(0.01);
   for (std::size_t k = 0; k < most_s.size(); ++k) {
     Scalar& time_s = settings.time_constants_s[k];
@@ -90,7 +94,8 @@ constexpr BiasSettings<Scalar> quick_where_told(BiasSettings<Scalar> settings) n
   }
   if (settings.across_time_constant_s > most_across_s) settings.across_time_constant_s = most_across_s;
   settings.roll_pitch_by_noise_s = Scalar(0.35);
-  settings.across_by_noise_s3_m = Scalar(0.008);
+  settings.across_by_noise_s3_m = Scalar(0.011);
+  settings.across_lead_s = Scalar(0.04);
   return settings;
 }
 
@@ -129,6 +134,12 @@ class MotionBias {
   constexpr void time_constants(const SignedSums<Scalar>& times_s) noexcept { settings_.time_constants_s = times_s; }
   constexpr const SignedSums<Scalar>& sums() const noexcept { return sums_; }
   const Vector3<Scalar>& across_m_s2() const noexcept { return across_; }
+  const Vector3<Scalar>& across_rate_m_s3() const noexcept { return across_rate_; }  ///< the trend of that, level
+  /// d with its lead, which is flown.
+  Vector3<Scalar> across_ahead_m_s2() const noexcept {
+    const Scalar swings = noise_.roll_pitch / BiasSettings<Scalar>::swing;
+    return within_most(across_ + settings_.across_lead_s / (Scalar(1) + swings * swings) * across_rate_);
+  }
   /// The noise that makes its time constants longer; 0 where the settings let it make none.
   const BiasNoise<Scalar>& noise() const noexcept { return noise_; }
   /// `ok`: it learns. `limited`: at a bound. `warming_up`: nothing has been learnt yet, or for longer than `hold_s`.
@@ -179,17 +190,17 @@ class MotionBias {
     const Scalar roll_pitch_s = by_noise(settings_.roll_pitch_by_noise_s * noise_.roll_pitch);
     bool bound = false;
     for (std::size_t k = 0; k < sums_.size(); ++k) {
-      const Scalar least_s = k == 1 || k == 2 ? roll_pitch_s : Scalar(0), own_s = settings_.time_constants_s[k];
-      bound |= move(k, share(own_s < least_s ? least_s : own_s, period_s) * (residual[k] - sums_[k]));
+      const Scalar time_s = longer(settings_.time_constants_s[k], k == 1 || k == 2 ? roll_pitch_s : Scalar(0));
+      bound |= move(k, share(time_s, period_s) * (residual[k] - sums_[k]));
     }
-    const Scalar least_s = by_noise(settings_.across_by_noise_s3_m * noise_.across_m_s2);
-    const Scalar own_s = settings_.across_time_constant_s;
-    across_ += share(own_s < least_s ? least_s : own_s, period_s) * beside;
-    const Scalar norm = across_.norm();
-    if (norm > settings_.most_across_m_s2) {
-      across_ *= settings_.most_across_m_s2 / norm;
-      bound = true;
-    }
+    const Scalar across_s = by_noise(settings_.across_by_noise_s3_m * noise_.across_m_s2);
+    const Vector3<Scalar> before = across_;
+    const Vector3<Scalar> wanted =
+        across_ + share(longer(settings_.across_time_constant_s, across_s), period_s) * beside;
+    across_ = within_most(wanted);
+    bound |= across_ != wanted;
+    across_rate_ += (across_ - before - period_s * across_rate_) / (period_s + BiasSettings<Scalar>::trend_s);
+    across_rate_[2] = Scalar(0);  // up and down it is the thrust's to answer
     waited_s_ = Scalar(0);
     return status_ = bound ? Status::limited : Status::ok;
   }
@@ -202,6 +213,7 @@ class MotionBias {
     const Scalar kept = settings_.fade_s / (settings_.fade_s + step_s);
     for (Scalar& sum : sums_) sum *= kept;
     across_ *= kept;
+    across_rate_ *= kept;
     if (status_ != Status::not_finite) status_ = Status::warming_up;
   }
   /// Time in flight that says nothing of it, as with commands at their ends: it stays.
@@ -217,17 +229,20 @@ class MotionBias {
   void reset() noexcept {
     sums_ = {};
     across_.setZero();
+    across_rate_.setZero();
     noise_ = {};
     waited_s_ = Scalar(0);
     status_ = Status::warming_up;
   }
   /// Goes on from what was logged.
-  void resume(const SignedSums<Scalar>& sums, const Vector3<Scalar>& across_m_s2, const BiasNoise<Scalar>& noise,
-              Scalar waited_s, Status status) noexcept {
-    if (!(all_finite(sums) && all_finite(across_m_s2) && is_finite(waited_s))) return;
+  void resume(const SignedSums<Scalar>& sums, const Vector3<Scalar>& across_m_s2,
+              const Vector3<Scalar>& across_rate_m_s3, const BiasNoise<Scalar>& noise, Scalar waited_s,
+              Status status) noexcept {
+    if (!(all_finite(sums) && all_finite(across_m_s2) && all_finite(across_rate_m_s3) && is_finite(waited_s))) return;
     if (!(is_finite(noise.roll_pitch) && is_finite(noise.across_m_s2))) return;
     sums_ = sums;
     across_ = across_m_s2;
+    across_rate_ = across_rate_m_s3;
     noise_ = noise;
     waited_s_ = waited_s;
     status_ = status;
@@ -247,6 +262,12 @@ class MotionBias {
   static Scalar by_noise(Scalar time_s) noexcept {
     return time_s < BiasSettings<Scalar>::longest_by_noise_s ? time_s : BiasSettings<Scalar>::longest_by_noise_s;
   }
+  static Scalar longer(Scalar own_s, Scalar least_s) noexcept { return own_s < least_s ? least_s : own_s; }
+  Vector3<Scalar> within_most(const Vector3<Scalar>& across) const noexcept {
+    const Scalar norm = across.norm();
+    if (!(norm > settings_.most_across_m_s2)) return across;
+    return settings_.most_across_m_s2 / norm * across;
+  }
   static Scalar length(Scalar value) noexcept { return value < Scalar(0) ? -value : value; }
 
   /// Slowly: a time constant that changes from motion to motion lets through what cancels from one to the next.
@@ -261,7 +282,7 @@ class MotionBias {
   BiasSettings<Scalar> settings_;
   detail::SignedMix<Scalar> mix_;
   SignedSums<Scalar> sums_{};
-  Vector3<Scalar> across_ = Vector3<Scalar>::Zero();
+  Vector3<Scalar> across_ = Vector3<Scalar>::Zero(), across_rate_ = Vector3<Scalar>::Zero();
   BiasNoise<Scalar> noise_{};
   Scalar waited_s_{0};
   Status status_{Status::warming_up};

@@ -160,6 +160,7 @@ struct pinnquad_record_s {
   float bias_sums[4];
   float analytic_bias_sums[4];
   float bias_across_m_s2[3];
+  float bias_across_rate_m_s3[2];
   float bias_noise, analytic_bias_noise, bias_across_noise_m_s2;
   float bias_waited_s, analytic_bias_waited_s;
   float jump_position_m[3];

@@ -18,8 +18,9 @@ namespace pinnquad::autopilot {
 struct CoreRecord {
   static constexpr const char* topic = "pinnquad_record";
   /// Fields that earlier logs lack.
-  static constexpr std::array<const char*, 5> added = {"voltage_us", "battery_voltage", "bias_noise",
-                                                       "analytic_bias_noise", "bias_across_noise_m_s2"};
+  static constexpr std::array<const char*, 6> added = {
+      "voltage_us",          "battery_voltage",        "bias_noise",
+      "analytic_bias_noise", "bias_across_noise_m_s2", "bias_across_rate_m_s3"};
   /// A field of the cores before, whose bias was an acceleration: this one does not answer as they did.
   static constexpr const char* removed = "bias_m_s2";
 
@@ -42,12 +43,13 @@ struct CoreRecord {
   float wanted_jerk_m_s3[3]{};
   float wanted_yaw_rad{0};
   float wanted_yaw_rate_rad_s{0};
-  float battery_voltage{0};       ///< V; of a model that asks for it
-  float bias_sums[4]{};           ///< of the network: MotionBias::sums(), as the tick reckoned with, as all of these
-  float analytic_bias_sums[4]{};  ///< of the analytic inverse
-  float bias_across_m_s2[3]{};    ///< NED, of both
-  float bias_noise{0};            ///< BiasNoise of roll and pitch, of the network
-  float analytic_bias_noise{0};   ///< of the analytic inverse
+  float battery_voltage{0};          ///< V; of a model that asks for it
+  float bias_sums[4]{};              ///< of the network: MotionBias::sums(), as the tick reckoned with, as all of these
+  float analytic_bias_sums[4]{};     ///< of the analytic inverse
+  float bias_across_m_s2[3]{};       ///< NED, of both
+  float bias_across_rate_m_s3[2]{};  ///< its trend, north and east
+  float bias_noise{0};               ///< BiasNoise of roll and pitch, of the network
+  float analytic_bias_noise{0};      ///< of the analytic inverse
   float bias_across_noise_m_s2{0};
   float bias_waited_s{0};  ///< time in which nothing could be learnt
   float analytic_bias_waited_s{0};
@@ -98,6 +100,7 @@ struct CoreRecord {
     visit("bias_sums", "1", self.bias_sums);
     visit("analytic_bias_sums", "1", self.analytic_bias_sums);
     visit("bias_across_m_s2", "m/s^2", self.bias_across_m_s2);
+    visit("bias_across_rate_m_s3", "m/s^3", self.bias_across_rate_m_s3);
     visit("bias_noise", "1", self.bias_noise);
     visit("analytic_bias_noise", "1", self.analytic_bias_noise);
     visit("bias_across_noise_m_s2", "m/s^2", self.bias_across_noise_m_s2);

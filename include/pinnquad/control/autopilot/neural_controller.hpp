@@ -260,9 +260,10 @@ class NeuralController {
   void resume_biases(const CoreRecord& logged) noexcept {
     const auto sums = [](const float(&b)[4]) noexcept { return SignedSums<float>{b[0], b[1], b[2], b[3]}; };
     const Vector3<float> across(logged.bias_across_m_s2);
-    learner_.own().resume(sums(logged.bias_sums), across, {logged.bias_noise, logged.bias_across_noise_m_s2},
+    const Vector3<float> rate(logged.bias_across_rate_m_s3[0], logged.bias_across_rate_m_s3[1], 0);
+    learner_.own().resume(sums(logged.bias_sums), across, rate, {logged.bias_noise, logged.bias_across_noise_m_s2},
                           logged.bias_waited_s, static_cast<Status>(logged.bias_status));
-    learner_.last().resume(sums(logged.analytic_bias_sums), across,
+    learner_.last().resume(sums(logged.analytic_bias_sums), across, rate,
                            {logged.analytic_bias_noise, logged.bias_across_noise_m_s2}, logged.analytic_bias_waited_s,
                            static_cast<Status>(logged.analytic_bias_status));
   }

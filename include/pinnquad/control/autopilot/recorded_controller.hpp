@@ -120,6 +120,7 @@ class Recorded : public Controller {
       record_.analytic_bias_sums[k] = analytic.sums()[k];
     }
     copy(analytic.across_m_s2(), record_.bias_across_m_s2);
+    for (int i = 0; i < 2; ++i) record_.bias_across_rate_m_s3[i] = analytic.across_rate_m_s3()[i];
     record_.bias_noise = own.noise().roll_pitch;
     record_.analytic_bias_noise = analytic.noise().roll_pitch;
     record_.bias_across_noise_m_s2 = analytic.noise().across_m_s2;
