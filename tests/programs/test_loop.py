@@ -132,7 +132,7 @@ def test_the_bias_carries_what_the_model_does_not_know(pinnquad):
         assert calm[learns] <= 0.8 and payload[learns] <= 1.2 and weak[learns] <= 1.2, rows
     for does_not in "formula", "structured":
         assert payload[does_not] > 20 and weak[does_not] > 10
-    assert wind["adaptive"] < 0.5 * wind["structured"] and wind["indi"] < wind["adaptive"]
+    assert wind["adaptive"] < 0.5 * wind["structured"] and wind["adaptive"] < 1.1 * wind["indi"]
     assert all(row["answered_share"] == pytest.approx(1, abs=0.05) for row in rows if row["controller"] == "structured")
 
 
