@@ -340,7 +340,7 @@ TEST_CASE("time constants of a bias are one constant more, and nothing else; wit
 
   from.proven_slopes = AxisSlopes{0.01, 0.01, 0.3};
   const std::string proven = written(model, {Model::FeatureVector{}}, from);
-  CHECK(proven.find("// each command widens by 0.6000 at most.\n") != std::string::npos);
+  CHECK(proven.find("// each command widens by 0.7000 at most.\n") != std::string::npos);
   CHECK(proven.find("they hold as they are, for it is of the past") < proven.find("#pragma once"));
   from.bias_time_constants_s = {0.2, 0.5, 61, 1};
   CHECK_THROWS_AS(written(model, {Model::FeatureVector{}}, from), std::invalid_argument);

@@ -94,7 +94,7 @@ def test_bias(pinnquad, trained):
                            for command in ("block", "certify"))
     assert of_block["bias_time_constants_s"] == pytest.approx(times)
     said = pinnquad("certify", trained / "model.hpp").out
-    assert re.search("\nbias +with the bias .*slopes hold as they are.* 0.6000", said), said
+    assert re.search("\nbias +with the bias .*slopes hold as they are.* 0.7000", said), said
     assert certified["bias"]["time_constants_s"] == pytest.approx(times)
     assert certified["bias"]["widens_command_bound"] == pytest.approx([0.6] * 4)
     assert report["certificate"]["bias_widens_command_bound"] == pytest.approx([0.6] * 4)
