@@ -96,8 +96,8 @@ def test_bias(pinnquad, trained):
     said = pinnquad("certify", trained / "model.hpp").out
     assert re.search("\nbias +with the bias .*slopes hold as they are.* 0.7000", said), said
     assert certified["bias"]["time_constants_s"] == pytest.approx(times)
-    assert certified["bias"]["widens_command_bound"] == pytest.approx([0.6] * 4)
-    assert report["certificate"]["bias_widens_command_bound"] == pytest.approx([0.6] * 4)
+    assert certified["bias"]["widens_command_bound"] == pytest.approx([0.7] * 4)
+    assert report["certificate"]["bias_widens_command_bound"] == pytest.approx([0.7] * 4)
     # of a model that says none, nothing is said
     assert "\nbias" not in pinnquad("block", SOURCE / "tests/models/own_racer.block").out
 

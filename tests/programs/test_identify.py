@@ -133,10 +133,17 @@ def test_a_throttle(pinnquad, flown):
     imported = {}
     for name in ("throttle", "stated"):
         pinnquad(f"import throttle.csv --mapping {name}.toml --lag 0 --out {name}")
-        imported[name] = [row["u1"] for row in table(next(Path(name).glob("*.csv")))]
+        imported[name] = [float(row["u1"]) for row in table(next(Path(name).glob("*.csv")))]
         about = json.loads((Path(name) / "dataset.json").read_text())["thrust_curve"]
         assert about["k"] == pytest.approx(0.6, abs=0.02) and about["fitted"] == (name == "throttle")
-    assert imported["throttle"] == imported["stated"]
+    assert imported["throttle"] == pytest.approx(imported["stated"], abs=1e-9)
+    pinnquad("import throttle.csv --mapping stated.toml --lag 0 --rate 200 --out between")
+    thrusts = {round(200 * t): 0.4 * u + 0.6 * u ** 2 for t, u in
+               ((float(row["t"]), float(row["u1"])) for row in table(next(Path("between").glob("*.csv"))))}
+    middles = [(thrusts[at], (thrusts[at - 1] + thrusts[at + 1]) / 2) for at in thrusts
+               if at % 2 and at - 1 in thrusts and at + 1 in thrusts]
+    assert len(middles) > 5000  # thrusts have a mean, motor values have none
+    assert max(abs(thrust - mean) for thrust, mean in middles) < 1e-9
     assert "straight, k = 0 taken" in pinnquad("import straight.csv --mapping throttle.toml --out straight").out
 
 

@@ -98,7 +98,7 @@ double thrust_curve(const std::optional<NamedAirframe>& airframe, std::size_t ro
 
 /// Replaces the columns of `motors` by commands. A number below `least` is a stopped motor: 0; what is above `most` is
 /// 1, and falls to the rule for saturated rows. `curve`: thrust = s ((1 - k) + k s) of a signal, where the log or the
-/// mapping says so; with an airframe the command is then the airframe's of that thrust, and else the signal itself.
+/// mapping says so; the command is then the airframe's of that thrust, and without one the thrust's share.
 void to_commands(const Source& source, const std::optional<NamedAirframe>& airframe, double curve,
                  const MotorRange& range, std::vector<std::vector<double>>& values) {
   std::vector<std::vector<double>> commands;
@@ -113,7 +113,7 @@ void to_commands(const Source& source, const std::optional<NamedAirframe>& airfr
       value = (value - range.least) / (range.most - range.least);
       if (ranged && value < 0) value = 0;
       if (ranged && value > 1) value = 1;
-      const bool straight = source.numbers == MotorNumbers::signal && (!airframe || !(curve > 0));
+      const bool straight = source.numbers == MotorNumbers::signal && !(curve > 0);
       if (straight) continue;
       const double share = source.numbers == MotorNumbers::thrust ? value : thrust_fraction(curve, value);
       value = command_of_fraction(thrust_curve(airframe, place), share);

@@ -30,6 +30,7 @@
 #include "logs/tumbling.hpp"
 #include "logs/vehicle_check.hpp"
 #include "pinnquad/data/plausibility.hpp"
+#include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/logs/read_log.hpp"
 
@@ -510,11 +511,21 @@ class Import {
     for (Passage& passage : passages_) {
       for (Flight& segment : passage.segments) {
         segment = logs::remove_lag(std::move(segment), *period_s_, dataset_.lag_removed_s);
+        to_motor_values(segment);
       }
     }
     steps_.add(
         "lag", before, rows_in(passages_),
         number_text(std::round(dataset_.lag_removed_s * 1e4) / 10) + " ms from command to motion removed, " + told);
+  }
+
+  /// Commands by a curve that is said are shares of thrust until here: between a log's rows thrusts have a mean, motor
+  /// values have none.
+  void to_motor_values(Flight& segment) const {
+    if (airframe_ || !(stated_curve_.value_or(0) > 0)) return;
+    for (Sample& sample : segment) {
+      for (double& command : sample.commands) command = command_of_fraction(*stated_curve_, command);
+    }
   }
 
   /// Rows by `mask(flight)` of each flight as a whole.
