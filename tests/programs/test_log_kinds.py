@@ -433,7 +433,7 @@ def test_plus_frame(pinnquad):
     said = imported(pinnquad, "log.csv", "--mapping", "table.toml", *LAG, out="out")
     assert re.search("a '[+]' frame, u2 right, u3 left, u1 front, u4 rear", said), said
     plain("x.csv")
-    assert "frame" not in imported(pinnquad, "x.csv", "--mapping", "table.toml", *LAG, out="x")
+    assert "'+' frame" not in imported(pinnquad, "x.csv", "--mapping", "table.toml", *LAG, out="x")
 
 
 def test_force_that_was_read_as_said(pinnquad):
