@@ -59,7 +59,7 @@ OfferedMapping required_offer(const std::string& path) {
 }
 
 /// Fewest rows of a flight: a batch of training.
-constexpr std::size_t fewest_rows = 64;
+constexpr std::size_t fewest_flight_rows = 64;
 
 /// Rows that the steps cost, summed over logs.
 class Steps {
@@ -582,7 +582,7 @@ class Import {
       int part = 0;
       for (Flight& flight : cut_flights(std::move(passage.segments))) {
         longest = std::max(longest, flight.size());
-        if (flight.size() < fewest_rows) continue;
+        if (flight.size() < fewest_flight_rows) continue;
         flight.name = free_name(dataset_.flights, passage.name, ++part);
         flight.trajectory = settings_.cut_s && passage.trajectory == passage.name ? flight.name : passage.trajectory;
         const bool misread = causes_.find(flight.name) != causes_.end();
@@ -600,7 +600,8 @@ class Import {
         dataset_.sources.push_back(passage.source);
       }
     }
-    steps_.add("short flights", before, dataset_.flights.rows(), "fewer than " + std::to_string(fewest_rows) + " rows");
+    steps_.add("short flights", before, dataset_.flights.rows(),
+               "fewer than " + std::to_string(fewest_flight_rows) + " rows");
     dataset_.sample_period_s = *period_s_;
     if (dataset_.flights.size() == 0) refuse_without_flight(longest);
     require_different_flights(dataset_.flights);
@@ -618,7 +619,8 @@ class Import {
     std::string found = std::to_string(longest);
     if (worst != dataset_.steps.end()) found += "; most were lost to '" + worst->name + "' (" + worst->told + ")";
     for (const std::string& warning : dataset_.warnings) found += "; " + warning;
-    throw InputError(logs_.front(), 0, 0, "a flight of at least " + std::to_string(fewest_rows) + " rows", found);
+    throw InputError(logs_.front(), 0, 0, "a flight of at least " + std::to_string(fewest_flight_rows) + " rows",
+                     found);
   }
 
   /// With its cause: an attitude in another order makes rates that do not turn it, and accelerations that fit no
