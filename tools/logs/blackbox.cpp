@@ -21,7 +21,6 @@ namespace blackbox {
 namespace {
 
 constexpr double g_m_s2 = 9.80665;
-constexpr double degree = 0.017453292519943295;
 constexpr double ticks_per_s = 1e6;
 constexpr std::size_t clock_field = 1;  ///< of a main frame, behind the iteration's count
 
