@@ -30,7 +30,7 @@ std::string listed(const Texts& texts) {
   return listed(texts, [](const std::string& text) { return text; });
 }
 
-/// Those of `all` that are named, in their order; all where `names` is empty. `name_of` says an item's name, `option`
+/// Picks the named items of `all`, in its order; all where `names` is empty. `name_of` says an item's name, `option`
 /// and `what` stand in the error: "--variants: no variant 'x'; known: a, b". Throws std::invalid_argument.
 template <class Item, class NameOf>
 std::vector<Item> chosen_by_name(const std::vector<Item>& all, const std::vector<std::string>& names,

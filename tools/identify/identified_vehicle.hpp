@@ -15,6 +15,7 @@
 #include "airframe/choice.hpp"
 #include "identify/identified_numbers.hpp"
 #include "identify/sound_flights.hpp"
+#include "logs/command_curve.hpp"
 #include "pinnquad/regression/identified_airframe.hpp"
 
 namespace programs {
@@ -41,7 +42,7 @@ inline NamedAirframe airframe_of(const pinnquad::logs::ImportedDataset& dataset)
   like.value.thrust_coefficient = 0.1;
   like.value.power_coefficient = 0.05;
   like.value.rotor_time_constant_s = lag_s;
-  for (auto& rotor : like.value.rotors) rotor.thrust_curve = dataset.curve.k;
+  pinnquad::logs::set_thrust_curve(like.value, dataset.curve.k);
   return like;
 }
 

@@ -61,11 +61,8 @@ CommandCurve command_curve(const Dataset& flights, const std::optional<double>& 
   const std::string of = " in " + flights_in_words(flights) + evidence(found);
   const std::string is =
       "k = " + hundredths(curve.value) + " (" + hundredths(curve.low()) + " to " + hundredths(curve.high()) + ")";
-  if (tells_curve(curve)) {
-    const double k = std::min(std::round(1e4 * curve.value) / 1e4, 1.0);
-    return {k, true, law + is + of + overrule};
-  }
-  if (curve.half_width <= 0.2) return {0, false, law + "straight, k = 0 taken: " + is + of + overrule};
+  if (const auto k = told_curve(curve)) return {std::round(1e4 * *k) / 1e4, true, law + is + of + overrule};
+  if (curve.half_width <= narrow_curve) return {0, false, law + "straight, k = 0 taken: " + is + of + overrule};
   return {0, false,
           law + "not told" + of +
               ": thrust proportional to the command is assumed, which a throttle is not; fly climbs with full power "

@@ -116,7 +116,7 @@ std::vector<const Signal*> needed_signals(const BoundLog& log) {
   return needed;
 }
 
-/// That of the log's own rows, at most 100 Hz: a usual one where it is within a tenth of it
+/// The period of the log's own rows, at most 100 Hz: a usual one where it is within a tenth of it
 /// (loggers whose rate is 50 Hz drop a row now and then), else a whole number of microseconds.
 double usual_period_s(const BoundLog& log) {
   constexpr double shortest_s = 0.01, near = 0.1;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pinnquad/core/rotation.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/logs/flight_log.hpp"
 
 namespace pinnquad::logs {
@@ -73,7 +74,7 @@ class IntegratedAttitude {
 /// forward, y left, z up: roll about x, pitch about y, heading clockwise. None where a column is missing.
 inline void add_integrated_attitude(LogTopic& topic, const std::array<std::string, 3>& gyro_names,
                                     const std::array<std::string, 3>& force_names, double g_per_unit) {
-  constexpr double degree = 3.14159265358979323846 / 180;
+  constexpr double degree = pi / 180;
   std::array<const LogColumn*, 3> gyro{}, force{};
   for (std::size_t i = 0; i < 3; ++i) {
     gyro[i] = topic.column(gyro_names[i]);

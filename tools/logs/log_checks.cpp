@@ -36,6 +36,10 @@ std::string short_number(double value) {
   return text;
 }
 
+std::string many_flights(const std::vector<std::string>& names) {
+  return std::to_string(names.size()) + " flights, " + names[0] + ", " + names[1] + " ... " + names.back();
+}
+
 std::string with_interval(const Estimate& estimate, const char* unit) {
   return short_number(estimate.value) + " " + unit + " (" + short_number(estimate.low()) + " to " +
          short_number(estimate.high()) + ")";

@@ -19,6 +19,9 @@ std::string percent(double share);
 /// Three digits: "80.2".
 std::string short_number(double value);
 
+/// "5 flights, a, b ... e" of three names or more.
+std::string many_flights(const std::vector<std::string>& names);
+
 /// "80.2 rad/s^2 (78 to 82.4)"
 std::string with_interval(const Estimate& estimate, const char* unit);
 

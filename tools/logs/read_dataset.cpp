@@ -158,7 +158,7 @@ class Import {
     if (!airframe_) {
       report("fitting the thrust curve", 0);
       dataset_.curve = command_curve(dataset_.flights, stated_curve_);
-      for (RotorMount<double>& rotor : airframe.rotors) rotor.thrust_curve = dataset_.curve.k;
+      set_thrust_curve(airframe, dataset_.curve.k);
     }
     check_vehicle(dataset_, airframe, !settings_.airframe.empty(), settings_.on_progress);
     merge_warnings();
@@ -327,8 +327,7 @@ class Import {
       if (of.size() < fewest) {
         merged.push_back(warning);
       } else {
-        add(merged,
-            std::to_string(of.size()) + " flights, " + of[0] + ", " + of[1] + " ... " + of.back() + ": " + rest);
+        add(merged, many_flights(of) + ": " + rest);
       }
     }
     dataset_.warnings = std::move(merged);

@@ -147,12 +147,13 @@ class VehicleCheck {
   static void shorten(std::string& sentence) {
     constexpr std::size_t most_named = 4;
     const std::size_t end = sentence.find(": ");
-    std::vector<std::size_t> commas;
-    for (std::size_t at = sentence.find(", "); at < end; at = sentence.find(", ", at + 1)) commas.push_back(at);
-    const std::size_t count = commas.size() + 1;
-    if (count <= most_named) return;
-    const std::string last = sentence.substr(commas.back() + 2, end - commas.back() - 2);
-    sentence.replace(0, end, std::to_string(count) + " flights, " + sentence.substr(0, commas[1]) + " ... " + last);
+    std::vector<std::string> names;
+    for (std::size_t begin = 0; begin < end;) {
+      const std::size_t comma = std::min(sentence.find(", ", begin), end);
+      names.push_back(sentence.substr(begin, comma - begin));
+      begin = comma + 2;
+    }
+    if (names.size() > most_named) sentence.replace(0, end, many_flights(names));
   }
 
   void say(std::size_t flight, const std::string& what, bool contradicts = false) {

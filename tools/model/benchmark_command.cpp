@@ -20,6 +20,7 @@
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "logs/json_file.hpp"
+#include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/csv_table.hpp"
 
@@ -84,7 +85,7 @@ std::map<std::string, std::string> flight_files(const std::string& dataset) {
   return files;
 }
 
-/// Of the rows held out, all of which need a prediction: R^2 of each command and their mean, as train has it.
+/// Judges predictions of all rows held out: R^2 of each command and their mean, as train has it.
 json score(const Set& set, const std::string& predictions) {
   const std::vector<std::string> held_out = set.held_out();
   const std::map<std::string, std::string> files = flight_files(set.folder + "/dataset");
@@ -117,22 +118,15 @@ json score(const Set& set, const std::string& predictions) {
           "none for " + std::to_string(missing) + ", the first at t = " + pinnquad::number_text(first_missing_s));
     }
   }
+  const auto errors = pinnquad::prediction_errors(said, truth);
   json found;
-  const double rows = static_cast<double>(truth.size());
-  double squares = 0, r2 = 0;
+  double mean_square = 0;
   for (std::size_t motor = 0; motor < 4; ++motor) {
-    double mean = 0, error = 0, spread = 0;
-    for (const Commands& u : truth) mean += u[motor] / rows;
-    for (std::size_t row = 0; row < truth.size(); ++row) {
-      error += std::pow(truth[row][motor] - said[row][motor], 2);
-      spread += std::pow(truth[row][motor] - mean, 2);
-    }
-    squares += error;
-    r2 += (1 - error / spread) / 4;
-    found["r2_" + predicted_columns[motor + 1]] = 1 - error / spread;
+    found["r2_" + predicted_columns[motor + 1]] = errors.per_motor[motor].r_squared;
+    mean_square += std::pow(errors.per_motor[motor].root_mean_square, 2) / 4;
   }
-  found["r2"] = r2;
-  found["rmse"] = std::sqrt(squares / (4 * rows));
+  found["r2"] = errors.mean.r_squared;
+  found["rmse"] = std::sqrt(mean_square);
   found["rows"] = truth.size();
   return found;
 }

@@ -17,6 +17,7 @@
 
 #include "identify/identified_vehicle.hpp"
 #include "logs/airframe_doubts.hpp"
+#include "logs/command_curve.hpp"
 #include "logs/specific_force.hpp"
 #include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/io/file_error.hpp"
@@ -159,7 +160,7 @@ inline FlownVehicle flown_vehicle(const std::optional<NamedAirframe>& given,
     vehicle.airframe = {"identified", vehicle.asked->airframe->value};
   } else {
     if (like.name.empty()) like = chosen_airframe(pinnquad::PaperQuadrotor::name);
-    for (auto& rotor : like.value.rotors) rotor.thrust_curve = settings.thrust_curve;
+    pinnquad::logs::set_thrust_curve(like.value, settings.thrust_curve);
     vehicle.airframe = detail::assumed_airframe(like, vehicle.asked->found, asked.flights, vehicle.unknown);
   }
   return vehicle;

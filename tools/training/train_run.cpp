@@ -21,6 +21,7 @@
 #include "command_line/folder_lock.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/listed.hpp"
+#include "logs/command_curve.hpp"
 #include "logs/vehicle_check.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "training/closed_loop.hpp"
@@ -649,7 +650,7 @@ int programs::train(const TrainOptions& options) {
   std::vector<Fold> folds = folds_asked_for(options, dataset);
   require_sound(options, dataset, folds);
   if (!options.dataset.empty()) {  // of logs it was checked when they were read
-    for (auto& rotor : vehicle.airframe.value.rotors) rotor.thrust_curve = given ? rotor.thrust_curve : dataset.curve.k;
+    if (!given) logs::set_thrust_curve(vehicle.airframe.value, dataset.curve.k);
     check_vehicle(dataset, vehicle.airframe.value, given.has_value());
     folds = folds_asked_for(options, dataset);  // without the flights that it found unlike
   }

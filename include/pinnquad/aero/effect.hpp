@@ -166,17 +166,27 @@ constexpr bool noexcept_or_absent() noexcept {
   }
 }
 
-template <class Effect>
-constexpr auto flown_type() noexcept {
-  if constexpr (is_detected<BoundCall, Effect, double>) {
-    return Unswitched<decltype(some<Effect>().bound(some<Airframe<double>>()))>{};
+/// The effect as a vehicle keeps it.
+template <class Effect, class Scalar>
+auto bound_effect(const Effect& effect, const Airframe<Scalar>& airframe) noexcept {
+  if constexpr (is_detected<BoundCall, Effect, Scalar>) {
+    return effect.bound(airframe);
   } else {
-    return Unswitched<Effect>{};
+    return effect;
   }
 }
-/// The effect that a vehicle asks: unswitched, and bound to an airframe.
+template <class Effect, Usually usually, class Scalar>
+auto bound_effect(const Switched<Effect, usually>& effect, const Airframe<Scalar>& airframe) noexcept {
+  using Bound = decltype(bound_effect(effect.effect, airframe));
+  return Switched<Bound, usually>{bound_effect(effect.effect, airframe), effect.on};
+}
+
+/// Its type: an effect too.
+template <class Effect, class Scalar>
+using BoundEffect = decltype(bound_effect(std::declval<const Effect&>(), std::declval<const Airframe<Scalar>&>()));
+/// The effect that a vehicle asks: bound to an airframe, and without its switch.
 template <class Effect>
-using FlownEffect = typename decltype(flown_type<UnswitchedEffect<Effect>>())::type;
+using FlownEffect = UnswitchedEffect<BoundEffect<Effect, double>>;
 
 /// Finds an effect's member by name, whatever its type: `&WithNames<Effect>::name` is ambiguous, and no type, where the
 /// effect has one.
@@ -258,25 +268,6 @@ inline constexpr bool flies =
     is_effect<Effect>&& is_whole_effect<Effect, Scalar>() && is_noexcept_effect<Effect, Scalar>();
 template <class Effect, Usually usually, class Scalar>
 inline constexpr bool flies<Switched<Effect, usually>, Scalar> = flies<Effect, Scalar>;
-
-/// The effect as a vehicle keeps it.
-template <class Effect, class Scalar>
-auto bound_effect(const Effect& effect, const Airframe<Scalar>& airframe) noexcept {
-  if constexpr (is_detected<BoundCall, Effect, Scalar>) {
-    return effect.bound(airframe);
-  } else {
-    return effect;
-  }
-}
-template <class Effect, Usually usually, class Scalar>
-auto bound_effect(const Switched<Effect, usually>& effect, const Airframe<Scalar>& airframe) noexcept {
-  using Bound = decltype(bound_effect(effect.effect, airframe));
-  return Switched<Bound, usually>{bound_effect(effect.effect, airframe), effect.on};
-}
-
-/// Its type: an effect too.
-template <class Effect, class Scalar>
-using BoundEffect = decltype(bound_effect(std::declval<const Effect&>(), std::declval<const Airframe<Scalar>&>()));
 }  // namespace detail
 
 /// Status of an effect for an airframe; ok for an effect that has no `status`.

@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "pinnquad/core/body.hpp"
@@ -29,7 +30,7 @@ namespace pinnquad {
 struct IdentificationSettings {
   double window_s = 0.16;         ///< of the smoothing: motion up to some 6 Hz counts
   double thrust_curve = 0;        ///< of thrust_fraction()
-  bool fit_thrust_curve = false;  ///< finds it where flights tell it (tells_curve()), in place of taking that one
+  bool fit_thrust_curve = false;  ///< finds it where flights tell it (told_curve()), in place of taking that one
 };
 
 /// An interval is infinite where the flights do not tell.
@@ -62,10 +63,14 @@ struct Identification {
   std::array<double, 3> speed_deviation_m_s{};
 };
 
-/// True for a thrust curve that flights tell and that is none: its interval is narrow and begins above 0.
-inline bool tells_curve(const Estimate& curve) noexcept {
-  constexpr double narrow = 0.2, bent = 0.05;
-  return curve.half_width <= narrow && curve.low() > bent;
+/// Widest interval of a thrust curve, to either side, that tells it.
+inline constexpr double narrow_curve = 0.2;
+
+/// A thrust curve that flights tell, at most 1; none where its interval is wide, or begins near 0: straight.
+inline std::optional<double> told_curve(const Estimate& curve) noexcept {
+  constexpr double bent = 0.05;
+  if (!(curve.half_width <= narrow_curve && curve.low() > bent)) return std::nullopt;
+  return curve.value < 1 ? curve.value : 1;
 }
 
 namespace detail {

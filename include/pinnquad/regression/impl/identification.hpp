@@ -47,8 +47,8 @@ PINNQUAD_BODY Identification Identifier::run() {
   if (settings_.fit_thrust_curve) {
     result.curve_by = curves();
     result.thrust_curve = agreed_curve(result.curve_by, !rows_.flights().kinematic_force()[2].empty());
-    if (tells_curve(result.thrust_curve)) {
-      curve = std::min(result.thrust_curve.value, 1.0);
+    if (const auto told = told_curve(result.thrust_curve)) {
+      curve = *told;
       find_rotation(curve, result);
     }
   }

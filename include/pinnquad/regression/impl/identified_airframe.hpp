@@ -74,8 +74,7 @@ PINNQUAD_BODY std::optional<IdentifiedAirframe> identified_airframe(const Identi
     RotorMount<double>& rotor = made.rotors[i];
     rotor.x_m -= offset_x_m;
     rotor.y_m -= offset_y_m;
-    rotor.thrust_curve =
-        tells_curve(found.thrust_curve) ? std::min(found.thrust_curve.value, 1.0) : like.rotors[i].thrust_curve;
+    rotor.thrust_curve = told_curve(found.thrust_curve).value_or(like.rotors[i].thrust_curve);
     if (!two_lags) continue;
     rotor.rise_time_constant_s = found.rise_s.value;
     rotor.fall_time_constant_s = found.fall_s.value;
