@@ -119,9 +119,9 @@ struct ThrowingOutputs : pinnquad::CommandOutputs {
 /// The small model with one member changed by the case.
 struct Changed : RecordedNumbers {
 #if defined(NEWER_FORMAT)
-  static constexpr int format_version = pinnquad::model_format_version + 1;
+  static constexpr int format_version = pinnquad::header_format_version + 1;
 #elif defined(OLDER_FORMAT)
-  static constexpr int format_version = pinnquad::model_format_version - 1;
+  static constexpr int format_version = pinnquad::header_format_version - 1;
 #elif defined(SPREAD_ZERO)
   static constexpr auto input = with_spread(RecordedNumbers::input, 0.0F);
 #elif defined(WEIGHT_NOT_A_NUMBER)
@@ -197,7 +197,7 @@ struct Recorded : RecordedNumbers {
 };
 
 struct Undescribed : pinnquad::test::SmallNumbers {
-  static constexpr int format_version = pinnquad::model_format_version;
+  static constexpr int format_version = pinnquad::header_format_version;
 };
 
 struct Edited : pinnquad::test::RecordedModel {

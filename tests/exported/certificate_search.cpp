@@ -174,7 +174,8 @@ class Maker {
             : (axis_commands_ ? take_outputs<AxisCommandOutputs>() : take_outputs<CommandOutputs>());
     model_.golden_features.push_back(model_.input_mean);
     model_.golden_commands.push_back({});
-    const test::BlockBytes first(detail::block_beside_header(model_));
+    test::BlockBytes first(detail::block_of(model_));
+    first.seal();
     const auto read = std::make_unique<RunTimeModel<Scalar>>();
     BlockFault fault;
     const Status status = RunTimeModel<Scalar>::open(first.data(), first.size(), *read, fault);

@@ -36,7 +36,7 @@ BlockModel golden_block() { return BlockModel(std::string(PINNQUAD_TESTS_DIR) + 
 }  // namespace
 
 TEST_CASE("the header: a vehicle of its own, a window, a column, double, optional records") {
-  static_assert(OwnRacer::format_version == model_format_version);
+  static_assert(OwnRacer::format_version == header_format_version);
   const InverseDynamics<OwnRacer> inverse;
   CHECK(self_test(inverse) == Status::ok);
   static_assert(vectors >= 6);

@@ -399,6 +399,9 @@ TEST_CASE("a monotone model whose numbers prove nothing") {
   CHECK(opened(other).line == "");  // weights are not asked: who certifies it finds no proof
   const Bytes made_again(other.data(), other.data() + other.size());
   CHECK_FALSE(BlockModel("unproven.block", made_again).certificate().value().proven());
+  auto records = records_of(made_again);
+  records.push_back({static_cast<unsigned>(BlockRecord::slope_signs), Bytes(12, 1)});  // an older writer's word
+  CHECK(opened(with_records(made_again, records)).line.find("certificate") != std::string::npos);
 }
 
 TEST_CASE("a file that is not there or is empty is refused in one line") {

@@ -21,7 +21,7 @@ struct Described : Numbers {
   using Window = pinnquad::detail::WindowOf<typename Numbers::Features>;
   static constexpr auto airframe = airframe_value<typename Numbers::Vehicle, double>();
 
-  static constexpr int format_version = model_format_version;
+  static constexpr int format_version = header_format_version;
   static constexpr std::uint64_t training_data_hash = 0x0123456789abcdefu;
   static constexpr int training_rows = 6000;
   static constexpr CommandMeaning command_meaning = command_meaning_of(airframe);

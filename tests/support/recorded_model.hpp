@@ -9,7 +9,7 @@
 namespace pinnquad::test {
 
 struct RecordedNumbers : SmallNumbers {
-  static constexpr int format_version = model_format_version;
+  static constexpr int format_version = header_format_version;
   static constexpr std::uint64_t training_data_hash = 0x0123456789abcdefu;
   static constexpr int training_rows = 6000;
   static constexpr CommandMeaning command_meaning = CommandMeaning::thrust;

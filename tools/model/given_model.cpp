@@ -34,9 +34,9 @@ std::string block_path(const std::string& model) {
   if (path.extension() != ".hpp") return model;
   const std::string text = pinnquad::file_text(model);
   const std::uint64_t format = stated(text, " format_version = ", 10);
-  if (format != 0 && format != pinnquad::model_format_version) {
+  if (format != 0 && format != pinnquad::header_format_version) {
     throw pinnquad::InputError(model, 0, 0,
-                               "a header of format " + std::to_string(pinnquad::model_format_version) +
+                               "a header of format " + std::to_string(pinnquad::header_format_version) +
                                    " (of another: train and export again)",
                                "format " + std::to_string(format));
   }

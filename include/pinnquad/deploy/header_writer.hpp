@@ -16,9 +16,9 @@
 namespace pinnquad {
 
 namespace detail {
-/// The header of a model into `out`. Of float and of double.
+/// The header of a model into `out`; returns its contents_hash. Of float and of double.
 template <class Scalar>
-void write_struct(std::ostream& out, const WrittenModel<Scalar>& model);
+std::uint64_t write_struct(std::ostream& out, const WrittenModel<Scalar>& model);
 /// The header as a text; no locale plays a part.
 template <class Scalar>
 std::string header_text(const WrittenModel<Scalar>& model);

@@ -85,6 +85,7 @@ struct WrittenRecords : Provenance {
   Airframe<double> airframe{};
   std::vector<double> flown_airframe;  ///< each_number() of it in the model's Scalar
   std::vector<double> affine;          ///< of a schema of a user's own (detail::affine_schema())
+  std::uint64_t contents_hash = 0;
   std::optional<Certificate> certificate{};
   std::optional<Trust> trust{};
 };
@@ -177,6 +178,7 @@ WrittenRecords records_of_header() {
     records.epochs = M::epochs;
     records.loss = M::loss;
   }
+  records.contents_hash = contents_hash_of<M>();
   records.facts = facts_of_header<M>();
   records.allocation = M::allocation;
   return records;

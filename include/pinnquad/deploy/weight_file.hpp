@@ -21,9 +21,12 @@ namespace pinnquad {
 
 namespace detail {
 
+template <class Scalar>
+std::vector<unsigned char> block_of(const WrittenModel<Scalar>& model);
+
 /// The block beside the header that write_struct() writes of the same model.
 template <class Scalar>
-std::vector<unsigned char> block_beside_header(const WrittenModel<Scalar>& model);
+std::vector<unsigned char> block_beside_header(WrittenModel<Scalar> model);
 
 }  // namespace detail
 
@@ -67,7 +70,7 @@ std::vector<unsigned char> model_block() {
   written.parameters.assign(Model::parameters.begin(), Model::parameters.end());
   written.training_data_hash = Model::training_data_hash;
   written.training_rows = static_cast<std::size_t>(Model::training_rows);
-  return detail::block_beside_header(written);
+  return detail::block_of(written);
 }
 
 namespace detail {

@@ -36,10 +36,6 @@ NamesAndUnits names_and_units(const std::vector<std::string>& texts, std::size_t
 /// As detail::hash_of_shape(), of what is known when a program runs.
 std::uint64_t hash_of_shape(const WrittenRecords& model);
 
-/// The contents_hash of the header of a model: what contents_hash_of() works out of its constants and types.
-template <class Scalar>
-std::uint64_t hash_of_header(const WrittenModel<Scalar>& model);
-
 /// Throws std::invalid_argument for a number that is not finite, for no golden vector, and for one outside the
 /// envelope, which no self test could pass.
 template <class Scalar>

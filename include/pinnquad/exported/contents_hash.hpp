@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Two hashes that header and block state of a model. shape_hash: what its numbers are for. contents_hash: all that
-// counts of a header. The writer makes them (deploy/written_model.hpp); the compiler makes them again, and refuses a
-// header that was edited afterwards; a block has a hash over its own bytes. They find accidents, not forgeries.
+// counts. The writer makes them (deploy/header_writer.hpp); compiler and readers make them again, and refuse a model
+// that was edited afterwards. They find accidents, not forgeries.
 //   contents_hash = sum over the facts of FNV-1a(name, value), in words of 32 bits: no order plays a part
 #pragma once
 
@@ -20,10 +20,10 @@
 
 namespace pinnquad {
 
-namespace detail {
+/// The format of blocks, and of both hashes: this library writes it and reads no other one.
+inline constexpr int model_format_version = 4;
 
-/// A term of contents_hash: it changes with what the hash is over.
-inline constexpr int contents_hash_version = 4;
+namespace detail {
 
 /// The records that a reader of this format must understand, as contents_hash says them.
 inline constexpr std::array<std::string_view, 7> known_records = {"answer",  "commands",   "clock", "window",
@@ -139,7 +139,7 @@ constexpr std::uint64_t contents_hash_of() noexcept {
   using Window = WindowOf<Features>;
   std::uint64_t sum = 0;
   const auto add = [&sum](std::string_view name, const auto& value) { sum += constant_hash(name, value); };
-  add("format_version", contents_hash_version);
+  add("format_version", model_format_version);
   add("training_data_hash", M::training_data_hash);
   add("training_rows", M::training_rows);
   if constexpr (is_detected<StatedVerdictOf, M>) {

@@ -20,16 +20,15 @@
 
 namespace pinnquad {
 
-/// The format of headers and blocks: this library writes it and reads no other one. A header has the types Scalar,
-/// Network, Features, Outputs, Vehicle; the arrays parameters, envelope_lower, envelope_upper, golden_features,
-/// golden_commands, allocation (Eq. (2) at the rated density); the scalers input, output; format_version,
-/// training_data_hash, training_rows; its facts (exported/model_facts.hpp): command_meaning, command_lower,
-/// command_upper, sample_period_s, lag_removed_s; shape_hash and contents_hash (exported/contents_hash.hpp). Optional
-/// facts: worse_than_mean, beats_linear_regression, test_r_squared, linear_regression_r_squared (finite) of a model
-/// that was judged (evaluation/errors.hpp); bias_time_constants_s, of which no hash is. A Vehicle that is none of the
-/// library's stands before the model, in the same header. The block beside the header says the same hashes
-/// (exported/model_block.hpp).
-inline constexpr int model_format_version = 5;
+/// The format of headers: this library writes it and reads no other one. A header has the types Scalar, Network,
+/// Features, Outputs, Vehicle; the arrays parameters, envelope_lower, envelope_upper, golden_features, golden_commands,
+/// allocation (Eq. (2) at the rated density); the scalers input, output; format_version, training_data_hash,
+/// training_rows; its facts (exported/model_facts.hpp): command_meaning, command_lower, command_upper, sample_period_s,
+/// lag_removed_s; shape_hash and contents_hash (exported/contents_hash.hpp). Optional facts: worse_than_mean,
+/// beats_linear_regression, test_r_squared, linear_regression_r_squared (finite) of a model that was judged
+/// (evaluation/errors.hpp); bias_time_constants_s, of which no hash is. A Vehicle that is none of the library's stands
+/// before the model, in the same header. The block beside the header says the same hashes (exported/model_block.hpp).
+inline constexpr int header_format_version = 5;
 
 /// Largest difference between a golden command and its replay: float rounding over the network's sums, with a factor of
 /// about ten to spare.
@@ -151,7 +150,7 @@ constexpr bool require_format() noexcept {
 template <class M>
 constexpr bool is_of_this_format() noexcept {
   if constexpr (is_detected<FormatOf, M>) {
-    return M::format_version == model_format_version;
+    return M::format_version == header_format_version;
   } else {
     return true;
   }
@@ -216,7 +215,7 @@ constexpr bool require_model() noexcept {
   } else if constexpr (!is_model<M> || model_kind<M> != ModelKind::header) {
     return is_model<M>;
   } else if constexpr (!detail::is_of_this_format<M>()) {
-    return detail::require_format<M::format_version, model_format_version>();
+    return detail::require_format<M::format_version, header_format_version>();
   } else {
     static_assert(require_shape<M>());
     static_assert(M::parameters.size() == static_cast<std::size_t>(M::Network::parameter_count),

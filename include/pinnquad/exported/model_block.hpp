@@ -62,17 +62,24 @@ enum class BlockRecord : std::uint16_t {
   allocation = 5,  ///< 16 scalars, row-major
   base = 6,        ///< description of what the outputs add to
   verdict = 7,     ///< u32 detail::judged_bits(), u32 0; optional
+  // an older writer said twice what parameters and airframe say: contents_hash is over 8 and 9; 10 is skipped
+  slope_signs = 8,     ///< 12 x i8: of du_i/d(angular acceleration), rotor by rotor about x, y, z; optional
+  residual_range = 9,  ///< scalars: lower bounds of all outputs, then upper ones; optional
   // with those a block describes itself (exported/run_time_model.hpp)
-  answer = 8,     ///< description of the predictor (model/description.hpp)
-  features = 9,   ///< name and unit of each feature, every text closed by a 0
-  outputs = 10,   ///< description of the output schema, then name and unit of each output, every text closed by a 0
-  vehicle = 11,   ///< each_number() of the airframe in f64, the same in scalars as it flies, its name
-  contents = 12,  ///< u64 contents_hash of the header beside it, u64 detail::hash_of_block()
-  trust = 13,  ///< f64 limit of the squared distance; factor, limit, cleared, period of the command residual; scalars:
+  answer = 11,    ///< description of the predictor (model/description.hpp)
+  features = 12,  ///< name and unit of each feature, every text closed by a 0
+  outputs = 13,   ///< description of the output schema, then name and unit of each output, every text closed by a 0
+  vehicle = 14,   ///< each_number() of the airframe in f64, the same in scalars as it flies, its name
+  contents = 15,  ///< u64 contents_hash of the header beside it (exported/contents_hash.hpp), u64 hash_of_records();
+                  ///< an older writer left the second one out
+  trust = 16,  ///< f64 limit of the squared distance; factor, limit, cleared, period of the command residual; scalars:
                ///< means of all features, whitening triangle column by column; optional
-  provenance = 14,  ///< name and value in turn, every text closed by a 0; optional
-  affine = 15,      ///< scalars: commands at outputs 0, then by each output, of a schema that no library has; optional
-  bias = 16,        ///< scalars: time constants of the bias of the four signed sums, s, 0 none is learnt; optional
+  certificate = 17,  ///< of an older writer, 12 f64; read as the word that there is one; optional
+  provenance = 18,   ///< name and value in turn, every text closed by a 0; optional
+  affine = 19,       ///< scalars: commands at outputs 0, then by each output, of a schema that no library has; optional
+  bias = 20,         ///< scalars: time constants of the bias of the four signed sums, s, 0 none is learnt; optional
+  unrounded = 21,    ///< f64 of the header that the records above round: lower and upper command, sample period s, lag
+                     ///< removed s, 16 of the allocation; where contents_hash can't be computed from those; optional
 };
 
 /// Bit of a record's type: a reader that does not know the record refuses the block.
@@ -80,9 +87,9 @@ inline constexpr std::uint16_t mandatory_record = 0x8000;
 
 namespace detail {
 
-inline constexpr std::uint32_t block_record_types = 16;
+inline constexpr std::uint32_t block_record_types = 21;
 PINNQUAD_ALWAYS_INLINE constexpr bool is_block_record(std::uint32_t type) noexcept {
-  return type >= 1 && type <= block_record_types;
+  return type >= 1 && type <= block_record_types && type != 10;
 }
 
 /// The most bytes of a block's provenance.
@@ -110,19 +117,28 @@ struct RecordLengths {
 };
 constexpr RecordLengths record_lengths(std::uint32_t scalar, std::uint32_t inputs, std::uint32_t outputs) noexcept {
   constexpr std::uint32_t rotors = rotor_count;
-  return {{0, 8 + 2 * scalar, 8, 8, 0, 4 * rotors * scalar, 0, 8, 0, 0, 0, 0, 16,
-           5 * 8 + (inputs + std::uint32_t(triangle(inputs))) * scalar, 0, rotors * (1 + outputs) * scalar,
-           4 * scalar}};
-}
-
-/// A hash over a block of `bytes` bytes without its checksum, but for its own eight at `own`: words of 32 bits.
-inline std::uint64_t hash_of_block(const unsigned char* block, std::size_t bytes, const unsigned char* own) noexcept {
-  constexpr std::uint64_t seed = Fnv1a{}.hash;
-  std::uint64_t hash = seed;
-  for (const unsigned char* at = block; at != block + bytes; at += 4) {
-    if (at < own || at >= own + 8) hash = (hash ^ read_u32(at)) * ConstantHash::prime;
-  }
-  return hash;
+  return {{0,
+           8 + 2 * scalar,
+           8,
+           8,
+           0,
+           4 * rotors * scalar,
+           0,
+           8,
+           3 * rotors,
+           2 * outputs * scalar,
+           0,
+           0,
+           0,
+           0,
+           0,
+           16,
+           5 * 8 + (inputs + std::uint32_t(triangle(inputs))) * scalar,
+           12 * 8,
+           0,
+           rotors * (1 + outputs) * scalar,
+           4 * scalar,
+           (4 + 4 * rotors) * 8}};
 }
 
 /// The bytes of texts, each closed by a 0.

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/exported/block_contents.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_block.hpp"
 #include "pinnquad/model/predictor.hpp"
@@ -135,10 +135,7 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
                                                Layout::parameter_count,
                                                detail::read_u32(bytes + Header::training_rows),
                                                detail::read_u64(bytes + Header::training_data_hash)};
-    const std::size_t hashed = whole - Header::checksum_size;
-    if (detail::fault_of_block(bytes, hashed, records, numbers) != detail::StatedNumber::none || !proven(numbers)) {
-      return Status::block_corrupt;
-    }
+    if (!sound(numbers, records)) return Status::block_corrupt;
 
     copy(scalars + Layout::input_mean, view.input.mean);
     copy(scalars + Layout::input_deviation, view.input.standard_deviation);
@@ -201,14 +198,20 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
     std::memcpy(&to, from, sizeof to);
   }
 
-  /// True for a shape without a structure that could be proven.
-  static bool proven(const detail::BlockNumbers<Scalar>& numbers) noexcept {
+  static bool sound(const detail::BlockNumbers<Scalar>& numbers, const detail::BlockRecords<Scalar>& records) noexcept {
+    constexpr auto allocation = pinnquad::allocation(airframe_value<typename ShapeType::Vehicle, double>());
+    constexpr detail::TorqueSigns signs = motor_torque_signs<typename ShapeType::Vehicle>();
+    const detail::BlockVehicle vehicle{detail::first_of<double>(allocation), detail::first_of<int>(signs)};
+    using detail::StatedNumber;
+    bool sound = detail::fault_of_block(records, numbers, vehicle) == StatedNumber::none;
     if constexpr (has_certificate<ShapeType>) {
       constexpr auto certified =
           detail::certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());
-      return certificate_of<ShapeType>(certified, numbers.parameters(), numbers.scales()).proven();
+      sound &= certificate_of<ShapeType>(certified, numbers.parameters(), numbers.scales()).proven();
+    } else {
+      sound &= !records.said(BlockRecord::certificate);
     }
-    return true;
+    return sound;
   }
 
   const Scalar* parameters_ = nullptr;

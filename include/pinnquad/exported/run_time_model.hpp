@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "pinnquad/exported/block_records.hpp"
+#include "pinnquad/exported/block_contents.hpp"
 #include "pinnquad/exported/run_time_features.hpp"
 #include "pinnquad/exported/run_time_network.hpp"
 #include "pinnquad/exported/run_time_outputs.hpp"
@@ -140,8 +140,8 @@ class RunTimeModel {
     }
     if (checked != Status::ok) {
       if (!detail::has_magic(block)) return refuse(fault, checked, "a model block", "another file");
-      static_assert(model_format_version == 5);
-      fault = {"format 5 of a model block (of another: train and export again)", "",
+      static_assert(model_format_version == 4);
+      fault = {"format 4 of a model block (of another: train and export again)", "",
                static_cast<double>(detail::read_u32(block + Layout::version))};
       return checked;
     }
@@ -180,10 +180,7 @@ class RunTimeModel {
     scales_ = numbers_.scales();
     shape_hash_ = detail::read_u64(block + Layout::shape_hash);
     const Status described = describe(inputs, outputs, parameters, fault);
-    if (described != Status::ok) return described;
-    const auto number = detail::fault_of_block(block, length - Layout::checksum_size, records_, numbers_);
-    if (number == detail::StatedNumber::none) return Status::ok;
-    return refuse(fault, Status::block_corrupt, detail::StatedFault{number});
+    return described == Status::ok ? sound(fault) : described;
   }
 
   static Status refuse(BlockFault& fault, Status status, const char* expected, const char* found) noexcept {
@@ -304,6 +301,16 @@ class RunTimeModel {
         std::size_t(outputs_.size()), [this](std::size_t k) { return output(int(k)); }, records_.vehicle_name,
         motor_torque_signs(airframe_));
     return fnv.hash;
+  }
+
+  /// Numbers and contents, as ModelView::open() wants them.
+  Status sound(BlockFault& fault) const noexcept {
+    const AllocationMatrix<double> own = allocation(airframe_);
+    const detail::TorqueSigns signs = motor_torque_signs(airframe_);
+    const detail::BlockVehicle vehicle{detail::first_of<double>(own), detail::first_of<int>(signs)};
+    const detail::StatedNumber number = detail::fault_of_block(records_, numbers_, vehicle);
+    if (number == detail::StatedNumber::none) return Status::ok;
+    return refuse(fault, Status::block_corrupt, detail::StatedFault{number});
   }
 
   RunTimeNetwork network_;

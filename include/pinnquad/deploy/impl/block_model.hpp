@@ -47,9 +47,15 @@ void BlockModel::open_as() {
     refuse(fault.expected, *fault.found == 0 ? number_text(fault.number) : fault.found);
   }
   take_derivatives(*model);
+  const auto& said = model->records();
+  const bool claims_proof = said.claims_proof(), brings_certificate = said.said(BlockRecord::certificate);
   model_ = std::unique_ptr<const RunTimeModel<Scalar>>(std::move(model));
   require_words();
   if (!(golden_difference() <= golden_tolerance)) refuse("golden commands that its weights give", "others");
+  if (!claims_proof) return;
+  const std::optional<Certificate> proof = certificate();
+  if (proof && !proof->proven()) refuse("slopes and bounds of which its certificate is proven", "others");
+  if (!proof && brings_certificate) refuse(detail::StatedNumber::certificate, "others");
 }
 
 PINNQUAD_BODY void BlockModel::open() {

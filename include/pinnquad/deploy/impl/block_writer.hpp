@@ -32,11 +32,12 @@ PINNQUAD_BODY std::vector<std::string> provenance_texts(const WrittenRecords& re
   return texts;
 }
 
-PINNQUAD_BODY std::vector<unsigned char> whole_block(const BlockCounts& counts, const RecordBytes& records,
+PINNQUAD_BODY std::vector<unsigned char> whole_block(const BlockCounts& counts,
+                                                     const std::vector<unsigned char>& records,
                                                      const std::vector<unsigned char>& scalars) {
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   const std::uint64_t length =
-      ModelBlockHeader::size + records.bytes.size() + scalars.size() + ModelBlockHeader::checksum_size;
+      ModelBlockHeader::size + records.size() + scalars.size() + ModelBlockHeader::checksum_size;
   if (counts.golden_vectors > most || counts.training_rows > most || length > most) {
     throw std::invalid_argument("export: a model block counts to 2^32 - 1");
   }
@@ -49,12 +50,8 @@ PINNQUAD_BODY std::vector<unsigned char> whole_block(const BlockCounts& counts, 
   }
   out.add(counts.shape_hash);
   out.add(counts.training_data_hash);
-  out.append(records.bytes);
+  out.append(records);
   out.append(scalars);
-  unsigned char* const own = out.bytes.data() + ModelBlockHeader::size + records.hash;
-  LittleEndianBytes<float> hash;
-  hash.add(hash_of_block(out.bytes.data(), out.bytes.size(), own));
-  std::copy(hash.bytes.begin(), hash.bytes.end(), own);
   out.add(crc32(out.bytes.data(), out.bytes.size()));
   return std::move(out.bytes);
 }

@@ -14,25 +14,45 @@
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/opening_comment.hpp"
+#include "pinnquad/exported/contents_hash.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/version.hpp"
 
 namespace pinnquad {
 namespace detail {
 
-/// The constants of a struct, written one after the other.
+/// Where a model comes from, in words and figures, and what an inverse may learn: no hash is over them.
+PINNQUAD_BODY bool is_editable(std::string_view name) {
+  return name == "name" || name == "training_data" || name == "epochs" || name == "loss" || name == "test_r_squared" ||
+         name == "linear_regression_r_squared" || name == "bias_time_constants_s";
+}
+
+/// The constants of a struct, written one after the other, and the hash over those that count
+/// (exported/contents_hash.hpp).
 class ConstantWriter {
  public:
   explicit ConstantWriter(std::ostream& out) : out_(out) {}
 
-  /// `written`: the value as C++ text.
-  void constant(const char* type, const char* name, const std::string& written) {
-    out_ << "  static constexpr " << type << ' ' << name << " = " << written << ";\n";
+  std::uint64_t contents_hash() const { return sum_; }
+  /// Takes a value into the hash, that of a constant that may not be edited.
+  template <class Value>
+  void count(std::string_view name, const Value& value) {
+    if (is_editable(name)) return;
+    ConstantHash hash(name);
+    add(hash, value);
+    sum_ += hash.value();
   }
-  void truth(const char* name, bool value) { constant("bool", name, value ? "true" : "false"); }
-  void number(const char* name, int value) { constant("int", name, std::to_string(value)); }
-  void number(const char* name, double value) { constant("double", name, literal(value)); }
-  void text(const char* name, const std::string& value) { constant("const char*", name, quoted(value)); }
+
+  /// `written`: the value as C++ text.
+  template <class Value>
+  void constant(const char* type, const char* name, const std::string& written, const Value& value) {
+    out_ << "  static constexpr " << type << ' ' << name << " = " << written << ";\n";
+    count(name, value);
+  }
+  void truth(const char* name, bool value) { constant("bool", name, value ? "true" : "false", value); }
+  void number(const char* name, int value) { constant("int", name, std::to_string(value), value); }
+  void number(const char* name, double value) { constant("double", name, literal(value), value); }
+  void text(const char* name, const std::string& value) { constant("const char*", name, quoted(value), value); }
   template <class Values>
   void list(const std::string& type, const char* name, const Values& values) {
     out_ << "  static constexpr std::array<" << type << ", " << values.size() << "> " << name << " = ";
@@ -43,6 +63,7 @@ class ConstantWriter {
       write_braced(out_, values, "  ");
       out_ << "};\n";
     }
+    count(name, values);
   }
   template <class Rows>
   void table(const std::string& type, const char* name, const Rows& rows) {
@@ -54,6 +75,7 @@ class ConstantWriter {
       out_ << '}';
     }
     out_ << "}};\n";
+    count(name, rows);
   }
   template <class Scalar>
   void scaler(const std::string& type, const char* name, const std::vector<Scalar>& mean,
@@ -63,11 +85,47 @@ class ConstantWriter {
     out_ << "}, {";
     write_braced(out_, standard_deviation, "  ");
     out_ << "}};\n";
+    count(name, std::array{mean, standard_deviation});
   }
 
  private:
+  template <class Value>
+  using ElementOf = decltype(*std::declval<const Value&>().begin());
+  template <class Value>
+  static void add(ConstantHash& hash, const Value& value) {
+    if constexpr (std::is_convertible_v<Value, std::string_view>) {
+      hash.add(std::string_view(printable(std::string(value))));
+    } else if constexpr (is_detected<ElementOf, Value>) {
+      for (const auto& one : value) add(hash, one);
+    } else {
+      hash.add(value);
+    }
+  }
+
   std::ostream& out_;
+  std::uint64_t sum_ = 0;
 };
+
+/// Takes into the hash what the types of a header say.
+PINNQUAD_BODY void count_types(ConstantWriter& write, const WrittenRecords& model) {
+  const auto features = names_and_units(model.feature_texts, 0);
+  const auto outputs = names_and_units(model.output_texts, 1);  // behind the schema's description
+  write.count("frame", std::string(model_frame));
+  write.count("feature_names", features.names);
+  write.count("feature_units", features.units);
+  write.count("output_names", outputs.names);
+  write.count("output_units", outputs.units);
+  write.count("vehicle_name", model.vehicle_name);
+  write.count("motor_torque_signs", motor_torque_signs(model.airframe));
+  write.count("Vehicle", model.airframe);
+  write.count("records", known_records);
+  write.count("answer", model.answer);
+  write.count("window_taps", static_cast<int>(model.window_taps));
+  write.count("causal", model.causal);
+  write.count("column_names", model.column_names);
+  write.count("column_units", model.column_units);
+  write.count("base", model.base);
+}
 
 /// "s_z [m/s^2], wdot_x [rad/s^2]".
 PINNQUAD_BODY std::string in_words(const std::vector<std::string>& texts, std::size_t first) {
@@ -80,7 +138,7 @@ PINNQUAD_BODY std::string in_words(const std::vector<std::string>& texts, std::s
 }
 
 template <class Scalar>
-void write_struct(std::ostream& out, const WrittenModel<Scalar>& model) {
+std::uint64_t write_struct(std::ostream& out, const WrittenModel<Scalar>& model) {
   const std::string scalar = type_name<Scalar>();
   ConstantWriter write(out);
 
@@ -104,13 +162,15 @@ void write_struct(std::ostream& out, const WrittenModel<Scalar>& model) {
       << "  using Outputs = " << model.outputs_type << ";\n"
       << "  using Vehicle = " << vehicle << ";\n"
       << "  using Inputs = Features::Inputs<Scalar>;\n\n";
-  write.number("format_version", model_format_version);
+  out << "  static constexpr int format_version = " << header_format_version << ";\n";
+  write.count("format_version", model_format_version);
   write.text("name", model.name);
   out << "\n  // provenance\n";
   write.text("training_data", model.training_data);
-  write.constant("std::uint64_t", "training_data_hash", hexadecimal(model.training_data_hash));
-  write.constant("int", "training_rows", std::to_string(model.training_rows));
-  write.constant("std::uint64_t", "seed", std::to_string(model.seed) + "u");
+  write.constant("std::uint64_t", "training_data_hash", hexadecimal(model.training_data_hash),
+                 model.training_data_hash);
+  write.constant("int", "training_rows", std::to_string(model.training_rows), static_cast<int>(model.training_rows));
+  out << "  static constexpr std::uint64_t seed = " << model.seed << "u;\n";
   write.number("epochs", model.epochs);
   write.text("loss", model.loss);
   const ModelFacts& facts = model.facts;
@@ -125,7 +185,7 @@ void write_struct(std::ostream& out, const WrittenModel<Scalar>& model) {
   }
   out << "\n  // commands and clock of its training (exported/model_facts.hpp)\n";
   write.constant("auto", "command_meaning",
-                 std::string("pinnquad::CommandMeaning::") + to_string(facts.command_meaning));
+                 std::string("pinnquad::CommandMeaning::") + to_string(facts.command_meaning), facts.command_meaning);
   write.number("command_lower", facts.command_lower);
   write.number("command_upper", facts.command_upper);
   write.number("sample_period_s", facts.sample_period_s);
@@ -154,14 +214,16 @@ void write_struct(std::ostream& out, const WrittenModel<Scalar>& model) {
 
   out << "\n  // layer by layer: weights row-major (row = output, column = input), then biases\n";
   write.list(scalar, "parameters", model.parameters);
-  out << "\n  // over what the types say: layers, names and units, frame, airframe's name, motor order\n";
-  write.constant("std::uint64_t", "shape_hash", hexadecimal(hash_of_shape(model)));
-  out << "  // over all of this: what was edited does not compile (exported/contents_hash.hpp)\n";
-  write.constant("std::uint64_t", "contents_hash", hexadecimal(hash_of_header(model)));
+  count_types(write, model);
+  out << "\n  // over what the types say: layers, names and units, frame, airframe's name, motor order\n"
+      << "  static constexpr std::uint64_t shape_hash = " << hexadecimal(hash_of_shape(model)) << ";\n"
+      << "  // over all of this: what was edited does not compile (exported/contents_hash.hpp)\n"
+      << "  static constexpr std::uint64_t contents_hash = " << hexadecimal(write.contents_hash()) << ";\n";
   out << "};\n\nstatic_assert(pinnquad::require_model<" << model.name << ">());\n";
   if (model.certificate) {
     out << "static_assert(pinnquad::require_certificate<" << model.name << ">());  // docs/certificate.md\n";
   }
+  return write.contents_hash();
 }
 
 template <class Scalar>
@@ -181,8 +243,8 @@ void write_model(std::ostream& stream, const std::string& struct_name, const Gro
   stream << detail::header_text(detail::written_model(model, golden, provenance, struct_name));
 }
 #ifdef PINNQUAD_COMPILED
-template void detail::write_struct(std::ostream&, const detail::WrittenModel<float>&);
-template void detail::write_struct(std::ostream&, const detail::WrittenModel<double>&);
+template std::uint64_t detail::write_struct(std::ostream&, const detail::WrittenModel<float>&);
+template std::uint64_t detail::write_struct(std::ostream&, const detail::WrittenModel<double>&);
 template std::string detail::header_text(const detail::WrittenModel<float>&);
 template std::string detail::header_text(const detail::WrittenModel<double>&);
 template void write_model(std::ostream&, const std::string&, const GroundModel<float>&,

@@ -9,7 +9,7 @@ namespace pinnquad {
 namespace detail {
 
 template <class Scalar>
-std::vector<unsigned char> block_beside_header(const WrittenModel<Scalar>& model) {
+std::vector<unsigned char> block_of(const WrittenModel<Scalar>& model) {
   LittleEndianBytes<Scalar> scalars;
   for (const auto* numbers : {&model.input_mean, &model.input_deviation, &model.output_mean, &model.output_deviation,
                               &model.envelope_lower, &model.envelope_upper}) {
@@ -21,7 +21,14 @@ std::vector<unsigned char> block_beside_header(const WrittenModel<Scalar>& model
   return whole_block(
       {sizeof(Scalar), model.input_mean.size(), model.output_mean.size(), model.parameters.size(),
        model.golden_features.size(), model.training_rows, hash_of_shape(model), model.training_data_hash},
-      block_records<Scalar>(model, hash_of_header(model)), scalars.bytes);
+      block_records<Scalar>(model), scalars.bytes);
+}
+
+template <class Scalar>
+std::vector<unsigned char> block_beside_header(WrittenModel<Scalar> model) {
+  std::ostream nowhere(nullptr);
+  model.contents_hash = write_struct(nowhere, model);
+  return block_of(model);
 }
 
 PINNQUAD_BODY void write_block(std::ostream& out, const std::vector<unsigned char>& block) {
@@ -46,12 +53,14 @@ std::vector<unsigned char> model_block(const GroundModel<Scalar>& model, const s
                      trust->command_residual_cleared, trust->update_period_s,         trust->distribution.mean,
                      trust->distribution.whitening};
   }
-  return detail::block_beside_header(written);
+  return detail::block_beside_header(std::move(written));
 }
 
 #ifdef PINNQUAD_COMPILED
-template std::vector<unsigned char> detail::block_beside_header(const detail::WrittenModel<float>&);
-template std::vector<unsigned char> detail::block_beside_header(const detail::WrittenModel<double>&);
+template std::vector<unsigned char> detail::block_of(const detail::WrittenModel<float>&);
+template std::vector<unsigned char> detail::block_of(const detail::WrittenModel<double>&);
+template std::vector<unsigned char> detail::block_beside_header(detail::WrittenModel<float>);
+template std::vector<unsigned char> detail::block_beside_header(detail::WrittenModel<double>);
 template std::vector<unsigned char> model_block(const GroundModel<float>&, const std::vector<std::vector<double>>&,
                                                 const Provenance&, const std::string&, const FittedTrust*);
 template std::vector<unsigned char> model_block(const GroundModel<double>&, const std::vector<std::vector<double>>&,
