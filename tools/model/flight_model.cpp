@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "flight/run_time_view.hpp"
 #include "model/flight_stack.hpp"
