@@ -151,7 +151,7 @@ TEST_CASE_TEMPLATE("rows are answered as the compiled model answers them, to the
         detail::inside_envelope(model.envelope_lower.data(), x.data(), model.envelope_upper.data(), x.size()));
   });
   std::size_t seen = 0, last = 0;
-  block.answer(rows, [&](std::size_t row, const AnsweredRow& answered) {
+  block.answer(rows, [&](std::size_t row, const BlockModel::AnsweredRow& answered) {
     REQUIRE(seen < expected.size());
     CHECK(answered.commands == expected[seen]);
     CHECK(answered.inside_envelope == inside[seen]);
@@ -170,7 +170,8 @@ TEST_CASE("a flight without a column that the model asks for is refused") {
   const BlockModel block("drawn.block", test::drawn_block(test::drawn_model<Model>(4)));
   Flight flight;
   flight.push_back(Sample{});
-  CHECK_THROWS_AS(block.answer(RowSet(flight, {0, 1}), [](std::size_t, const AnsweredRow&) {}), std::invalid_argument);
+  CHECK_THROWS_AS(block.answer(RowSet(flight, {0, 1}), [](std::size_t, const BlockModel::AnsweredRow&) {}),
+                  std::invalid_argument);
 }
 
 TEST_CASE("texts of a block are fit for a terminal") {

@@ -377,7 +377,8 @@ struct Refuted {
 };
 
 template <class Scalar>
-Refuted search_of(const RunTimeModel<Scalar>& model, const ProvenSigns& proof, int pairs, std::mt19937_64& engine) {
+Refuted search_of(const RunTimeModel<Scalar>& model, const BlockModel::ProvenSigns& proof, int pairs,
+                  std::mt19937_64& engine) {
   const std::optional<Certificate>& certificate = proof.structure;
   SumsInDouble<Scalar> sums_of(model);
   RandomStates random(engine());
@@ -427,7 +428,7 @@ Refuted search_of(const RunTimeModel<Scalar>& model, const ProvenSigns& proof, i
   return found;
 }
 
-std::string kind_of(const BlockModel& model, const ProvenSigns& proof) {
+std::string kind_of(const BlockModel& model, const BlockModel::ProvenSigns& proof) {
   if (!proof.structure) return "affine";
   return (model.network().part_count() == 1 ? "base alone" : "residual") +
          std::string(model.with([](const auto& own) { return own.records().base.count != 0; }) ? " on a base" : "") +
@@ -450,7 +451,7 @@ TEST_CASE("a search over random feature sets, structures and weights refutes no 
     const auto bytes =
         in_double ? Maker<double>(engine, composition).block() : Maker<float>(engine, composition).block();
     const BlockModel model("searched.block", bytes);
-    const std::optional<ProvenSigns> proof = model.proven_signs();
+    const std::optional<BlockModel::ProvenSigns> proof = model.proven_signs();
     if (!proof) continue;
     ++proven;
     ++kinds[kind_of(model, *proof)];

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pinnquad/core/random.hpp"
 #include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/relu.hpp"
 #include "pinnquad/nn/tanh.hpp"

@@ -5,42 +5,14 @@
 
 #include <cmath>
 
-#include "pinnquad/core/random.hpp"
+#include "consumer/extension/own_layers.hpp"
 #include "pinnquad/nn/layer.hpp"
 #include "pinnquad/training/backward.hpp"
 
 namespace pinnquad::test {
 
-/// y = v < 0 ? v / 8 : v.
-template <class ScalarType, int Size>
-struct LeakyReluLayer : ElementwiseLayer<LeakyReluLayer<ScalarType, Size>, ScalarType, Size> {
-  static ScalarType activate(ScalarType v) noexcept { return v < ScalarType(0) ? v * ScalarType(0.125) : v; }
-  static ScalarType slope(ScalarType y) noexcept { return y < ScalarType(0) ? ScalarType(0.125) : ScalarType(1); }
-};
-struct LeakyRelu {
-  template <class Scalar, int In>
-  using Bind = LeakyReluLayer<Scalar, In>;
-};
-
-/// y_i = p_i x_i.
-template <class ScalarType, int Size>
-struct ChannelScaleLayer {
-  using Scalar = ScalarType;
-  static constexpr int inputs = Size;
-  static constexpr int outputs = Size;
-  static constexpr int parameter_count = Size;
-  static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept {
-    for (int i = 0; i < Size; ++i) y[i] = parameters[i] * x[i];
-  }
-  template <class Engine>
-  static void initialise(Scalar* parameters, Engine& engine) {
-    for (int i = 0; i < Size; ++i) parameters[i] = Scalar(uniform(engine, 0.9, 1.1));
-  }
-};
-struct ChannelScale {
-  template <class Scalar, int In>
-  using Bind = ChannelScaleLayer<Scalar, In>;
-};
+using own::ChannelScale;
+using own::LeakyRelu;
 
 /// y = softmax(x): every output depends on every input, and the rule needs y.
 template <class ScalarType, int Size>
@@ -143,17 +115,6 @@ struct PackReciprocal {
 }  // namespace pinnquad::test
 
 namespace pinnquad {
-
-template <class Scalar, int Size>
-struct BackwardRule<test::ChannelScaleLayer<Scalar, Size>> {
-  static void backward(const Scalar* parameters, const Scalar* x, const Scalar*, const Scalar* dy, Scalar* dx,
-                       Scalar* parameter_gradient) noexcept {
-    for (int i = 0; i < Size; ++i) {
-      dx[i] = parameters[i] * dy[i];
-      parameter_gradient[i] += x[i] * dy[i];
-    }
-  }
-};
 
 template <class Scalar, int Size>
 struct BackwardRule<test::UnitLengthLayer<Scalar, Size>> {

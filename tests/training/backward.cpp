@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Every layer's backward rule, alone and in its mini-batch form, against central differences in double.
 #include "pinnquad/training/backward.hpp"
+#include "pinnquad/core/random.hpp"
 #include "pinnquad/nn/elu.hpp"
 #include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/glu.hpp"

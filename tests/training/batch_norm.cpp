@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "pinnquad/core/random.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/nn/relu.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Back-propagation through whole networks against central differences, in double.
 #include "pinnquad/training/network_gradient.hpp"
+#include "pinnquad/core/random.hpp"
 #include "pinnquad/nn/elu.hpp"
 #include "pinnquad/nn/gelu.hpp"
 #include "pinnquad/nn/leaky_relu.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "convert/begun_features.hpp"
 
-#include <cstdio>
 #include <stdexcept>
 
+#include "command_line/in_words.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/training/training_data.hpp"
@@ -19,12 +19,9 @@ std::string features_text(const RowSet& rows) {
   const auto columns = pinnquad::detail::feature_statistics<Features>(rows);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto& column = columns[i];
-    char line[256];
-    std::snprintf(line, sizeof line,
-                  "  { name = \"%s\", unit = \"%s\", lower = %.4g, upper = %.4g },  # mean = %.6g, scale = %.6g\n",
-                  Features::names[i], Features::units[i], column.lowest - column.margin(),
-                  column.highest + column.margin(), column.mean, column.scale());
-    text += line;
+    text += in_words("  { name = \"%s\", unit = \"%s\", lower = %.4g, upper = %.4g },  # mean = %.6g, scale = %.6g\n",
+                     Features::names[i], Features::units[i], column.lowest - column.margin(),
+                     column.highest + column.margin(), column.mean, column.scale());
   }
   return text;
 }

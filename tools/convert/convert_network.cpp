@@ -2,7 +2,6 @@
 #include "convert/convert_network.hpp"
 
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "command_line/folder_lock.hpp"
+#include "command_line/in_words.hpp"
 #include "convert/converted_model.hpp"
 #include "convert/exported_network.hpp"
 #include "convert/features_file.hpp"
@@ -24,11 +24,9 @@ namespace {
 using namespace pinnquad;
 
 [[noreturn]] void refuse_difference(const Conversion& conversion, double difference) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1e", difference);
   throw InputError(
       conversion.source, 0, 0, "a network that the model's arithmetic answers within 1e-5 of a command",
-      std::string("a difference of ") + text + (conversion.in_double ? "" : " (--double has more digits)"));
+      in_words("a difference of %.1e", difference) + (conversion.in_double ? "" : " (--double has more digits)"));
 }
 
 /// Largest difference of a block's golden commands, which its weights may not give: BlockModel refuses such a one.
@@ -92,8 +90,7 @@ std::string write_model(const Conversion& conversion, const ForeignMeaning& mean
   block_file.close();
   header_file.commit();
   block_file.commit();
-  char most[32];
-  std::snprintf(most, sizeof most, "%.1e", difference);
+  const std::string most = in_words("%.1e", difference);
   std::string said = printable(header_path) + ": struct " + conversion.name + ", " + model.answer() + ", " +
                      std::to_string(model.network().parameter_count()) + " parameters\n" + printable(block_path) +
                      ": " + std::to_string(block.size()) + " bytes; at most " + most +

@@ -296,7 +296,7 @@ pinnquad::detail::WrittenModel<Scalar> converted_model(const ForeignNetwork& net
   RunTimeNetwork read;
   if (!read.parse(model.answer)) {
     throw std::invalid_argument(network.source + ": expected a network of at most " +
-                                std::to_string(RunTimePart::most_layers) + " layers, each of at most " +
+                                std::to_string(RunTimeNetwork::Part::most_layers) + " layers, each of at most " +
                                 std::to_string(RunTimeNetwork::widest_layer) + " neurons, found " + model.answer);
   }
   pinnquad::detail::require_numbers(model);

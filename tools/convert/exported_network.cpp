@@ -27,7 +27,7 @@ json dense(std::size_t width, const Numbers& weights, const Numbers& bias) {
 
 /// `at`: its first parameter. As RunTimeNetwork::run().
 template <class Scalar>
-json part_of(const RunTimePart& from, const Scalar* at) {
+json part_of(const RunTimeNetwork::Part& from, const Scalar* at) {
   json part = {{"shown", std::vector<std::size_t>()}, {"steps", json::array()}, {"lower", nullptr}, {"upper", nullptr}};
   std::vector<std::size_t> shown_features;
   const auto take = [&at](std::size_t count) {
@@ -61,7 +61,7 @@ json part_of(const RunTimePart& from, const Scalar* at) {
   part["shown"] = shown_features;
   std::size_t width = shown_features.empty() ? inputs : shown_features.size();
   for (int i = 0; i < from.layer_count; ++i) {
-    const RunTimeLayer& layer = from.layers[i];
+    const RunTimeNetwork::Layer& layer = from.layers[i];
     if (layer.normalised > 0) {
       const Numbers gamma = take(std::size_t(layer.normalised));
       part["steps"].push_back(

@@ -55,7 +55,7 @@ class InputHistory<programs::FlightFeatures, Scalar, MostSamples, void> {
  private:
   using Samples = std::vector<detail::TimedInputs<Present>>;
 
-  detail::PastInputs<Scalar, RunTimeWindow, Samples> past_;
+  detail::PastInputs<Scalar, RunTimeFeatures::Window, Samples> past_;
   Inputs inputs_;
 };
 

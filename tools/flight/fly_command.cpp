@@ -16,6 +16,7 @@
 #include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
+#include "command_line/in_words.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
@@ -166,11 +167,10 @@ class ChosenFlight {
     if (!is_finite(hover)) {
       throw std::invalid_argument(name_ + " cannot fly " + flight_.name + ": no commands hold it in hover there");
     }
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  " cannot fly %s: its hover takes %.0f %% of its thrust, %.0f %% is what the controller uses",
-                  flight_.name, 100 * hover, 100 * most);
-    throw std::invalid_argument(name_ + text);
+    throw std::invalid_argument(
+        name_ +
+        programs::in_words(" cannot fly %s: its hover takes %.0f %% of its thrust, %.0f %% is what the controller uses",
+                           flight_.name, 100 * hover, 100 * most));
   }
 
   programs::AnyPilot pilot_of(std::uint64_t seed) const {
@@ -205,11 +205,10 @@ class ChosenFlight {
 
   std::string why_it_ended(const FlightReport& report) const {
     const Vector3<double>& p = report.last.body.position_m;
-    char text[240];
-    std::snprintf(text, sizeof text, "the flight ended at %.3f s, north %.2f m, east %.2f m, %.2f m above ground: %s",
-                  report.last.time_s, p[0], p[1], paper_site<double>().ground_z_m - p[2],
-                  report.end == FlightEnd::ground ? "it came down to the ground" : to_string(report.status));
-    return text;
+    return programs::in_words(
+        "the flight ended at %.3f s, north %.2f m, east %.2f m, %.2f m above ground: %s", report.last.time_s, p[0],
+        p[1], paper_site<double>().ground_z_m - p[2],
+        report.end == FlightEnd::ground ? "it came down to the ground" : to_string(report.status));
   }
 
   int run_statistics() {

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "command_line/parallel.hpp"
 #include "flight/axis_motion.hpp"
 #include "pinnquad/evaluation/summary.hpp"
@@ -78,12 +79,6 @@ inline const std::vector<FlightColumn>& flight_columns() {
   return columns;
 }
 
-inline std::string flight_number(const char* format, double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 /// One line per seed, then the least, the mean and the greatest of each column.
 inline void print_flight_table(const std::vector<FlightFigures>& figures) {
   std::printf("%6s", "seed");
@@ -92,7 +87,7 @@ inline void print_flight_table(const std::vector<FlightFigures>& figures) {
   for (const FlightFigures& one : figures) {
     std::printf("%6llu", static_cast<unsigned long long>(one.seed));
     for (const FlightColumn& column : flight_columns()) {
-      std::printf("  %12s", flight_number(column.format, column.of(one)).c_str());
+      std::printf("  %12s", in_words(column.format, column.of(one)).c_str());
     }
     std::printf("%s\n", one.report.end == pinnquad::FlightEnd::completed ? "" : "  ended early");
   }
@@ -101,7 +96,7 @@ inline void print_flight_table(const std::vector<FlightFigures>& figures) {
     for (const FlightColumn& column : flight_columns()) {
       std::vector<double> series;
       for (const FlightFigures& one : figures) series.push_back(column.of(one));
-      std::printf("  %12s", flight_number(column.format, of_series(series)).c_str());
+      std::printf("  %12s", in_words(column.format, of_series(series)).c_str());
     }
     std::printf("\n");
   };

@@ -7,12 +7,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/in_words.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/regression/identification.hpp"
 
@@ -116,9 +116,7 @@ inline std::vector<IdentifiedNumber> identified_numbers(const pinnquad::Identifi
 
 inline std::string interval_text(const pinnquad::Estimate& estimate) {
   if (!std::isfinite(estimate.half_width)) return "none";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.4g to %.4g", estimate.low(), estimate.high());
-  return text;
+  return in_words("%.4g to %.4g", estimate.low(), estimate.high());
 }
 
 /// By key: value, interval, unit, excitation; null for what is infinite.

@@ -6,13 +6,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "airframe/choice.hpp"
+#include "command_line/in_words.hpp"
 #include "identify/identified_numbers.hpp"
 #include "identify/sound_flights.hpp"
 #include "logs/command_curve.hpp"
@@ -51,11 +51,7 @@ namespace detail {
 /// "rotor lag is 1.33 s, where quadrotors have 0 to 0.2 s": with the columns, and what to look at.
 inline std::string implausible_in_words(const pinnquad::ImplausibleNumber& number) {
   const std::string key = number.key, unit = number.unit[0] == '\0' ? "" : " " + std::string(number.unit);
-  const auto text = [](double value) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%.3g", value);
-    return std::string(digits);
-  };
+  const auto text = [](double value) { return in_words("%.3g", value); };
   std::string column = "columns u1 to u4: ", look_at = "were the commands filtered, clipped or stamped late?";
   for (const auto& [turn, rate] : {std::pair("roll", "w_x"), {"pitch", "w_y"}, {"yaw", "w_z"}}) {
     if (key.rfind(turn, 0) != 0) continue;
@@ -99,14 +95,12 @@ inline std::string why_no_airframe(const pinnquad::Identification& found, const 
 inline std::string unlike_axes_in_words(const pinnquad::Identification& found) {
   const auto ratio = pinnquad::unlike_axes(found);
   if (!ratio) return "";
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "roll effectiveness is %.3g rad/s^2 (%s), pitch effectiveness %.3g (%s): a quadrotor's are alike "
-                "within a factor of %.0f; look at the motor order, or fly more of the axis with the wider interval",
-                found.effectiveness_rad_s2[0].value, interval_text(found.effectiveness_rad_s2[0]).c_str(),
-                found.effectiveness_rad_s2[1].value, interval_text(found.effectiveness_rad_s2[1]).c_str(),
-                pinnquad::plausible::roll_over_pitch);
-  return text;
+  return in_words(
+      "roll effectiveness is %.3g rad/s^2 (%s), pitch effectiveness %.3g (%s): a quadrotor's are alike "
+      "within a factor of %.0f; look at the motor order, or fly more of the axis with the wider interval",
+      found.effectiveness_rad_s2[0].value, interval_text(found.effectiveness_rad_s2[0]).c_str(),
+      found.effectiveness_rad_s2[1].value, interval_text(found.effectiveness_rad_s2[1]).c_str(),
+      pinnquad::plausible::roll_over_pitch);
 }
 
 /// Of a dataset's flights, with the mass, the arms, the spins and the propeller of `like`. A lag that the import

@@ -17,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/command.hpp"
+#include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "logs/json_file.hpp"
@@ -133,9 +134,7 @@ json score(const Set& set, const std::string& predictions) {
 
 std::string three_digits(const json& number) {
   if (!number.is_number()) return "";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f", number.get<double>());
-  return text;
+  return programs::in_words("%.3f", number.get<double>());
 }
 
 /// "4.86; 13.7, -, 1.43": thrust of a rotor over mass, m/s^2; what roll, pitch and yaw answer with, rad/s^2; - is not
@@ -146,11 +145,9 @@ std::string vehicle_text(const json& vehicle) {
        {"thrust_m_s2", "roll_effectiveness_rad_s2", "pitch_effectiveness_rad_s2", "yaw_effectiveness_rad_s2"}) {
     const json numbers = vehicle.is_object() ? vehicle.value("numbers", json::object()) : json::object();
     const json number = numbers.value(key, json::object());
-    char said[32] = "-";
-    if (number.value("excitation", "not told") != "not told") {
-      std::snprintf(said, sizeof said, "%.3g", number.at("value").get<double>());
-    }
-    text += (text.empty() ? "" : text.find(';') == std::string::npos ? "; " : ", ") + std::string(said);
+    const bool told = number.value("excitation", "not told") != "not told";
+    text += text.empty() ? "" : text.find(';') == std::string::npos ? "; " : ", ";
+    text += told ? programs::in_words("%.3g", number.at("value").get<double>()) : "-";
   }
   return text;
 }

@@ -30,7 +30,7 @@ nlohmann::json named(const RunTimeFeatures::Named& one) {
 /// All but the weights and the golden vectors.
 nlohmann::json description_of(const BlockModel& model) {
   const RunTimeFeatures& features = model.features();
-  const RunTimeWindow& window = features.window();
+  const RunTimeFeatures::Window& window = features.window();
   nlohmann::json all = {{"model", model.path()},
                         {"name", model.name()},
                         {"contents_hash", hexadecimal(model.contents_hash())},

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "model/replayed_row.hpp"
 #include "pinnquad/control/autopilot/core_record.hpp"
 #include "pinnquad/io/file_error.hpp"

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 
+#include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
 #include "pinnquad/control/autopilot/core_record.hpp"

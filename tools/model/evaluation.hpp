@@ -36,7 +36,7 @@ inline EvaluatedModel evaluated(const pinnquad::BlockModel& model, const pinnqua
   Predictions predictions(rows.size());
   std::vector<bool> counts(rows.size(), false);
   DerivativeSigns signs;
-  model.answer(rows, [&](std::size_t row, const pinnquad::AnsweredRow& answer) {
+  model.answer(rows, [&](std::size_t row, const pinnquad::BlockModel::AnsweredRow& answer) {
     share_done(static_cast<double>(row) / static_cast<double>(rows.size()));
     predictions[row] = answer.commands;
     counts[row] = true;

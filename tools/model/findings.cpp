@@ -14,7 +14,7 @@ using namespace pinnquad;
 
 static constexpr std::array<const char*, 3> axes = {Roll::name, Pitch::name, Yaw::name};
 
-const char* in_words(const ProvenSigns& proof) {
+const char* in_words(const BlockModel::ProvenSigns& proof) {
   if (!proof.structure) return "the model is affine: its derivatives are the same everywhere";
   return "structure: an affine base in which each signed sum sees the angular acceleration about its own axis alone, "
          "with a slope above 0, and a residual that sees none";
@@ -34,7 +34,7 @@ static void add_responses(const BlockModel& model, Findings& findings) {
     });
   };
   findings.thrust = along(more_thrust(findings.names));
-  const RunTimeWindow& window = model.features().window();
+  const RunTimeFeatures::Window& window = model.features().window();
   if (has_base(model) || window.taps < 2) return;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     findings.with_rates[axis] = along(held_with_rates(findings.names, axis, {window.period_s, window.earliest_s},
@@ -44,7 +44,7 @@ static void add_responses(const BlockModel& model, Findings& findings) {
 
 static std::vector<std::string> uncounted_features(const BlockModel& model) {
   std::vector<std::string> names;
-  const RunTimePart& base = model.network().part(0);
+  const RunTimeNetwork::Part& base = model.network().part(0);
   if (!model.is_axis_commands() || !base.axis_aligned) return names;
   model.with([&](const auto& own) {
     for (int i = 0; i < own.features().size(); ++i) {

@@ -20,7 +20,7 @@ namespace programs {
 
 /// All that is known of a model in the end.
 struct Findings {
-  std::optional<pinnquad::ProvenSigns> proof;
+  std::optional<pinnquad::BlockModel::ProvenSigns> proof;
   std::optional<Response> thrust;  ///< of the structure, to more thrust at all instants
   /// Of a window, to an acceleration that is held with the body rates that it makes; where it can be worked out.
   std::array<std::optional<Response>, 3> with_rates;
@@ -42,7 +42,7 @@ struct Findings {
 Findings findings_of(const pinnquad::BlockModel& model, double seconds, std::uint64_t seed);
 
 /// The proof's argument.
-const char* in_words(const pinnquad::ProvenSigns& proof);
+const char* in_words(const pinnquad::BlockModel::ProvenSigns& proof);
 
 /// True for a model with the base of a residual.
 bool has_base(const pinnquad::BlockModel& model);

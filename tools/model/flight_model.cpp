@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "flight/run_time_view.hpp"
 #include "model/flight_stack.hpp"
@@ -22,7 +23,7 @@ namespace programs {
 namespace detail {
 
 /// The words for warming_up.
-inline std::string warming_up(const pinnquad::RunTimeWindow& window) {
+inline std::string warming_up(const pinnquad::RunTimeFeatures::Window& window) {
   if (window.taps == 1) return "its window is not complete";
   std::string span = in_words("%.0f ms before", -1e3 * window.earliest_s);
   if (window.latest_s > 0) span += in_words(" to %.0f ms after", 1e3 * window.latest_s);

@@ -58,11 +58,4 @@ std::string block_path(const std::string& model) {
   return block;
 }
 
-void require_provable(const pinnquad::BlockModel& model) {
-  const auto certificate = model.certificate();
-  if (certificate && !certificate->proven()) {
-    throw pinnquad::InputError(model.path(), 0, 0, "slopes and bounds of which its certificate is proven", "others");
-  }
-}
-
 }  // namespace programs

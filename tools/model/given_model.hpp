@@ -22,7 +22,4 @@ std::string block_path(const std::string& model);
 /// Throws InputError as block_path() and BlockModel.
 inline pinnquad::BlockModel read_model(const std::string& model) { return pinnquad::BlockModel(block_path(model)); }
 
-/// A model of which nothing is proven, though it has the structure, is none to fly. Throws InputError.
-void require_provable(const pinnquad::BlockModel& model);
-
 }  // namespace programs

@@ -76,13 +76,13 @@ Intervals path_bound_along(const Scalar* parameters, const std::vector<std::size
 /// whose slope is from 0 to 1. Empty for any other: of Gelu, Silu and Sine it is not, and of more layers the bound says
 /// nothing.
 inline std::vector<std::size_t> bounded_widths(const pinnquad::RunTimeNetwork& network,
-                                               const pinnquad::RunTimePart& part) {
+                                               const pinnquad::RunTimeNetwork::Part& part) {
   constexpr std::array<std::string_view, 5> slopes_from_0_to_1 = {
       "pinnquad::Relu", "pinnquad::LeakyRelu", "pinnquad::Tanh", "pinnquad::Softplus", "pinnquad::Elu"};
   if (part.axis_aligned || part.layer_count > 5 || part.layer_count % 2 == 0 || network.is_double()) return {};
   std::vector<std::size_t> widths;
   for (int i = 0; i < part.layer_count; ++i) {
-    const pinnquad::RunTimeLayer& layer = part.layers[i];
+    const pinnquad::RunTimeNetwork::Layer& layer = part.layers[i];
     if (i % 2 == 0) {
       if (layer.outputs == 0 || !layer.has_bias) return {};
       widths.push_back(static_cast<std::size_t>(layer.outputs));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
 #include "pinnquad/aero/drag.hpp"

@@ -18,6 +18,7 @@
 #include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
+#include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "model/core_words.hpp"
 #include "model/flight_stack.hpp"
 #include "model/recorded_effects.hpp"

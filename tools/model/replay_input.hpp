@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "command_line/progress_line.hpp"
 #include "model/core_log.hpp"
 #include "pinnquad/data/csv.hpp"

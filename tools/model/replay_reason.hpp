@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <string>
 
+#include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
 #include "pinnquad/exported/run_time_features.hpp"

@@ -14,6 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
 #include "pinnquad/io/file_error.hpp"

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <vector>
@@ -75,14 +74,6 @@ inline double largest_difference(const FourCommands& a, const FourCommands& b, s
     rotor = i;
   }
   return largest;
-}
-
-/// printf's, as a text.
-template <class... Values>
-std::string in_words(const char* format, Values... values) {
-  char text[240];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
 }
 
 }  // namespace programs

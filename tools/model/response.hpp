@@ -93,8 +93,8 @@ namespace detail {
 
 /// The base's output k, standardised, along a direction.
 template <class Scalar>
-void respond(const pinnquad::RunTimePart& base, const Scalar* parameters, std::size_t k, const Direction& scaled,
-             Response& response) {
+void respond(const pinnquad::RunTimeNetwork::Part& base, const Scalar* parameters, std::size_t k,
+             const Direction& scaled, Response& response) {
   const auto add = [&](Scalar weight, int feature) {
     const auto i = static_cast<std::size_t>(feature);
     const double slope = static_cast<double>(weight);
@@ -115,7 +115,7 @@ void respond(const pinnquad::RunTimePart& base, const Scalar* parameters, std::s
 template <class Scalar>
 Response response_along(const Direction& direction, const pinnquad::RunTimeNetwork& network, const Scalar* parameters,
                         const Scalar* input_deviation, const Scalar* output_deviation) {
-  const pinnquad::RunTimePart& base = network.part(0);
+  const pinnquad::RunTimeNetwork::Part& base = network.part(0);
   const auto features = static_cast<std::size_t>(base.inputs);
   Direction scaled(features);
   for (std::size_t i = 0; i < features; ++i) {
@@ -130,7 +130,7 @@ Response response_along(const Direction& direction, const pinnquad::RunTimeNetwo
     response.base_most[k] *= deviation;
   }
   if (network.part_count() < 2) return response;
-  const pinnquad::RunTimePart& residual = network.part(1);
+  const pinnquad::RunTimeNetwork::Part& residual = network.part(1);
   const std::vector<std::size_t> widths = bounded_widths(network, residual);
   if (widths.empty()) {
     response.residual_least.fill(-std::numeric_limits<double>::infinity());

@@ -115,10 +115,9 @@ Scale scale_of(const Panel& panel, const Axis& axis, bool is_x, bool right) {
     if (!is_x && series.right != right) continue;
     for (std::size_t i = 0; i < series.x.size(); ++i) {
       const double value = is_x ? series.x[i] : series.y[i];
-      const double spread = is_x && !series.deviation.empty() ? series.deviation[i] : 0;
       if (!std::isfinite(value)) continue;
-      least = std::min(least, value - (axis.logarithmic ? 0 : spread));
-      most = std::max(most, value + spread);
+      least = std::min(least, value);
+      most = std::max(most, value);
     }
   }
   if (!(least <= most)) least = axis.logarithmic ? 1 : 0, most = axis.logarithmic ? 10 : 1;
@@ -181,8 +180,6 @@ const char* mark_of(Shape shape) {
   switch (shape) {
     case Shape::pluses: return "m-2.5 0h5m-2.5-2.5v5";
     case Shape::squares: return "m-4-4h8v8h-8z";
-    case Shape::diamonds: return "m-5 0l5-5l5 5l-5 5z";
-    case Shape::triangles: return "m-5 4l5-9l5 9z";
     case Shape::strokes: return "m0-8v16";
     default: return "h0";
   }
@@ -196,47 +193,18 @@ std::string attributes_of(const Series& series) {
   return more;
 }
 
-std::string bar(const Series& series, std::size_t i, const Scale& x, double y) {
-  const double half = series.width / 2, value = series.x[i], end = x(std::min(value, x.most));
-  const double spread = series.deviation.empty() || !std::isfinite(series.deviation[i]) ? 0 : series.deviation[i];
-  const bool cut = value > x.most;
-  std::string drawn;
-  if (std::isfinite(value))
-    drawn += rectangle(x.from, y - half, end - x.from, series.width, series.colour, series.opacity);
-  if (cut)
-    drawn += stroke("M" + at(end - 16) + " " + at(y + half + 2) + "l7-" + at(series.width + 4), colour::ground, 4);
-  if (i >= series.labels.size()) return drawn;
-  const double behind = (std::isfinite(value) ? x(std::min(value + spread, x.most)) : x.from) + 6;
-  const bool inside = std::isfinite(value) && behind + text_width(series.labels[i]) > x.to;
-  return drawn + text(inside ? end - (cut ? 24 : 6) : behind, y + 4, series.labels[i],
-                      inside ? colour::ground : colour::text, inside ? "end" : "start",
-                      inside ? " font-weight=\"600\"" : "");
-}
-
-std::string whisker(double from, double to, double y) {
-  return "M" + at(from) + " " + at(y) + "H" + at(to) + "M" + at(from) + " " + at(y - 3) + "v6M" + at(to) + " " +
-         at(y - 3) + "v6";
-}
-
 std::string drawn_series(const Series& series, const Scale& x, const Scale& y) {
-  std::string d, whiskers, bars;
-  std::string last;
+  std::string d, last;
   bool open = false;
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     const bool inside = y.holds(series.y[i]) && x.holds(series.x[i]);
-    if (series.shape == Shape::bars) bars += bar(series, i, x, y(series.y[i]));
-    if (!series.deviation.empty() && series.deviation[i] > 0 && inside) {
-      const double low = std::max(series.x[i] - series.deviation[i], x.least);
-      whiskers += whisker(x(low), x(std::min(series.x[i] + series.deviation[i], x.most)), y(series.y[i]));
-    }
     const std::string place = inside ? at(x(series.x[i])) + " " + at(y(series.y[i])) : "";
     if (inside && series.shape == Shape::line && !(open && place == last)) d += (open ? "L" : "M") + place;
-    if (inside && series.shape != Shape::line && series.shape != Shape::bars) d += "M" + place + mark_of(series.shape);
+    if (inside && series.shape != Shape::line) d += "M" + place + mark_of(series.shape);
     open = inside;
     last = place;
   }
-  const std::string whisker_colour = series.shape == Shape::bars ? std::string(colour::text) : series.colour;
-  return bars + stroke(whiskers, whisker_colour, 1.2) + stroke(d, series.colour, series.width, attributes_of(series));
+  return stroke(d, series.colour, series.width, attributes_of(series));
 }
 
 std::string drawn_axes(const Panel& panel, const Layout& l) {
@@ -255,7 +223,7 @@ std::string drawn_axes(const Panel& panel, const Layout& l) {
   }
   for (std::size_t row = 0; row < panel.y.rows.size(); ++row) {
     const double middle = y(static_cast<double>(row));
-    if (panel.series.front().shape != Shape::bars) grid += "M" + at(x.from) + " " + at(middle) + "H" + at(x.to);
+    grid += "M" + at(x.from) + " " + at(middle) + "H" + at(x.to);
     words += l.names_above ? text(x.from, middle - 15, panel.y.rows[row], colour::text, "start")
                            : text(x.from - 10, middle + 4, panel.y.rows[row], colour::text, "end");
   }
@@ -330,9 +298,7 @@ std::string legend(const Chart& chart, double width, double& y) {
       }
       const double middle = y + 9;
       const std::string place = "M" + at(x + 11) + " " + at(middle);
-      if (series.shape == Shape::bars) {
-        drawn += rectangle(x, middle - 5, 22, 10, series.colour, series.opacity);
-      } else if (series.shape == Shape::line) {
+      if (series.shape == Shape::line) {
         drawn += stroke("M" + at(x) + " " + at(middle) + "h22", series.colour, series.width, attributes_of(series));
       } else {
         drawn += stroke(place + mark_of(series.shape), series.colour,

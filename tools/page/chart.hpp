@@ -15,8 +15,8 @@ inline constexpr const char *text = "text", *muted = "muted", *grid = "line", *g
                             *red = "series-5", *violet = "series-6";
 }  // namespace colour
 
-/// Of a series: a line through its points, or a mark on each; bars lie along x.
-enum class Shape { line, dots, pluses, squares, diamonds, triangles, strokes, bars };
+/// Of a series: a line through its points, or a mark on each.
+enum class Shape { line, dots, pluses, squares, strokes };
 
 /// Points over each other. In a panel whose y axis names rows, the y of a point is its row's number.
 struct Series {
@@ -24,15 +24,13 @@ struct Series {
   Shape shape = Shape::line;
   std::string colour = colour::blue;
   std::vector<double> x{}, y{};  ///< a NaN breaks a line
-  double width = 1.6;            ///< of strokes, of bars their thickness
+  double width = 1.6;            ///< of strokes
   double opacity = 1;
   bool dashed = false;
-  bool right = false;                 ///< y counts on the panel's right axis
-  std::vector<double> deviation{};    ///< of x: whiskers
-  std::vector<std::string> labels{};  ///< behind the points
+  bool right = false;  ///< y counts on the panel's right axis
 };
 
-/// An end that is NaN lies where the series end. What lies outside is not drawn, and a bar is broken.
+/// An end that is NaN lies where the series end. What lies outside is not drawn.
 struct Axis {
   std::string name{};  ///< quantity and unit: "speed, m/s"
   double least = std::numeric_limits<double>::quiet_NaN();

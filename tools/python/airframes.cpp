@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "airframe/toml_writer.hpp"
+#include "command_line/in_words.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "python/bindings.hpp"
@@ -259,10 +260,9 @@ void bind_airframes(py::module_& module) {
                     state_of(self).equal(state_of(other.cast<const NamedAirframe&>()));
            })
       .def("__repr__", [](const NamedAirframe& self) {
-        char numbers[96];
-        std::snprintf(numbers, sizeof numbers, ": %.4g kg, thrust-to-weight %.3f>", self.value.mass_kg,
-                      self.value.thrust_to_weight());
-        return "<pinnquad.Airframe " + pinnquad::printable(self.name) + numbers;
+        return "<pinnquad.Airframe " + pinnquad::printable(self.name) +
+               programs::in_words(": %.4g kg, thrust-to-weight %.3f>", self.value.mass_kg,
+                                  self.value.thrust_to_weight());
       });
   pickled(
       airframe, [](const py::object& self) { return state_of(self.cast<const NamedAirframe&>()); }, of_state);

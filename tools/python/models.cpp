@@ -146,7 +146,7 @@ py::array_t<double> features_of(const BlockModel& model, const py::object& fligh
   std::fill_n(x, rows.size() * size, not_a_number);
   model.answer(
       rows,
-      [&](std::size_t row, const AnsweredRow& answered) {
+      [&](std::size_t row, const BlockModel::AnsweredRow& answered) {
         std::copy(answered.features.begin(), answered.features.end(), x + row * size);
         watch.look();
       },

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The module pinnquad._core: its parts, and how errors of the library become Python's.
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 
 #include "command_line/build_facts.hpp"
+#include "command_line/in_words.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/version.hpp"
 #include "python/bindings.hpp"
@@ -30,9 +30,7 @@ void refuse(const std::string& text) {
 
 double checked(const char* name, double value, double least) {
   if (!(value >= least) || !pinnquad::is_finite(value)) {
-    char limit[32];
-    std::snprintf(limit, sizeof limit, "%g", least);
-    throw py::value_error(std::string(name) + " must be a finite number not below " + limit);
+    throw py::value_error(programs::in_words("%s must be a finite number not below %g", name, least));
   }
   return value;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <random>
 #include <string>
@@ -11,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/simulation/recorder.hpp"
 #include "pinnquad/simulation/simulator.hpp"
@@ -186,10 +186,8 @@ class PythonSimulator {
   }
 
   std::string text() const {
-    char numbers[96];
-    std::snprintf(numbers, sizeof numbers, "%.3f s, %zu rows%s", time_s(), rows(), flying() ? "" : ", ended");
     return "<pinnquad.Simulator " + printable(choices_.airframe.name) + ", seed " + std::to_string(choices_.seed) +
-           ": " + numbers + ">";
+           programs::in_words(": %.3f s, %zu rows%s>", time_s(), rows(), flying() ? "" : ", ended");
   }
 
  private:
@@ -273,11 +271,10 @@ class PythonSimulator {
     const State<double>& body = running_.vehicle().body;
     const char* reason =
         running_.end() == FlightEnd::ground ? "it came down to the ground" : to_string(running_.status());
-    char text[256];
-    std::snprintf(text, sizeof text,
-                  "the flight ended at %.3f s, north %.2f m, east %.2f m, %.2f m above ground, at %.2f m/s: %s",
-                  running_.time_s(), body.position_m[0], body.position_m[1], running_.altitude_m(),
-                  body.velocity_m_s.norm(), reason);
+    const std::string text = programs::in_words(
+        "the flight ended at %.3f s, north %.2f m, east %.2f m, %.2f m above ground, at %.2f m/s: %s",
+        running_.time_s(), body.position_m[0], body.position_m[1], running_.altitude_m(), body.velocity_m_s.norm(),
+        reason);
     const py::object error = py::reinterpret_borrow<py::object>(flight_ended_type())(text);
     error.attr("time_s") = running_.time_s();
     error.attr("altitude_m") = running_.altitude_m();

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "pinnquad/control/flown_motion.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "python/interruptible.hpp"
@@ -214,10 +215,8 @@ void bind_training(py::module_& module) {
           "Writes model.hpp (struct `name`), model.block and, where there are limits, trust.hpp: all or none.\n"
           "The paths. ValueError for a model that is worse than the mean of the commands.")
       .def("__repr__", [](const Training& self) {
-        char text[128];
-        std::snprintf(text, sizeof text, "<pinnquad.Training: %s of seed %llu, R^2 %.4f>", self.kind().key,
-                      static_cast<unsigned long long>(self.seed()), self.verdict().test_r_squared);
-        return std::string(text);
+        return programs::in_words("<pinnquad.Training: %s of seed %llu, R^2 %.4f>", self.kind().key,
+                                  static_cast<unsigned long long>(self.seed()), self.verdict().test_r_squared);
       });
   refuse_new(training);
   module.def(

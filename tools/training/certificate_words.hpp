@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "pinnquad/control/motion_bias.hpp"
 #include "pinnquad/deploy/opening_comment.hpp"
 #include "pinnquad/exported/certificate.hpp"
@@ -25,9 +25,7 @@ inline constexpr double least_undoubted = 0.8, most_undoubted = 1.2;
 inline std::string least_share_in_words(const pinnquad::AxisSlopes& slopes, const pinnquad::AxisSlopes& own) {
   double least = slopes[0] / own[0];
   for (std::size_t axis = 1; axis < slopes.size(); ++axis) least = std::min(least, slopes[axis] / own[axis]);
-  char text[96];
-  std::snprintf(text, sizeof text, "by at least %.2f of the airframe's own slope in hover", least);
-  return text;
+  return in_words("by at least %.2f of the airframe's own slope in hover", least);
 }
 
 inline constexpr const char* unlike_slopes =
@@ -53,14 +51,12 @@ inline std::optional<std::string> thrust_doubt(const pinnquad::Certificate& cert
   const double share = certificate.held_thrust_slope / own;
   if (share >= least_undoubted && share <= most_undoubted) return {};
   const bool sinks = !(share >= pinnquad::least_thrust_share);
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "the sum of the commands follows the thrust that is asked by %.2f of what the airframe's own does in "
-                "hover: %s (docs/certificate.md)",
-                share,
-                sinks ? "below 0.5 a position loop sinks under a load that it should carry"
-                      : "another mass or other rotors flew, or a noisy accelerometer or rotor lag hid it");
-  return text;
+  return in_words(
+      "the sum of the commands follows the thrust that is asked by %.2f of what the airframe's own does in "
+      "hover: %s (docs/certificate.md)",
+      share,
+      sinks ? "below 0.5 a position loop sinks under a load that it should carry"
+            : "another mass or other rotors flew, or a noisy accelerometer or rotor lag hid it");
 }
 
 inline bool any_smoothed(const pinnquad::SlopesOfSums& slopes) {
@@ -73,10 +69,8 @@ inline std::string bound_in_words(const std::optional<pinnquad::Certificate>& st
   if (!structure || std::none_of(bound, bound + pinnquad::rotor_count, [](double most) { return most > 0; })) {
     return "there is no residual: the commands are an affine map of the features";
   }
-  char text[128];
-  std::snprintf(text, sizeof text, "the residual changes a command by at most %.4f %.4f %.4f %.4f", bound[0], bound[1],
-                bound[2], bound[3]);
-  return text;
+  return in_words("the residual changes a command by at most %.4f %.4f %.4f %.4f", bound[0], bound[1], bound[2],
+                  bound[3]);
 }
 
 /// "thrust 0.20 s, roll 0.50 s, pitch none, yaw 1.00 s".
@@ -84,11 +78,8 @@ template <class Times>
 std::string time_constants_in_words(const Times& times_s) {
   std::string words;
   for (std::size_t k = 0; k < sum_names.size(); ++k) {
-    char text[48];
     const auto time_s = static_cast<double>(times_s[k]);
-    time_s > 0 ? std::snprintf(text, sizeof text, "%s %.2f s", sum_names[k], time_s)
-               : std::snprintf(text, sizeof text, "%s none", sum_names[k]);
-    words += (k == 0 ? "" : ", ") + std::string(text);
+    words += (k == 0 ? "" : ", ") + std::string(sum_names[k]) + (time_s > 0 ? in_words(" %.2f s", time_s) : " none");
   }
   return words;
 }
@@ -96,13 +87,10 @@ std::string time_constants_in_words(const Times& times_s) {
 /// The certificate of a model whose bias is learnt in flight.
 inline std::string bias_in_words(const pinnquad::Airframe<double>& airframe) {
   const pinnquad::Commands<double> most = pinnquad::largest_bias(airframe);
-  char text[224];
-  std::snprintf(
-      text, sizeof text,
+  return in_words(
       "with the bias that is learnt in flight the slopes hold as they are, for it is of the past; it changes a "
       "command by at most %.4f %.4f %.4f %.4f besides",
       most[0], most[1], most[2], most[3]);
-  return text;
 }
 
 }  // namespace programs

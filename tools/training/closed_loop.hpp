@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "airframe/choice.hpp"
+#include "command_line/in_words.hpp"
 #include "flight/battery_choice.hpp"
 #include "flight/block_feed_forward.hpp"
 #include "flight/block_loop.hpp"
@@ -194,23 +194,20 @@ inline std::string unfit_to_fly(const nlohmann::json& flown) {
   constexpr double least_answered = 0.5;
   if (!flown.contains("model")) return "";
   const nlohmann::json& model = flown["model"];
-  char text[160] = "";
   if (lost_vehicle(flown)) {
-    std::snprintf(text, sizeof text, "loses the vehicle in the closed loop (%.1f m off)",
-                  model["largest_error_m"].get<double>());
-  } else if (model["answered_share"] < least_answered) {
-    std::snprintf(text, sizeof text, "answers %.1f %% of a figure-eight that the flights' own limits hold",
-                  100 * model["answered_share"].get<double>());
-  } else if (const double rmse_m = model["rmse_m"];
-             rmse_m > flown["without_jerk"]["rmse_m"] &&
-             rmse_m > slack_of_loops * flown["formula"]["rmse_m"].get<double>()) {
-    std::snprintf(text, sizeof text,
-                  "flies a figure-eight %.1f cm off, where the analytic inverse is %.1f cm off without the path's jerk",
-                  100 * rmse_m, 100 * flown["without_jerk"]["rmse_m"].get<double>());
-  } else {
-    return turned_round(flown.value("against_formula", nlohmann::json::object()));
+    return in_words("loses the vehicle in the closed loop (%.1f m off)", model["largest_error_m"].get<double>());
   }
-  return text;
+  if (model["answered_share"] < least_answered) {
+    return in_words("answers %.1f %% of a figure-eight that the flights' own limits hold",
+                    100 * model["answered_share"].get<double>());
+  }
+  const double rmse_m = model["rmse_m"];
+  if (rmse_m > flown["without_jerk"]["rmse_m"] && rmse_m > slack_of_loops * flown["formula"]["rmse_m"].get<double>()) {
+    return in_words(
+        "flies a figure-eight %.1f cm off, where the analytic inverse is %.1f cm off without the path's jerk",
+        100 * rmse_m, 100 * flown["without_jerk"]["rmse_m"].get<double>());
+  }
+  return turned_round(flown.value("against_formula", nlohmann::json::object()));
 }
 
 /// "3.1 cm off a figure-eight (analytic inverse 2.9 cm, without the path's jerk 5.2 cm)"; why there was none where it
@@ -218,12 +215,9 @@ inline std::string unfit_to_fly(const nlohmann::json& flown) {
 inline std::string flight_in_words(const nlohmann::json& flown) {
   if (flown.is_null()) return "not flown here: it looks ahead";
   if (!flown.contains("model")) return "not flown here: " + flown["why_not"].get<std::string>();
-  char errors[160];
-  std::snprintf(errors, sizeof errors,
-                "%.1f cm off a figure-eight (analytic inverse %.1f cm, without the path's jerk %.1f cm)",
-                100 * flown["model"]["rmse_m"].get<double>(), 100 * flown["formula"]["rmse_m"].get<double>(),
-                100 * flown["without_jerk"]["rmse_m"].get<double>());
-  return errors;
+  return in_words("%.1f cm off a figure-eight (analytic inverse %.1f cm, without the path's jerk %.1f cm)",
+                  100 * flown["model"]["rmse_m"].get<double>(), 100 * flown["formula"]["rmse_m"].get<double>(),
+                  100 * flown["without_jerk"]["rmse_m"].get<double>());
 }
 
 /// Whether there is nothing to compare with: the analytic inverse loses the vehicle, or flies worse than without jerk.

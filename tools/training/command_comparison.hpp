@@ -7,13 +7,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/in_words.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/dynamics/allocation.hpp"
 #include "pinnquad/evaluation/summary.hpp"
@@ -68,8 +68,8 @@ inline nlohmann::json comparison_json(const ComparedCommands& compared) {
     if (!(moments.variance_x > 0)) continue;
     const double apart = moments.variance_x + moments.variance_y - 2 * moments.covariance;
     result[sum_names[sum]] = {{"rms_difference", std::sqrt(std::max(apart, 0.0))},
-                                 {"spread", std::sqrt(moments.variance_x)},
-                                 {"slope", moments.covariance / moments.variance_x}};
+                              {"spread", std::sqrt(moments.variance_x)},
+                              {"slope", moments.covariance / moments.variance_x}};
   }
   return result;
 }
@@ -79,10 +79,8 @@ inline std::string comparison_in_words(const nlohmann::json& comparison) {
   std::string words;
   for (const char* const sum : sum_names) {
     if (!comparison.contains(sum)) continue;
-    char text[80];
-    std::snprintf(text, sizeof text, "%s%s %.2f (%.3f)", words.empty() ? "" : ", ", sum,
-                  comparison[sum]["slope"].get<double>(), comparison[sum]["rms_difference"].get<double>());
-    words += text;
+    words += in_words("%s%s %.2f (%.3f)", words.empty() ? "" : ", ", sum, comparison[sum]["slope"].get<double>(),
+                      comparison[sum]["rms_difference"].get<double>());
   }
   return words;
 }
@@ -91,10 +89,8 @@ inline std::string comparison_in_words(const nlohmann::json& comparison) {
 inline std::string turned_round(const nlohmann::json& comparison) {
   for (const char* const sum : sum_names) {
     if (!comparison.contains(sum) || comparison[sum]["slope"] > 0) continue;
-    char text[120];
-    std::snprintf(text, sizeof text, "moves the %s sum of its commands against the formula's, slope %.2f", sum,
-                  comparison[sum]["slope"].get<double>());
-    return text;
+    return in_words("moves the %s sum of its commands against the formula's, slope %.2f", sum,
+                    comparison[sum]["slope"].get<double>());
   }
   return "";
 }

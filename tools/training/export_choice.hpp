@@ -133,7 +133,7 @@ inline pinnquad::Provenance provenance_of(const Fold& fold, const pinnquad::Data
 inline pinnquad::Provenance provenance_of(const TrainedNetwork& model, pinnquad::Provenance from,
                                           const std::optional<pinnquad::SignedSums<double>>& biases,
                                           bool airframe_known) {
-  if (const std::optional<pinnquad::ProvenSigns> signs = model.block()->proven_signs()) {
+  if (const std::optional<pinnquad::BlockModel::ProvenSigns> signs = model.block()->proven_signs()) {
     from.proven_slopes = signs->held_slope;
   } else {
     from.signs_unproven = true;

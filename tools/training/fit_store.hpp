@@ -49,13 +49,7 @@ class FitStore : public KnownFits {
     for (double& error : loaded.chosen_by) {
       if (!read(file, error)) return false;
     }
-    loaded.validation_mae = head.validation_mae;
-    loaded.fit_s = head.fit_s;
-    loaded.biases = head.biases;
-    loaded.looks_ahead_s = head.looks_ahead_s;
-    loaded.derivatives = head.derivatives;
-    loaded.altitude = head.altitude;
-    loaded.proven = head.proven != 0;
+    static_cast<FitFigures&>(loaded) = head.figures;
     job = std::move(loaded);
     return true;
   }
@@ -66,13 +60,7 @@ class FitStore : public KnownFits {
     Head head{};
     head.key = key_of(job);
     head.rows = job.held_out.size();
-    head.validation_mae = job.validation_mae;
-    head.fit_s = job.fit_s;
-    head.biases = job.biases;
-    head.looks_ahead_s = job.looks_ahead_s;
-    head.derivatives = job.derivatives;
-    head.altitude = job.altitude;
-    head.proven = job.proven ? 1 : 0;
+    head.figures = job;
     head.judges = job.chosen_by.size();
     pinnquad::AtomicFile file(path_of(job));
     write(file.stream(), head);
@@ -96,14 +84,9 @@ class FitStore : public KnownFits {
 
   /// As this machine has it in memory: such a file is read by the program that wrote it.
   struct Head {
-    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '6'};
-    std::uint64_t key = 0, rows = 0;
-    double validation_mae = 0, fit_s = 0;
-    pinnquad::BiasTrial biases;
-    double looks_ahead_s = 0;
-    DerivativeFigures derivatives;
-    AltitudeChoice altitude;
-    std::uint64_t proven = 0, judges = 0;
+    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '7'};
+    std::uint64_t key = 0, rows = 0, judges = 0;
+    FitFigures figures;
   };
   static_assert(std::is_trivially_copyable_v<Head>);
 

@@ -47,24 +47,28 @@ struct FitPlan {
   }
 };
 
-/// One kind on one parting from one seed, and what it answers on the rows held out.
-struct FinishedFit {
-  std::size_t kind = 0, fold = 0;  ///< of the plan
-  std::uint64_t seed = 0;
-  Predictions held_out;
+/// Figures of a fit, as a file holds them too.
+struct FitFigures {
   /// Mean absolute error of the commands on the validation rows that it answers; if it was fitted to them on those of
   /// all judges, NaN without.
   double validation_mae = pinnquad::not_a_number;
-  std::vector<double>
-      chosen_by;  ///< root mean square errors that choose between kinds: Fold::judges, or of a slow kind
-                  ///< that on the validation rows
   double fit_s = 0;
   pinnquad::BiasTrial biases;     ///< on validation rows that it was not fitted to; none where there are none
   double looks_ahead_s = 0;       ///< TrainedNetwork::looks_ahead_s()
   DerivativeFigures derivatives;  ///< over the rows held out
-  GuardCounts guard;              ///< of the rows held out
   AltitudeChoice altitude;
-  bool proven = false;                          ///< TrainedNetwork::is_proven()
+  bool proven = false;  ///< TrainedNetwork::is_proven()
+};
+
+/// One kind on one parting from one seed, and what it answers on the rows held out.
+struct FinishedFit : FitFigures {
+  std::size_t kind = 0, fold = 0;  ///< of the plan
+  std::uint64_t seed = 0;
+  Predictions held_out;
+  std::vector<double>
+      chosen_by;      ///< root mean square errors that choose between kinds: Fold::judges, or of a slow kind
+                      ///< that on the validation rows
+  GuardCounts guard;  ///< of the rows held out
   std::shared_ptr<const TrainedNetwork> model;  ///< null: taken from a file of an earlier run
 };
 

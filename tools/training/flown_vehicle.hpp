@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/in_words.hpp"
 #include "identify/identified_vehicle.hpp"
 #include "logs/airframe_doubts.hpp"
 #include "logs/command_curve.hpp"
@@ -94,9 +94,7 @@ inline std::vector<std::string> contradictions(const pinnquad::Identification& f
   std::vector<std::string> lines;
   const auto compare = [&](const std::string& what, const char* unit, double own, double low, double high) {
     if (low <= most_undoubted * own && high >= least_undoubted * own) return;
-    char text[160];
-    std::snprintf(text, sizeof text, "%.3g to %.3g%s in the flights, %.3g of ", low, high, unit, own);
-    lines.push_back(what + " is " + text + given.name);
+    lines.push_back(what + in_words(" is %.3g to %.3g%s in the flights, %.3g of ", low, high, unit, own) + given.name);
   };
   const std::array<double, 4> own = pinnquad::logs::rotor_effects(given.value);
   const double curve = given.value.rotors[0].thrust_curve;
@@ -173,10 +171,8 @@ inline std::string identified_in_words(const pinnquad::Identification& found) {
     for (const char* key : {"thrust_m_s2", "thrust_curve", "roll_effectiveness_rad_s2", "pitch_effectiveness_rad_s2",
                             "yaw_effectiveness_rad_s2", "rotor_lag_s"}) {
       if (number.key != key) continue;
-      char value[32];
-      std::snprintf(value, sizeof value, "%.4g", number.estimate.value);
-      words += (words.empty() ? "" : ", ") + number.words + " " + value + " (" + interval_text(number.estimate) + ") " +
-               number.unit;
+      words += (words.empty() ? "" : ", ") + number.words + in_words(" %.4g", number.estimate.value) + " (" +
+               interval_text(number.estimate) + ") " + number.unit;
     }
   }
   return words;

@@ -4,10 +4,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/evaluation/judgement.hpp"
@@ -111,11 +111,7 @@ inline std::vector<Figure> figures() {
   return list;
 }
 
-inline std::string decimals(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
+inline std::string decimals(double value, int digits) { return in_words("%.*f", digits, value); }
 
 /// "27.5e-3" of 0.0275.
 inline std::string thousandths(double value, int digits) { return decimals(1e3 * value, digits) + "e-3"; }

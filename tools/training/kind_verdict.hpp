@@ -5,11 +5,11 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "pinnquad/evaluation/paired_test.hpp"
 #include "training/judged_kinds.hpp"
 
@@ -101,11 +101,9 @@ inline AgainstSimpler compare_kinds(const JudgedKinds& judged, std::size_t candi
 }
 
 inline std::string change_text(const AgainstSimpler& against) {
-  char text[160];
   const pinnquad::PairedComparison& c = against.flights;
-  std::snprintf(text, sizeof text, "error %+.1f %%, lower on %zu of %zu held-out flights, p = %.2g",
-                100 * c.relative_difference, c.wins, c.pairs, c.p_value);
-  return text;
+  return in_words("error %+.1f %%, lower on %zu of %zu held-out flights, p = %.2g", 100 * c.relative_difference, c.wins,
+                  c.pairs, c.p_value);
 }
 
 inline std::string seeds_text(const AgainstSimpler& against) {
@@ -152,11 +150,9 @@ inline KindVerdict verdict_on_kind(const JudgedKinds& judged, std::size_t candid
   const std::string facts = "(" + detail::change_text(*worst) + detail::seeds_text(*worst) + ")";
   const double r2 = detail::r2_of(judged.kinds[candidate]);
   if (!(r2 > 0)) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f", r2);
     verdict.standing = Standing::worse_than_mean;
     verdict.sentence =
-        std::string("no success: the mean of the held-out commands would be as good or better, R^2 ") + text;
+        in_words("no success: the mean of the held-out commands would be as good or better, R^2 %.2f", r2);
     return verdict;
   }
   switch (verdict.standing) {

@@ -5,7 +5,7 @@
 
 namespace programs {
 
-pinnquad::RunTimeWindow log_window(TimeReach reach) {
+pinnquad::RunTimeFeatures::Window log_window(TimeReach reach) {
   if (reach == TimeReach::present) return {};
   return {9, reach == TimeReach::causal, pinnquad::PeriodMicroseconds<20000>::seconds};
 }
@@ -28,7 +28,7 @@ pinnquad::GroundFeatures log_features(const FitTask& fit, TimeReach reach, Featu
     present.names.emplace_back(BatteryVoltage::name);
     present.units.emplace_back(BatteryVoltage::unit);
   }
-  const pinnquad::RunTimeWindow window = log_window(reach);
+  const pinnquad::RunTimeFeatures::Window window = log_window(reach);
   for (int tap = 0; tap + 1 < window.taps; ++tap) {
     const int offset = window.offset(tap);
     const std::string at = std::string("[") + (offset > 0 ? "+" : "") + std::to_string(offset) + "]";
@@ -61,7 +61,7 @@ pinnquad::GroundFeatures inverse_features(const FitTask& fit, TimeReach reach, b
 }
 
 std::string needs_window(const FitTask& fit) {
-  const pinnquad::RunTimeWindow window = log_window(TimeReach::causal);
+  const pinnquad::RunTimeFeatures::Window window = log_window(TimeReach::causal);
   if (fit.sample_period_s <= window.largest_gap_s) return "";
   const auto milliseconds = [](double seconds) { return std::to_string(static_cast<int>(seconds * 1e3 + 0.5)); };
   return "needs a row every " + milliseconds(window.period_s) + " ms for its window, the logs have one every " +

@@ -12,7 +12,7 @@ namespace programs {
 
 /// Nine instants, 20 ms apart: of planned motions 80 ms to both sides, else the last 160 ms. The present instant alone
 /// for TimeReach::present.
-pinnquad::RunTimeWindow log_window(TimeReach reach);
+pinnquad::RunTimeFeatures::Window log_window(TimeReach reach);
 
 /// In all flights, in volts.
 bool has_battery(const FitTask& fit);

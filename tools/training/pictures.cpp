@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "training/pictures.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 
-#include "command_line/listed.hpp"
 #include "page/text.hpp"
 #include "pinnquad/evaluation/physical_consistency.hpp"
 
@@ -61,34 +58,6 @@ Chart ellipses_chart(const std::vector<EllipsesOf>& models) {
       "dots and plus signs, ellipses, dashed their major axes; the closer the two ellipses, the better" +
       told + ".";
   return chart;
-}
-
-Chart errors_chart(const std::string& title, const std::string& axis, const std::vector<ErrorBar>& bars, double most,
-                   int decimals) {
-  Panel panel;
-  panel.x = {axis, 0, most};
-  Series references{"the paper", Shape::diamonds, colour::orange};
-  std::vector<std::string> told;
-  for (std::size_t i = 0; i < bars.size(); ++i) {
-    const ErrorBar& bar = bars[i];
-    const auto row = static_cast<double>(i);
-    std::string value = std::isfinite(bar.mean) ? shown::number(bar.mean, decimals) : "no figure";
-    told.push_back(bar.name + " " + value);
-    if (bar.mean > most && std::isfinite(bar.reference))
-      value += "; the paper " + shown::number(bar.reference, decimals);
-    const bool has_reference = std::isfinite(bar.reference) && bar.reference <= most;
-    panel.y.rows.push_back(bar.name);
-    panel.series.push_back(
-        {"", Shape::bars, bar.colour, {bar.mean}, {row - (has_reference ? 0.16 : 0)}, 13, bar.opacity});
-    if (bar.mean <= most) panel.series.back().deviation = {bar.deviation};
-    panel.series.back().labels = {value};
-    if (!has_reference) continue;
-    references.x.push_back(bar.reference);
-    references.y.push_back(row + 0.26);
-    references.deviation.push_back(bar.reference_deviation);
-  }
-  if (!references.x.empty()) panel.series.push_back(references);
-  return {title, axis + ": " + listed(told) + ".", {panel}};
 }
 
 }  // namespace programs

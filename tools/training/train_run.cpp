@@ -467,7 +467,7 @@ class Training {
 
   /// Proof of an export's signs, as `certify` finds it in the header.
   void tell_certificate(const BlockModel& model, const SlopesOfSums& known) {
-    const std::optional<ProvenSigns> signs = model.proven_signs();
+    const std::optional<BlockModel::ProvenSigns> signs = model.proven_signs();
     if (!signs) {
       std::printf("  nothing is proven of its signs: `pinnquad certify %s/model.hpp` looks for a counterexample\n",
                   options_.out.c_str());

@@ -103,7 +103,7 @@ Answers BlockNetwork::answers(const pinnquad::RowSet& rows) const {
   counts.rows = rows.size();
   counts.warming_up = rows.size();
   DerivativeSigns signs;
-  const auto take = [&](std::size_t row, const pinnquad::AnsweredRow& answer) {
+  const auto take = [&](std::size_t row, const pinnquad::BlockModel::AnsweredRow& answer) {
     result.predictions[row] = answer.commands;
     signs.add(answer.derivatives);
     --counts.warming_up;
@@ -134,7 +134,7 @@ Answers BlockNetwork::answers(const pinnquad::RowSet& rows) const {
 /// NaN for a row without features and, if `guarded`, for one outside the training envelope.
 Predictions BlockNetwork::commands(const pinnquad::RowSet& rows, bool guarded) const {
   Predictions result = without_answer(rows);
-  const auto take = [&](std::size_t row, const pinnquad::AnsweredRow& answer) {
+  const auto take = [&](std::size_t row, const pinnquad::BlockModel::AnsweredRow& answer) {
     if (answer.inside_envelope || !guarded) result[row] = answer.commands;
   };
   block_.answer(rows, take, false);
@@ -147,7 +147,7 @@ void write_replay(const std::string& path, const pinnquad::BlockModel& model, co
   const bool with_altitude = features.asks_for_altitude();
   std::size_t count = 0, asked = 0;
   std::string lines;
-  const auto take = [&](std::size_t row, const pinnquad::AnsweredRow& answer) {
+  const auto take = [&](std::size_t row, const pinnquad::BlockModel::AnsweredRow& answer) {
     const pinnquad::Sample& sample = rows[row];
     std::vector<double> numbers = !asks_for_motion    ? answer.features
                                   : model.is_double() ? motion_numbers<double>(sample, with_altitude)

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "page/page.hpp"
 #include "training/drawings.hpp"
@@ -233,16 +233,16 @@ inline nlohmann::json moments_json(const TrainingPage& in, const std::vector<std
   for (const WorstMoment& moment : moments) {
     const pinnquad::Sample& sample = (*moment.flight)[moment.row];
     const auto watched = in.watched.find(moment.flight->name);
-    char seconds[32];
-    std::snprintf(seconds, sizeof seconds, "%.2f", std::max(0.0, sample.time_s - watched_from_s(*moment.flight) - 1));
-    nlohmann::json one = {{"flight", moment.flight->name},
-                          {"time", shown::number(sample.time_s, 2)},
-                          {"motor", "u" + std::to_string(moment.motor + 1)},
-                          {"facts", facts_of(moment, in.dataset)},
-                          {"happened", what_happened(moment, in.dataset)},
-                          {"watch", watched == in.watched.end() ? nlohmann::json(false)
-                                                                : nlohmann::json(watched->second + "#t=" + seconds)},
-                          {"drawing", false}};
+    const double from_s = std::max(0.0, sample.time_s - watched_from_s(*moment.flight) - 1);
+    nlohmann::json one = {
+        {"flight", moment.flight->name},
+        {"time", shown::number(sample.time_s, 2)},
+        {"motor", "u" + std::to_string(moment.motor + 1)},
+        {"facts", facts_of(moment, in.dataset)},
+        {"happened", what_happened(moment, in.dataset)},
+        {"watch", watched == in.watched.end() ? nlohmann::json(false)
+                                              : nlohmann::json(watched->second + in_words("#t=%.2f", from_s))},
+        {"drawing", false}};
     if (list.size() < drawn) {
       std::vector<const Predictions*> predictions;
       for (const std::size_t k : shown) predictions.push_back(shown_predictions(in, k)[moment.fold]);
@@ -393,9 +393,7 @@ inline nlohmann::json vehicle_told(const nlohmann::json& report) {
   told["why_not"] =
       vehicle["not_identified_because"].is_string() ? vehicle["not_identified_because"] : nlohmann::json(false);
   const auto text = [](const nlohmann::json& number) {
-    char written[32] = "–";
-    if (number.is_number()) std::snprintf(written, sizeof written, "%.3g", number.get<double>());
-    return std::string(written);
+    return number.is_number() ? in_words("%.3g", number.get<double>()) : "–";
   };
   for (const auto& [key, number] : vehicle["numbers"].items()) {
     told["rows"].push_back({{"name", key},

@@ -300,7 +300,7 @@ class TrainingReport {
   }
 
   /// Of what was exported.
-  void certified(const pinnquad::ProvenSigns& signs, const pinnquad::Airframe<double>& airframe,
+  void certified(const pinnquad::BlockModel::ProvenSigns& signs, const pinnquad::Airframe<double>& airframe,
                  const pinnquad::SlopesOfSums& known) {
     const std::optional<pinnquad::Certificate>& structure = signs.structure;
     json_["certificate"] = {{"proven", true},

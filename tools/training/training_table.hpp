@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "training/certificate_words.hpp"
 #include "training/kind_figures.hpp"
@@ -94,10 +95,8 @@ inline void print_training_time(const JudgedKinds& judged) {
   std::string kinds;
   for (const JudgedKind& kind : judged.kinds) {
     if (!kind.applicable() || !kind.kind.seeded) continue;
-    char text[96];
     const double mean = pinnquad::summarize(per_seed(kind, [](const JudgedFit& fit) { return fit.fit_s; })).mean;
-    std::snprintf(text, sizeof text, "%s %.2f s", kind.kind.title, mean);
-    add_to_list(kinds, text);
+    add_to_list(kinds, in_words("%s %.2f s", kind.kind.title, mean));
   }
   if (!kinds.empty()) std::printf("  training took, per model and core: %s\n", kinds.c_str());
 }

@@ -10,7 +10,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "pinnquad/core/body.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/features/features.hpp"
@@ -75,7 +74,14 @@ class FlightInputs {
 namespace detail {
 /// Values of a flight's extra column. Throws std::invalid_argument, one line, for one that is absent or in another
 /// unit.
-const std::vector<double>& column_values(const Flight& flight, const std::string& name, const std::string& unit);
+inline const std::vector<double>& column_values(const Flight& flight, const std::string& name,
+                                                const std::string& unit) {
+  const ExtraColumn* column = flight.column(name);
+  const std::string expected = "flight '" + flight.name + "': expected a column " + name + " in " + unit + ", found ";
+  if (column == nullptr) throw std::invalid_argument(expected + "none of that name");
+  if (column->unit != unit) throw std::invalid_argument(expected + "it in " + column->unit);
+  return column->values;
+}
 }  // namespace detail
 
 /// Inputs with extra columns, found by name. Throws std::invalid_argument for one that is absent or in another unit.
@@ -190,7 +196,3 @@ void each_features(
 }
 
 }  // namespace pinnquad
-
-#ifndef PINNQUAD_COMPILED
-#include "pinnquad/data/impl/flight_features.hpp"
-#endif

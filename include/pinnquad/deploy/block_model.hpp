@@ -25,25 +25,25 @@
 
 namespace pinnquad {
 
-/// The answer of a model to a row.
-struct AnsweredRow {
-  Commands<double> commands{};  ///< in the model's own scalar
-  AxisSlopes derivatives{};     ///< in double; of a window by an acceleration that is held
-  bool inside_envelope = true;
-  std::vector<double> features{};  ///< in physical units, as the model's own scalar holds them
-};
-
-/// Each signed sum of the commands rises with the angular acceleration about its axis, for all finite features.
-struct ProvenSigns {
-  /// s^2/rad: by the present angular acceleration alone, and by one that is held over the window.
-  AxisSlopes slope{}, held_slope{};
-  /// The proof's argument; none: the model is affine, its derivatives are the same everywhere.
-  std::optional<Certificate> structure{};
-};
-
 /// A block of a file, ready to predict: in float or double, as it was written.
 class BlockModel {
  public:
+  /// The answer of a model to a row.
+  struct AnsweredRow {
+    Commands<double> commands{};  ///< in the model's own scalar
+    AxisSlopes derivatives{};     ///< in double; of a window by an acceleration that is held
+    bool inside_envelope = true;
+    std::vector<double> features{};  ///< in physical units, as the model's own scalar holds them
+  };
+
+  /// Each signed sum of the commands rises with the angular acceleration about its axis, for all finite features.
+  struct ProvenSigns {
+    /// s^2/rad: by the present angular acceleration alone, and by one that is held over the window.
+    AxisSlopes slope{}, held_slope{};
+    /// The proof's argument; none: the model is affine, its derivatives are the same everywhere.
+    std::optional<Certificate> structure{};
+  };
+
   /// Reads a file. Throws InputError, one line: not readable, no block that describes itself, one that contradicts
   /// itself, one whose weights do not give its golden commands.
   explicit BlockModel(const std::string& path) : BlockModel(path, file_text(path)) {}

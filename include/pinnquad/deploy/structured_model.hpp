@@ -29,7 +29,7 @@ struct StructuredFit : detail::SeedFit {
 
 /// The fits of all seeds that were finished, in the order of the seeds. A model has its residual where that helps.
 struct StructuredFits {
-  StructuredAltitude altitude;
+  FitWork::Altitude altitude;
   std::vector<StructuredFit> models;
 
   /// The model with the least error on the validation rows. Throws std::logic_error where no model was finished.

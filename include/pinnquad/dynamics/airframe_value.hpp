@@ -2,6 +2,8 @@
 // The value of an airframe's type. An airframe that can't be that of a flying quadrotor is a compile error.
 #pragma once
 
+#include <type_traits>
+
 #include "pinnquad/dynamics/rotor.hpp"
 
 namespace pinnquad {
@@ -50,30 +52,12 @@ constexpr std::array<RotorMount<Scalar>, rotor_count> x_rotors(Scalar forward_m,
 /// The same airframe, every number rounded to `To`: what a struct written by deploy/airframe_writer.hpp has.
 template <class To>
 constexpr Airframe<To> airframe_in(const Airframe<double>& from) noexcept {
-  const auto one = [](double v) { return static_cast<To>(v); };
-  const auto three = [one](const std::array<double, 3>& v) {
-    return std::array<To, 3>{one(v[0]), one(v[1]), one(v[2])};
-  };
+  double numbers[airframe_number_count] = {};
+  double* next = static_cast<double*>(numbers);
+  each_number(from, [&next](auto number) { *next++ = static_cast<double>(number); });
+  next = static_cast<double*>(numbers);
   Airframe<To> a{};
-  a.mass_kg = one(from.mass_kg);
-  a.inertia_kg_m2 = three(from.inertia_kg_m2);
-  a.inertia_products_kg_m2 = three(from.inertia_products_kg_m2);
-  for (std::size_t i = 0; i < rotor_count; ++i) {
-    const RotorMount<double>& r = from.rotors[i];
-    RotorMount<To>& to = a.rotors[i];
-    to = {one(r.x_m), one(r.y_m), r.spin, one(r.z_m), three(r.axis)};
-    to.thrust_scale = one(r.thrust_scale);
-    to.thrust_curve = one(r.thrust_curve);
-    to.rise_time_constant_s = one(r.rise_time_constant_s);
-    to.fall_time_constant_s = one(r.fall_time_constant_s);
-  }
-  a.thrust_coefficient = one(from.thrust_coefficient);
-  a.power_coefficient = one(from.power_coefficient);
-  a.propeller_diameter_m = one(from.propeller_diameter_m);
-  a.max_rotor_speed_rev_s = one(from.max_rotor_speed_rev_s);
-  a.rotor_time_constant_s = one(from.rotor_time_constant_s);
-  a.drag_area_m2 = three(from.drag_area_m2);
-  a.drag_deadband_m_s = one(from.drag_deadband_m_s);
+  each_number(a, [&next](auto& number) { number = static_cast<std::decay_t<decltype(number)>>(*next++); });
   return a;
 }
 

@@ -29,7 +29,7 @@ template <class Scalar>
 bool run_time_certificate(const RunTimeModel<Scalar>& model, Certificate& certificate) noexcept {
   const RunTimeNetwork& network = model.network();
   const RunTimeFeatures& features = model.features();
-  const RunTimePart& base = network.part(0);
+  const RunTimeNetwork::Part& base = network.part(0);
   if (!model.outputs().is_axis_commands() || !base.axis_aligned || network.part_count() > 2) return false;
   if (!detail::threes_cover_acceleration(
           static_cast<const int*>(base.threes), base.three_count, features.size(),
@@ -39,7 +39,7 @@ bool run_time_certificate(const RunTimeModel<Scalar>& model, Certificate& certif
   }
   const bool has_residual = network.part_count() == 2;
   if (has_residual) {
-    const RunTimePart& residual = network.part(1);
+    const RunTimeNetwork::Part& residual = network.part(1);
     if (!residual.bounded || residual.axis_aligned) return false;
     bool withheld = residual.three_count == base.three_count;
     for (int tap = 0; withheld && tap < base.three_count; ++tap) withheld = residual.threes[tap] == base.threes[tap];

@@ -36,33 +36,33 @@ RunTimeInputs<Scalar> interpolated(const RunTimeInputs<Scalar>& a, const RunTime
   return result;
 }
 
-/// The instants of a window, as detail::TapWindow.
-struct RunTimeWindow {
-  static constexpr int most_taps = 64;
-
-  int taps = 1;
-  bool causal = true;
-  double period_s = 0;
-  double earliest_s = 0, latest_s = 0, largest_gap_s = 0, tolerance_s = 0;
-
-  RunTimeWindow() noexcept = default;
-  RunTimeWindow(int taps_, bool causal_, double period_s_) noexcept
-      : taps(taps_),
-        causal(causal_),
-        period_s(period_s_),
-        earliest_s(causal_ ? -(taps_ - 1) * period_s_ : -((taps_ - 1) / 2) * period_s_),
-        latest_s(causal_ ? 0.0 : ((taps_ - 1) / 2) * period_s_),
-        largest_gap_s(1.5 * period_s_),
-        tolerance_s(1e-4 * period_s_) {}
-
-  /// In periods from the present, of the tap of this number behind the present one.
-  int offset(int tap) const noexcept { return causal ? Causal::offset(taps, tap) : Centred::offset(taps, tap); }
-  double offset_s(int tap) const noexcept { return offset(tap) * period_s; }
-};
-
 /// The texts are read where they stand: they must stay there.
 class RunTimeFeatures {
  public:
+  /// The instants of a window, as detail::TapWindow.
+  struct Window {
+    static constexpr int most_taps = 64;
+
+    int taps = 1;
+    bool causal = true;
+    double period_s = 0;
+    double earliest_s = 0, latest_s = 0, largest_gap_s = 0, tolerance_s = 0;
+
+    Window() noexcept = default;
+    Window(int taps_, bool causal_, double period_s_) noexcept
+        : taps(taps_),
+          causal(causal_),
+          period_s(period_s_),
+          earliest_s(causal_ ? -(taps_ - 1) * period_s_ : -((taps_ - 1) / 2) * period_s_),
+          latest_s(causal_ ? 0.0 : ((taps_ - 1) / 2) * period_s_),
+          largest_gap_s(1.5 * period_s_),
+          tolerance_s(1e-4 * period_s_) {}
+
+    /// In periods from the present, of the tap of this number behind the present one.
+    int offset(int tap) const noexcept { return causal ? Causal::offset(taps, tap) : Centred::offset(taps, tap); }
+    double offset_s(int tap) const noexcept { return offset(tap) * period_s; }
+  };
+
   static constexpr int most_features = 512;
   static constexpr int most_columns = RunTimeInputs<float>::most_columns;
 
@@ -74,8 +74,8 @@ class RunTimeFeatures {
   /// `texts`: name and unit of each feature, every one closed by a 0. False for texts that are no such list, a tap that
   /// the window has not or that no feature is of, a name of the library with another unit, a name that stands twice,
   /// and for more columns or features than there is room for.
-  bool read(std::string_view texts, int count, const RunTimeWindow& window) noexcept {
-    if (count < 1 || count > most_features || window.taps < 1 || window.taps > RunTimeWindow::most_taps) return false;
+  bool read(std::string_view texts, int count, const Window& window) noexcept {
+    if (count < 1 || count > most_features || window.taps < 1 || window.taps > Window::most_taps) return false;
     window_ = window;
     size_ = count;
     column_count_ = 0;
@@ -100,7 +100,7 @@ class RunTimeFeatures {
 
   int size() const noexcept { return size_; }
   const Named& operator[](int feature) const noexcept { return features_[feature].named; }
-  const RunTimeWindow& window() const noexcept { return window_; }
+  const Window& window() const noexcept { return window_; }
   /// Columns that it asks for, in the order of RunTimeInputs::columns.
   int column_count() const noexcept { return column_count_; }
   const Named& column(int index) const noexcept { return columns_[index]; }
@@ -175,7 +175,7 @@ class RunTimeFeatures {
   }
 
   bool uses_its_window() const noexcept {
-    bool used[RunTimeWindow::most_taps] = {};
+    bool used[Window::most_taps] = {};
     int taps = 0;
     for (int i = 0; i < size_; ++i) {
       bool& of_tap = used[features_[i].tap];
@@ -214,7 +214,7 @@ class RunTimeFeatures {
     const char sign = name[bracket + 1];
     int periods = 0;
     for (const char digit : digits) {
-      if (digit < '0' || digit > '9' || periods > RunTimeWindow::most_taps) return false;
+      if (digit < '0' || digit > '9' || periods > Window::most_taps) return false;
       periods = 10 * periods + (digit - '0');
     }
     if ((sign != '-' && sign != '+') || digits.empty()) return false;
@@ -229,7 +229,7 @@ class RunTimeFeatures {
 
   Feature features_[most_features];
   Named columns_[most_columns];
-  RunTimeWindow window_;
+  Window window_;
   int size_ = 0;
   int column_count_ = 0;
 };

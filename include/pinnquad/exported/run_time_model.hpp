@@ -210,8 +210,8 @@ class RunTimeModel {
         network_.parameter_count() != int(parameters) || network_.is_double() != (sizeof(Scalar) == 8)) {
       return corrupt("a description of its inputs, outputs and parameters", "one of others");
     }
-    const RunTimeWindow window(static_cast<int>(records_.window_taps < 65 ? records_.window_taps : 65),
-                               records_.causal != 0, detail::seconds_of(records_.sample_period_ns));
+    const RunTimeFeatures::Window window(static_cast<int>(records_.window_taps < 65 ? records_.window_taps : 65),
+                                         records_.causal != 0, detail::seconds_of(records_.sample_period_ns));
     if (window.taps > 1 && !window.causal && window.taps % 2 == 0)
       return corrupt("an odd centred window", "an even one");
     if (!features_.read(records_.features, int(inputs), window)) {

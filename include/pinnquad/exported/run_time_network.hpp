@@ -19,50 +19,6 @@
 #include "pinnquad/nn/layer_norm.hpp"
 
 namespace pinnquad {
-inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// A layer of a description: dense where it has outputs, a norm where it has `normalised`, Glu where it has `gated`,
-/// else the activation of that place in Activations.
-struct RunTimeLayer {
-  int outputs = 0;
-  bool has_bias = true;
-  int normalised = 0;   ///< numbers of LayerNorm, or of RmsNorm
-  bool centred = true;  ///< LayerNorm
-  int gated = 0;        ///< numbers that a Glu gives
-  int activation = -1;
-};
-
-/// A part of a predictor. Its parameters lie as the compiled part's: bounds, slopes, weights row by row, biases.
-struct RunTimePart {
-  static constexpr int most_layers = 32;
-  static constexpr int most_threes = 64;
-
-  RunTimeLayer layers[most_layers];
-  int layer_count = 0;
-  int threes[most_threes] = {};  ///< where features in threes begin: not shown to it, or shown one per axis
-  int three_count = 0;
-  int inputs = 0;
-  int outputs = 0;
-  int parameter_count = 0;
-  int widest = 0;             ///< most numbers between two layers
-  bool axis_aligned = false;  ///< pinnquad::AxisAligned
-  bool bounded = false;       ///< pinnquad::Saturated: its first parameters are lower and upper bounds of the outputs
-
-  /// Features that all of it is shown.
-  constexpr int shown() const noexcept { return inputs - 3 * three_count; }
-  /// Calls visit(feature) for each of them, ascending.
-  template <class Visit>
-  constexpr void each_shown(const Visit& visit) const noexcept {
-    int feature = 0;
-    for (int i = 0; i < three_count; ++i, feature += 3) {
-      while (feature < threes[i]) visit(feature++);
-    }
-    while (feature < inputs) visit(feature++);
-  }
-};
-
-}  // namespace PINNQUAD_INSTRUCTION_SET
-
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
@@ -80,6 +36,46 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// A predictor, or the sum of a few, added from left to right.
 class RunTimeNetwork {
  public:
+  /// A layer of a description: dense where it has outputs, a norm where it has `normalised`, Glu where it has `gated`,
+  /// else the activation of that place in Activations.
+  struct Layer {
+    int outputs = 0;
+    bool has_bias = true;
+    int normalised = 0;   ///< numbers of LayerNorm, or of RmsNorm
+    bool centred = true;  ///< LayerNorm
+    int gated = 0;        ///< numbers that a Glu gives
+    int activation = -1;
+  };
+
+  /// A part of a predictor. Its parameters lie as the compiled part's: bounds, slopes, weights row by row, biases.
+  struct Part {
+    static constexpr int most_layers = 32;
+    static constexpr int most_threes = 64;
+
+    Layer layers[most_layers];
+    int layer_count = 0;
+    int threes[most_threes] = {};  ///< where features in threes begin: not shown to it, or shown one per axis
+    int three_count = 0;
+    int inputs = 0;
+    int outputs = 0;
+    int parameter_count = 0;
+    int widest = 0;             ///< most numbers between two layers
+    bool axis_aligned = false;  ///< pinnquad::AxisAligned
+    bool bounded = false;       ///< pinnquad::Saturated: its first parameters are lower and upper bounds of the outputs
+
+    /// Features that all of it is shown.
+    constexpr int shown() const noexcept { return inputs - 3 * three_count; }
+    /// Calls visit(feature) for each of them, ascending.
+    template <class Visit>
+    constexpr void each_shown(const Visit& visit) const noexcept {
+      int feature = 0;
+      for (int i = 0; i < three_count; ++i, feature += 3) {
+        while (feature < threes[i]) visit(feature++);
+      }
+      while (feature < inputs) visit(feature++);
+    }
+  };
+
   static constexpr int most_parts = 4;
   static constexpr int widest_layer = 1 << 14;
   static constexpr int most_parameters = 1 << 28;
@@ -100,7 +96,7 @@ class RunTimeNetwork {
   }
 
   int part_count() const noexcept { return part_count_; }
-  const RunTimePart& part(int index) const noexcept { return parts_[index]; }
+  const Part& part(int index) const noexcept { return parts_[index]; }
   bool is_double() const noexcept { return is_double_; }
   int inputs() const noexcept { return parts_[0].inputs; }
   int outputs() const noexcept { return parts_[0].outputs; }
@@ -145,27 +141,27 @@ class RunTimeNetwork {
   }
 
   /// "features, place, ...": threes that do not overlap, and a feature beside them.
-  static bool take_threes(detail::DescriptionReader& reader, RunTimePart& part) noexcept {
+  static bool take_threes(detail::DescriptionReader& reader, Part& part) noexcept {
     part.inputs = reader.number(widest_layer);
     int free_from = 0;
     while (reader.take(",")) {
       const int place = reader.number(widest_layer);
-      if (place < free_from || part.three_count == RunTimePart::most_threes) return false;
+      if (place < free_from || part.three_count == Part::most_threes) return false;
       part.threes[part.three_count++] = place;
       free_from = place + 3;
     }
     return part.three_count > 0 && free_from <= part.inputs && part.shown() > 0;
   }
 
-  bool take_network(detail::DescriptionReader& reader, RunTimePart& part) noexcept {
+  bool take_network(detail::DescriptionReader& reader, Part& part) noexcept {
     if (!reader.take("pinnquad::Network<") || !take_scalar(reader) || !reader.take(",")) return false;
     if (!reader.take("pinnquad::Inputs<")) return false;
     int width = part.inputs = part.widest = reader.number(widest_layer);
     if (width < 1 || !reader.take(">")) return false;
     long long parameters = 0;
     while (reader.take(",")) {
-      if (part.layer_count == RunTimePart::most_layers) return false;
-      RunTimeLayer& layer = part.layers[part.layer_count++];
+      if (part.layer_count == Part::most_layers) return false;
+      Layer& layer = part.layers[part.layer_count++];
       layer.centred = reader.take("pinnquad::LayerNorm<");
       if (layer.centred || reader.take("pinnquad::RmsNorm<")) {
         layer.normalised = reader.number(width);
@@ -196,7 +192,7 @@ class RunTimeNetwork {
     return true;
   }
 
-  static bool take_activation(detail::DescriptionReader& reader, RunTimeLayer& layer) noexcept {
+  static bool take_activation(detail::DescriptionReader& reader, Layer& layer) noexcept {
     int place = 0;
     for (const auto& known : detail::run_time_activations<float>) {
       if (reader.take_name(known.description)) {
@@ -208,7 +204,7 @@ class RunTimeNetwork {
     return false;
   }
 
-  bool take_shown(detail::DescriptionReader& reader, RunTimePart& part) noexcept {
+  bool take_shown(detail::DescriptionReader& reader, Part& part) noexcept {
     if (!reader.take("pinnquad::Withheld<")) return take_network(reader, part);
     if (!take_network(reader, part) || !reader.take(",")) return false;
     const int shown = part.inputs;
@@ -216,7 +212,7 @@ class RunTimeNetwork {
   }
 
   bool take_part(detail::DescriptionReader& reader) noexcept {
-    RunTimePart& part = parts_[part_count_];
+    Part& part = parts_[part_count_];
     if (reader.take("pinnquad::AxisAligned<")) {
       part.axis_aligned = true;
       if (!take_scalar(reader) || !reader.take(",") || !take_threes(reader, part) || !reader.take(">")) return false;
@@ -229,7 +225,7 @@ class RunTimeNetwork {
     } else if (!take_shown(reader, part)) {
       return false;
     }
-    const RunTimePart& first = parts_[0];
+    const Part& first = parts_[0];
     if (part.inputs != first.inputs || part.outputs != first.outputs) return false;
     parameter_count_ += part.parameter_count;
     ++part_count_;
@@ -237,7 +233,7 @@ class RunTimeNetwork {
   }
 
   template <class Number, int Count, detail::RunTimeEntry Kind, class Scalar>
-  static void run(const RunTimePart& part, const Scalar* own, const Values<Number, Count>* x, Values<Number, Count>* y,
+  static void run(const Part& part, const Scalar* own, const Values<Number, Count>* x, Values<Number, Count>* y,
                   Values<Number, Count>* work, Values<Number, Count>* spare) noexcept {
     if (part.axis_aligned) return run_axis_aligned<Number, Count, Kind>(part, own, x, y);
     const Scalar* const bounds = own;
@@ -245,7 +241,7 @@ class RunTimeNetwork {
     int width = 0;
     part.each_shown([&](int feature) { work[width++] = x[feature]; });
     for (int i = 0; i < part.layer_count; ++i) {
-      const RunTimeLayer& layer = part.layers[i];
+      const Layer& layer = part.layers[i];
       if (layer.normalised > 0) {
         normalise<Number, Count, Kind>(layer, own, work);
         own += 2 * layer.normalised;
@@ -278,7 +274,7 @@ class RunTimeNetwork {
 
   /// As AxisAligned::forward(): the intercept, the other features, then each axis' own of every tap.
   template <class Number, int Count, detail::RunTimeEntry Kind, class Scalar>
-  static void run_axis_aligned(const RunTimePart& part, const Scalar* slopes, const Values<Number, Count>* x,
+  static void run_axis_aligned(const Part& part, const Scalar* slopes, const Values<Number, Count>* x,
                                Values<Number, Count>* y) noexcept {
     const int others = part.shown();
     const Scalar* const weights = slopes + 3 * part.three_count;
@@ -323,7 +319,7 @@ class RunTimeNetwork {
 
   /// In place, as NormLayer.
   template <class Number, int Count, detail::RunTimeEntry Kind, class Scalar>
-  static void normalise(const RunTimeLayer& layer, const Scalar* own, Values<Number, Count>* values) noexcept {
+  static void normalise(const Layer& layer, const Scalar* own, Values<Number, Count>* values) noexcept {
     constexpr int rows = Kind == detail::RunTimeEntry::lanes ? Count : 1;
     const int count = layer.normalised;
     Number* const numbers = values->data();
@@ -371,7 +367,7 @@ class RunTimeNetwork {
     }
   }
 
-  RunTimePart parts_[most_parts];
+  Part parts_[most_parts];
   int part_count_ = 0;
   int parameter_count_ = 0;
   bool is_double_ = false;

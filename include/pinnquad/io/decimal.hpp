@@ -11,7 +11,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "pinnquad/core/body.hpp"
 #include "pinnquad/core/finite.hpp"
 
 // PINNQUAD_NUMBERS_BY_LOCALE, defined for a whole program, takes the second way where both are: for tests.
@@ -141,16 +140,25 @@ inline char* print_number(char* buffer, double value) {
 }  // namespace detail
 
 /// Shortest text that reads back to the same bits.
-std::string number_text(double value);
+inline std::string number_text(double value) {
+  char buffer[detail::longest_number];
+  return std::string(buffer, detail::print_number(buffer, value));
+}
 
 /// The whole cell as a finite number; a leading plus sign is accepted.
-bool parse_number(std::string_view cell, double& value);
+inline bool parse_number(std::string_view cell, double& value) {
+  const char* first = cell.data();
+  const char* const last = first + cell.size();
+  if (cell.size() > 1 && cell[0] == '+' && cell[1] != '-') ++first;
+  return detail::read_number(first, last, value);
+}
 
 /// "0x" and sixteen digits: how hashes are written.
-std::string hexadecimal(std::uint64_t value);
+inline std::string hexadecimal(std::uint64_t value) {
+  char text[17];
+  const auto end = std::to_chars(text, text + 16, value, 16).ptr;
+  const std::string digits(text, end);
+  return "0x" + std::string(16 - digits.size(), '0') + digits;
+}
 
 }  // namespace pinnquad
-
-#ifndef PINNQUAD_COMPILED
-#include "pinnquad/io/impl/decimal.hpp"
-#endif

@@ -8,6 +8,7 @@
 
 namespace pinnquad {
 
+namespace detail {
 /// A Dense or DenseWithoutBias, bound.
 template <class ScalarType, int In, int Out, bool HasBias = true>
 struct DenseLayer {
@@ -24,7 +25,7 @@ struct DenseLayer {
   /// y = activate(W x + b), in one pass; `Activation` is an element-wise layer, or void.
   template <class Activation, class X>
   static PINNQUAD_ALWAYS_INLINE void forward_fused(const Scalar* parameters, const X& x, Scalar* y) noexcept {
-    forward_some<Out>(parameters, 0, x, y, detail::Activate<Activation>{});
+    forward_some<Out>(parameters, 0, x, y, Activate<Activation>{});
   }
 
   /// y[0, Count) = activate(W x + b) for the `Count` neurons from `first` on. Inputs that the kernel holds all at a
@@ -35,7 +36,7 @@ struct DenseLayer {
     if constexpr (HasBias) {
       multiply_row_major<Count, In>(parameters + first * In, parameters + weight_count + first, x, y, activate);
     } else {
-      multiply_row_major<Count, In>(parameters + first * In, detail::NoBias<Scalar>{}, x, y, activate);
+      multiply_row_major<Count, In>(parameters + first * In, NoBias<Scalar>{}, x, y, activate);
     }
   }
   /// y += what the `Count` inputs from `first` on, x[0, Count), give to W x. The sums of forward() are b and then all
@@ -47,7 +48,6 @@ struct DenseLayer {
   }
 };
 
-namespace detail {
 template <class T>
 inline constexpr bool is_dense_with_bias = false;
 template <class Scalar, int In, int Out>
@@ -58,14 +58,14 @@ inline constexpr bool is_dense_with_bias<DenseLayer<Scalar, In, Out>> = true;
 template <int Out>
 struct Dense {
   template <class Scalar, int In>
-  using Bind = DenseLayer<Scalar, In, Out>;
+  using Bind = detail::DenseLayer<Scalar, In, Out>;
 };
 
 /// `Out` neurons without bias: what stands before a BatchNorm.
 template <int Out>
 struct DenseWithoutBias {
   template <class Scalar, int In>
-  using Bind = DenseLayer<Scalar, In, Out, false>;
+  using Bind = detail::DenseLayer<Scalar, In, Out, false>;
 };
 
 }  // namespace pinnquad

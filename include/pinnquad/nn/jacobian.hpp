@@ -68,7 +68,7 @@ PINNQUAD_ALWAYS_INLINE void pull_back_product(const Scalar* weight, const Scalar
 
 /// Of a dense layer: its weights, transposed.
 template <class Scalar, int In, int Out, bool HasBias>
-struct PullBack<DenseLayer<Scalar, In, Out, HasBias>> {
+struct PullBack<detail::DenseLayer<Scalar, In, Out, HasBias>> {
   template <class Pack, int Rows, int Stride, class Finish>
   static PINNQUAD_ALWAYS_INLINE void run(const Scalar* parameters, const Scalar*, const Scalar*,
                                          const Scalar* by_output, Scalar* by_input, const Finish& finish) noexcept {

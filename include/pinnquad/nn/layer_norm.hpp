@@ -53,7 +53,6 @@ PINNQUAD_ALWAYS_INLINE Normalised<Number> normalised(const Number* x, int count,
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
 
 /// A LayerNorm or RmsNorm, bound.
 template <class ScalarType, int Size, int Count, bool Centred>
@@ -71,8 +70,8 @@ struct NormLayer {
     for (int i = Count; i < Size; ++i) y[i] = x[i];
   }
   /// The first Count numbers, normalised.
-  static PINNQUAD_ALWAYS_INLINE detail::Normalised<Scalar> of(const Scalar* x) noexcept {
-    return detail::normalised(x, Count, 1, Centred);
+  static PINNQUAD_ALWAYS_INLINE Normalised<Scalar> of(const Scalar* x) noexcept {
+    return normalised(x, Count, 1, Centred);
   }
   /// Gradients by the outputs become those by the inputs.
   static PINNQUAD_ALWAYS_INLINE void pull_back(const Scalar* parameters, const Scalar* x, const Scalar* by_output,
@@ -94,18 +93,20 @@ struct NormLayer {
   }
 };
 
+}  // namespace detail
+
 /// Normalises the first `Count` numbers to a mean of 0 and a variance of 1. The formula is at the head of this file.
 template <int Count>
 struct LayerNorm {
   template <class Scalar, int In>
-  using Bind = NormLayer<Scalar, In, Count, true>;
+  using Bind = detail::NormLayer<Scalar, In, Count, true>;
 };
 
 /// The same without taking the mean off.
 template <int Count>
 struct RmsNorm {
   template <class Scalar, int In>
-  using Bind = NormLayer<Scalar, In, Count, false>;
+  using Bind = detail::NormLayer<Scalar, In, Count, false>;
 };
 
 }  // namespace pinnquad

@@ -9,7 +9,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "pinnquad/core/body.hpp"
 #include "pinnquad/exported/stated_bounds.hpp"
 #include "pinnquad/training/ground_features.hpp"
 #include "pinnquad/training/trained_model.hpp"
@@ -58,7 +57,11 @@ void take_features(AskedModel& asked) {
 }
 
 /// Statistics of every feature, physical units.
-std::vector<ColumnStatistics> feature_statistics(const AskedModel& model, const RowSet& rows);
+inline std::vector<ColumnStatistics> feature_statistics(const AskedModel& model, const RowSet& rows) {
+  return column_statistics({model.units.begin(), model.units.end()}, [&](const RowVisit& visit) {
+    model.each_exact_row(rows, [&](const Flight&, std::size_t, const double* x) { visit(x); });
+  });
+}
 
 /// Without rows: of a model whose Inputs no row has.
 template <class Model>
@@ -101,7 +104,3 @@ AskedModel::AskedModel(const Model& model) : AskedModel(detail::asked_without_ro
 }
 
 }  // namespace pinnquad
-
-#ifndef PINNQUAD_COMPILED
-#include "pinnquad/training/impl/asked_model.hpp"
-#endif

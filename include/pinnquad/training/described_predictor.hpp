@@ -66,7 +66,7 @@ class DescribedPredictor {
       : DescribedPredictor(text.description, std::move(parameters)) {}
   /// Inputs of the last layer of its first part.
   int last_width() const {
-    const RunTimePart& part = network_->part(0);
+    const RunTimeNetwork::Part& part = network_->part(0);
     int width = part.shown(), last = width;
     for (int i = 0; i < part.layer_count; ++i) {
       if (part.layers[i].outputs == 0) continue;

@@ -27,7 +27,7 @@ struct GroundFeatures {
   std::string type;  ///< as a header names it
   std::vector<std::string> names, units;
   std::vector<ColumnName> columns;  ///< that it asks of a flight
-  RunTimeWindow window;
+  RunTimeFeatures::Window window;
   std::vector<int> accelerations;  ///< places of each tap's angular acceleration about x, the present first
   EachRow each_row;                ///< worked out in float
   EachRow each_exact_row;          ///< in double
@@ -74,7 +74,7 @@ class RunTimeFlightInputs {
   /// `taps`: as many as the window has, the present first. False where the rows do not hold them.
   bool read(std::size_t row, Inputs* taps) const {
     taps[0] = present(row);
-    const RunTimeWindow& window = features_->window();
+    const RunTimeFeatures::Window& window = features_->window();
     const auto read_row = [this](std::size_t i, Inputs& inputs) {
       Kept& kept = kept_[i % kept_.size()];
       if (kept.row != i) kept = {i, present(i)};
@@ -124,7 +124,7 @@ GroundFeatures ground_features() {
     }
   }
   if constexpr (is_windowed<Features>) {
-    value.window = RunTimeWindow(Window::taps, Window::causal, Window::period_s);
+    value.window = RunTimeFeatures::Window(Window::taps, Window::causal, Window::period_s);
   }
   return value;
 }
@@ -133,7 +133,7 @@ GroundFeatures ground_features() {
 /// "w_x[-2]" is w_x at another tap of the window, behind the features of the present (exported/run_time_features.hpp).
 /// `type`: as a header names this set. Throws std::invalid_argument for names that are no such set.
 GroundFeatures named_features(const std::string& type, const std::vector<std::string>& names,
-                              const std::vector<std::string>& units, const RunTimeWindow& window = {});
+                              const std::vector<std::string>& units, const RunTimeFeatures::Window& window = {});
 
 }  // namespace pinnquad
 

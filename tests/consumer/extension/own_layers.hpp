@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Two layers of a user's own: an activation without a pack form, and a layer with parameters that is not element-wise.
+// The library's own tests take them too (tests/support/own_layers.hpp).
 #pragma once
 
 #include <pinnquad/nn/layer.hpp>
@@ -18,7 +19,7 @@ struct LeakyRelu {
   using Bind = LeakyReluLayer<Scalar, In>;
 };
 
-/// y_i = p_i x_i; starts as the identity.
+/// y_i = p_i x_i; starts near the identity.
 template <class ScalarType, int Size>
 struct ChannelScaleLayer {
   using Scalar = ScalarType;
@@ -31,7 +32,7 @@ struct ChannelScaleLayer {
   }
   template <class Engine>
   static void initialise(Scalar* parameters, Engine&) noexcept {
-    for (int i = 0; i < Size; ++i) parameters[i] = Scalar(1);
+    for (int i = 0; i < Size; ++i) parameters[i] = Scalar(0.95 + 0.05 * (i % 3));
   }
 };
 struct ChannelScale {

@@ -58,8 +58,7 @@ def look(path):
             require(element.get("color") == palettes[0][colour], f"{name}: without variables {colour} is another colour")
         if element.tag == svg + "text":
             for palette in palettes:
-                behind = palette["series-1"] if colour == "background" else palette["background"]
-                require(contrast(palette[colour], behind) >= 4.5, f"{name}: '{element.text}' is too pale")
+                require(contrast(palette[colour], palette["background"]) >= 4.5, f"{name}: '{element.text}' is too pale")
             length = 6.9 * len(element.text) * float(element.get("font-size", 12)) / 12
             start = float(element.get("x")) - {"start": 0, "middle": length / 2, "end": length}[element.get("text-anchor")]
             require(start >= left and start + length <= left + width, f"{name}: '{element.text}' leaves the picture")
@@ -75,7 +74,7 @@ def words(root):
 
 
 pictures = {path.stem: look(path) for path in sorted(folder.glob("*.svg"))}
-require(len(pictures) == 5, f"pictures: {list(pictures)}")
+require(len(pictures) == 3, f"pictures: {list(pictures)}")
 for name in pictures:
     page = (folder / f"{name}.html").read_text(encoding="utf-8")
     require(page.count("<svg ") == page.count("<title>") - 1 == 2, f"{name}.html has not a chart for wide and one for narrow windows")
@@ -90,23 +89,6 @@ for name, steps in (("trajectory", 16), ("slow_trajectory", 6)):
 anchors = re.compile(r"[\[{](\d+), (\d+), (\d+)[\]}]")
 stops = [anchors.findall((project / f"tools/page/{f}").read_text()) for f in ("viridis.hpp", "watch/src/ramp.js")]
 require(stops[0] == stops[1] and len(stops[0]) == 10, "charts and the page to watch a flight colour speed differently")
-
-
-def bars(name):
-    return [float(r.get("width")) for r in pictures[name].iter(svg + "rect") if r.get("height") == "13"]
-
-
-def near(a, b):
-    return abs(a / b - 1) < 0.01
-
-
-# by the given errors, from zero: 54.9, 8.0, 7.3
-even, broken = bars("even_errors"), bars("errors")
-require(len(even) == 3 and near(even[0] / even[1], 9 / 8) and near(even[1] / even[2], 8 / 7.3), f"even_errors.svg: bars of {even}")
-require(len(broken) == 3 and near(broken[1] / broken[2], 8 / 7.3) and broken[2] > 200, f"errors.svg: bars of {broken}")
-require(1.1 < broken[0] / broken[1] < 1.3 and "54.90" in words(pictures["errors"]), "the longest bar is not broken, or does not say its length")
-cuts = {n: sum(palette_colour(p) == "background" for p in pictures[n].iter(svg + "path")) for n in ("errors", "even_errors")}
-require(cuts == {"errors": 1, "even_errors": 0}, f"broken bars: {cuts}")
 
 for word in ("target", "prediction", "target, 3 σ", "prediction, 3 σ", "a & b, roll", "dp/dt, std. dev."):
     require(word in words(pictures["ellipses"]), f"ellipses.svg does not name: {word}")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures of made-up flights and judgements, in which every colour and every bar occurs.
+// Pictures of made-up flights and judgements, in which every colour occurs.
 //   pictures_driver <folder>
 #include <array>
 #include <cmath>
@@ -31,15 +31,6 @@ std::vector<programs::TraceRow> spiral(double fastest_m_s) {
   return trace;
 }
 
-/// The first longer than the chart where that ends before it.
-programs::Chart errors(double first, double most) {
-  return programs::errors_chart("Error of the commands by model", "mean absolute error, 10⁻³",
-                                {{"linearized", programs::colour::blue, 1, first, 0},
-                                 {"vanilla", programs::colour::blue, 1, 8.0, 0.28},
-                                 {"physics_informed", programs::colour::blue, 1, 7.3, 0.14}},
-                                most, 2);
-}
-
 programs::AxisSeries ellipse_cloud() {
   programs::AxisSeries series;
   for (int i = 0; i < 400; ++i) {
@@ -60,8 +51,6 @@ void draw(const std::string& folder) {
   };
   write("trajectory", programs::trajectory_chart(spiral(8)));
   write("slow_trajectory", programs::trajectory_chart(spiral(3)));
-  write("errors", errors(54.9, 9.6));
-  write("even_errors", errors(9.0, 10.4));
   write("ellipses", programs::ellipses_chart({{"a & b", {series, series, series}}}));
 }
 

@@ -65,7 +65,7 @@ struct Backwards : FitWork {
     *calls += "run " + std::to_string(count) + ", ";
     for (std::size_t i = count; i-- > 0;) static_cast<void>(job(i));
   }
-  void chose(const StructuredAltitude&) const override { *calls += "chose, "; }
+  void chose(const FitWork::Altitude&) const override { *calls += "chose, "; }
 
   std::string* calls;
 };
@@ -73,7 +73,7 @@ struct Backwards : FitWork {
 struct StopsAfter : FitWork {
   StopsAfter(int* epochs, bool* was_chosen) : epochs_left(epochs), chosen(was_chosen) {}
   bool goes_on(int) const override { return --*epochs_left >= 0; }
-  void chose(const StructuredAltitude&) const override { *chosen = true; }
+  void chose(const FitWork::Altitude&) const override { *chosen = true; }
 
   int* epochs_left;
   bool* chosen;

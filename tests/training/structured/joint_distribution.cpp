@@ -48,7 +48,7 @@ Vector6 features(const Sample& sample) {
 
 RowSet all(const Flight& flight) { return RowSet(flight, {0, flight.size()}); }
 
-detail::JointDistribution fitted_to(const RowSet& rows, double shrinkage = TrustSettings{}.shrinkage) {
+detail::JointDistribution fitted_to(const RowSet& rows, double shrinkage = FittedTrust::Settings{}.shrinkage) {
   AskedModel model;
   model.units.assign(Features::units.begin(), Features::units.end());
   model.each_exact_row = detail::rows_of_features<Features, double>();

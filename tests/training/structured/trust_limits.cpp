@@ -106,7 +106,7 @@ TEST_CASE("the command residual's means are those of the monitor that flies") {
 
 TEST_CASE("fitted limits: new flights of the same kind raise as many alarms as asked, others many") {
   const Flight training = noisy(2000, 21), validation = noisy(20000, 22), fresh = noisy(100000, 23);
-  TrustSettings settings;
+  FittedTrust::Settings settings;
   settings.seconds_per_alarm = 100;
   const auto trust = fit_trust(half_always(), RowSet(training, {0, training.size()}),
                                RowSet(validation, {0, validation.size()}), settings);

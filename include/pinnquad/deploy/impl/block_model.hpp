@@ -11,7 +11,7 @@ namespace detail {
 /// No activation, no bound.
 PINNQUAD_BODY bool is_affine(const RunTimeNetwork& network) {
   for (int i = 0; i < network.part_count(); ++i) {
-    const RunTimePart& part = network.part(i);
+    const RunTimeNetwork::Part& part = network.part(i);
     if (part.bounded) return false;
     for (int layer = 0; layer < part.layer_count; ++layer) {
       if (part.layers[layer].outputs == 0) return false;
@@ -165,9 +165,9 @@ PINNQUAD_BODY std::optional<Certificate> BlockModel::certificate() const {
   return has_structure ? std::optional(certificate) : std::nullopt;
 }
 
-PINNQUAD_BODY std::optional<ProvenSigns> BlockModel::proven_signs() const {
+PINNQUAD_BODY std::optional<BlockModel::ProvenSigns> BlockModel::proven_signs() const {
   if (angular_accelerations().empty()) return {};
-  ProvenSigns proof;
+  BlockModel::ProvenSigns proof;
   proof.structure = certificate();
   if (proof.structure && proof.structure->proven()) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -279,7 +279,7 @@ PINNQUAD_BODY void BlockModel::refuse(const std::string& expected, const std::st
 }
 
 PINNQUAD_BODY void BlockModel::answer(const RowSet& rows,
-                                      const std::function<void(std::size_t, const AnsweredRow&)>& take,
+                                      const std::function<void(std::size_t, const BlockModel::AnsweredRow&)>& take,
                                       bool with_derivatives) const {
   with([&](const auto& model) {
     using Scalar = ScalarOf<decltype(model)>;
@@ -288,7 +288,7 @@ PINNQUAD_BODY void BlockModel::answer(const RowSet& rows,
     std::vector<RunTimeInputs<double>> exact(taps);
     std::vector<Scalar> x(size), work(model.workspace());
     std::vector<double> exact_x(size);
-    AnsweredRow answered;
+    BlockModel::AnsweredRow answered;
     std::size_t first = 0;
     for (const FlightRows& piece : rows.pieces()) {
       const detail::RunTimeFlightInputs<Scalar> own(model.features(), piece);

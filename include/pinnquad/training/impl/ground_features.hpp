@@ -54,7 +54,8 @@ GroundFeatures::EachRow rows_by_name(const std::shared_ptr<const HeldFeatures>& 
 }  // namespace detail
 
 PINNQUAD_BODY GroundFeatures named_features(const std::string& type, const std::vector<std::string>& names,
-                                            const std::vector<std::string>& units, const RunTimeWindow& window) {
+                                            const std::vector<std::string>& units,
+                                            const RunTimeFeatures::Window& window) {
   const auto held = std::make_shared<detail::HeldFeatures>();
   for (std::size_t i = 0; i < names.size() && i < units.size(); ++i) {
     for (const std::string* text : {&names[i], &units[i]}) held->texts.append(*text).push_back('\0');

@@ -59,12 +59,6 @@ struct StructuredSet {
   }
 };
 
-/// The choice of the altitude. Errors are those of the first seed; none where the rule is not by_validation.
-struct StructuredAltitude {
-  bool taken = false;
-  std::optional<double> error_with, error_without;
-};
-
 /// The residual network of so many inputs.
 template <int Inputs>
 using StructuredResidual = Mlp<float, InputSize<Inputs>, Hidden<2, 32>, OutputSize<4>, Relu>;
@@ -87,6 +81,12 @@ StructuredSet structured_set(const GivenAirframe& airframe) {
 /// overrides what it does otherwise.
 class FitWork {
  public:
+  /// The choice of the altitude. Errors are those of the first seed; none where the rule is not by_validation.
+  struct Altitude {
+    bool taken = false;
+    std::optional<double> error_with, error_without;
+  };
+
   virtual ~FitWork() = default;
   /// Calls job(i) for each i below `count`, also from several threads. A job that returns false was stopped: no further
   /// one need be started.
@@ -97,7 +97,7 @@ class FitWork {
   /// Asked before each epoch of each fit; false stops it.
   virtual bool goes_on(int /*epoch*/) const { return true; }
   /// Called once, before the fits of the other seeds.
-  virtual void chose(const StructuredAltitude& /*choice*/) const {}
+  virtual void chose(const Altitude& /*choice*/) const {}
 };
 
 namespace detail {
@@ -116,11 +116,11 @@ struct SeedFit {
 /// Fits a structured model from each seed. The first seed tries both feature sets where the altitude is chosen
 /// by_validation; `higher` is null where there is no such choice. Fits that were finished, in the order of the seeds.
 /// Throws std::invalid_argument for rows that are too few.
-std::pair<StructuredAltitude, std::vector<SeedFit>> fit_structured_sets(const StructuredSet& without_altitude,
-                                                                        const StructuredSet* higher,
-                                                                        const RowSplit& split,
-                                                                        const StructuredSettings& settings,
-                                                                        const FitWork& work);
+std::pair<FitWork::Altitude, std::vector<SeedFit>> fit_structured_sets(const StructuredSet& without_altitude,
+                                                                       const StructuredSet* higher,
+                                                                       const RowSplit& split,
+                                                                       const StructuredSettings& settings,
+                                                                       const FitWork& work);
 
 /// The rows that a model is fitted to.
 RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings);

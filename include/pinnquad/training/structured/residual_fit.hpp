@@ -22,6 +22,8 @@
 
 namespace pinnquad {
 
+namespace detail {
+
 /// The result of a residual's fit, base alone and both: predictors, or their parameters.
 template <class Base, class Predictor>
 struct ResidualFit {
@@ -32,8 +34,6 @@ struct ResidualFit {
   int epoch = -1;                    ///< after which the residual was best
   double base_error = 0, error = 0;  ///< mean absolute error of the commands on the validation rows
 };
-
-namespace detail {
 
 using FittedResidual = ResidualFit<std::vector<float>, std::vector<float>>;
 

@@ -14,7 +14,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "pinnquad/core/body.hpp"
 #include "pinnquad/loss/loss.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/training/adam.hpp"
@@ -53,7 +52,14 @@ struct FitRows {
 };
 
 /// Rows of a context.
-FitRows fit_rows(const FitContext& context, const RowSet& from);
+inline FitRows fit_rows(const FitContext& context, const RowSet& from) {
+  FitRows rows{context.inputs(), {}, {}};
+  context.each_standardised(from, [&](const Flight&, std::size_t, const double* x, const double* y) {
+    for (int i = 0; i < context.inputs(); ++i) rows.features.push_back(static_cast<float>(x[i]));
+    for (int k = 0; k < context.outputs(); ++k) rows.outputs.push_back(static_cast<float>(y[k]));
+  });
+  return rows;
+}
 
 /// A residual in training: the network's type is behind it.
 class ResidualTrainer {
@@ -207,7 +213,3 @@ ResidualKind residual_kind(bool shown_accelerations, const AfterBatch& after_bat
 
 }  // namespace detail
 }  // namespace pinnquad
-
-#ifndef PINNQUAD_COMPILED
-#include "pinnquad/training/structured/impl/residual_trainer.hpp"
-#endif

@@ -21,18 +21,6 @@
 
 namespace pinnquad {
 
-/// The demands on the two limits, and how fast the command residual's mean forgets.
-struct TrustSettings {
-  double seconds_per_alarm = 1800;  ///< of calm flight, for each of the two; both together raise twice as many
-  double block_s = 10;              ///< alarms less than this apart are one
-  double command_residual_factor = 0.2;
-  /// Share of the covariance that is replaced by independent features of the same standard deviation. Features that go
-  /// together in all rows (one a linear map of others) leave it without an inverse. With this share no eigenvalue of
-  /// the correlations is below it: a float's rounding stays below a hundredth of a deviation, and a row that breaks
-  /// such a rule by a deviation is 30 deviations away.
-  double shrinkage = 1e-3;
-};
-
 namespace detail {
 
 /// Mean and covariance of features: the whitening W has W covariance W' = 1.
@@ -67,8 +55,7 @@ struct JointDistribution {
 /// Of the rows that have features. A feature that stands still is independent of the others, with the standard
 /// deviation 1 that the scalers give it. Throws std::invalid_argument for a share outside (0, 1] or too small, and for
 /// no more rows than features.
-JointDistribution fit_joint_distribution(const AskedModel& model, const RowSet& training,
-                                         double shrinkage = TrustSettings{}.shrinkage);
+JointDistribution fit_joint_distribution(const AskedModel& model, const RowSet& training, double shrinkage);
 
 /// Fewer say nothing of a tail.
 inline constexpr std::size_t least_alarm_blocks = 8;
@@ -91,6 +78,18 @@ struct TrustSeries {
 
 /// Limits and what they are limits of; values in double.
 struct FittedTrust {
+  /// The demands on the two limits, and how fast the command residual's mean forgets.
+  struct Settings {
+    double seconds_per_alarm = 1800;  ///< of calm flight, for each of the two; both together raise twice as many
+    double block_s = 10;              ///< alarms less than this apart are one
+    double command_residual_factor = 0.2;
+    /// Share of the covariance that is replaced by independent features of the same standard deviation. Features that
+    /// go together in all rows (one a linear map of others) leave it without an inverse. With this share no eigenvalue
+    /// of the correlations is below it: a float's rounding stays below a hundredth of a deviation, and a row that
+    /// breaks such a rule by a deviation is 30 deviations away.
+    double shrinkage = 1e-3;
+  };
+
   detail::JointDistribution distribution{};
   double squared_distance_limit = 0;  ///< of the squared distance
   double command_residual_factor = 0;
@@ -113,7 +112,7 @@ detail::TrustSeries trust_series(const AskedModel& model, const detail::JointDis
 /// of a flight is a flight of its own to the command residual. Throws std::invalid_argument for rows that are too few,
 /// and for a limit that could never trigger: the tail of few blocks, continued too far.
 FittedTrust fit_trust(const AskedModel& model, const RowSet& training, const RowSet& validation,
-                      const TrustSettings& settings = {});
+                      const FittedTrust::Settings& settings = {});
 
 }  // namespace pinnquad
 

@@ -201,7 +201,7 @@ class StructuredFitter {
   bool whole_flights_ = false;
 };
 
-PINNQUAD_BODY std::pair<StructuredAltitude, std::vector<SeedFit>> fit_structured_sets(
+PINNQUAD_BODY std::pair<FitWork::Altitude, std::vector<SeedFit>> fit_structured_sets(
     const StructuredSet& without_altitude, const StructuredSet* higher, const RowSplit& split,
     const StructuredSettings& settings, const FitWork& work) {
   using Altitude = StructuredSettings::Altitude;
@@ -215,7 +215,7 @@ PINNQUAD_BODY std::pair<StructuredAltitude, std::vector<SeedFit>> fit_structured
     return made;
   };
 
-  StructuredAltitude choice;
+  FitWork::Altitude choice;
   std::vector<SeedFit> fits;
   choice.taken = rule == Altitude::yes;
   std::vector<std::optional<SeedFit>> made(static_cast<std::size_t>(std::max(settings.seeds, 0)));

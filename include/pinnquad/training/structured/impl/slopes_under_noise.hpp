@@ -80,7 +80,7 @@ PINNQUAD_BODY void add_denoised(const FitContext& context, const RowSet& rows, M
     });
   }
   if (!(all.rows() > 0)) return;
-  const RunTimeWindow& window = context.features.window;
+  const RunTimeFeatures::Window& window = context.features.window;
   const auto time_s = [&window](std::size_t tap) {
     return tap == 0 ? 0.0 : window.offset_s(static_cast<int>(tap) - 1);
   };

@@ -121,7 +121,7 @@ PINNQUAD_BODY detail::TrustSeries trust_series(const AskedModel& model, const de
 }
 
 PINNQUAD_BODY FittedTrust fit_trust(const AskedModel& model, const RowSet& training, const RowSet& validation,
-                                    const TrustSettings& settings) {
+                                    const FittedTrust::Settings& settings) {
   FittedTrust trust;
   trust.distribution = detail::fit_joint_distribution(model, training, settings.shrinkage);
   trust.command_residual_factor = settings.command_residual_factor;
