@@ -80,7 +80,7 @@ double slope_left(const Answer& answer, const ContextType& context) {
 }
 
 struct Fitted {
-  detail::ResidualFit<MonotoneBase<PhysicsFeatures>, Answer> fit;
+  pinnquad::detail::ResidualFit<MonotoneBase<PhysicsFeatures>, Answer> fit;
   double slope_left;
   double blind_error;
 };
