@@ -106,8 +106,9 @@ bool compare(bool with_residual) {
     CHECK(text_of(value, split.train) == text_of(of_types, split.train));
     const auto golden = golden_features(value, split.train);
     CHECK(model_block(value, golden, {}) == model_block(of_types, golden, {}));
-    const auto joint = detail::fit_joint_distribution(value, split.train);
-    CHECK(joint.whitening == detail::fit_joint_distribution(of_types, split.train).whitening);
+    constexpr double shrinkage = FittedTrust::Settings{}.shrinkage;
+    const auto joint = detail::fit_joint_distribution(value, split.train, shrinkage);
+    CHECK(joint.whitening == detail::fit_joint_distribution(of_types, split.train, shrinkage).whitening);
     CHECK(trust_series(value, joint, split.validation).errors ==
           trust_series(of_types, joint, split.validation).errors);
     CHECK(same(predicted_commands(value, split.test, true), predicted_commands(of_types, split.test, true)));
