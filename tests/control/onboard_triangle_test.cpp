@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
+#include <random>
 
 #include "pinnquad/control/onboard/sum_regression.hpp"
 #include "pinnquad/core/random.hpp"
@@ -18,11 +19,11 @@ TEST_CASE("R^T R is the sum of products, each row as often as it is remembered")
   constexpr double keep = 0.97, rounding = 1e-10;
   Triangle<double, 5> triangle;
   Eigen::Matrix<double, 5, 5> sums = Eigen::Matrix<double, 5, 5>::Zero();
-  Random random(3);
+  std::mt19937_64 random{3};
   double rows = 0;
   for (int n = 0; n < 300; ++n) {
     Triangle<double, 5>::Row row{};
-    for (double& x : row) x = random.normal();
+    for (double& x : row) x = standard_normal(random);
     triangle.add(row, std::sqrt(keep));
     const Eigen::Map<const Eigen::Matrix<double, 5, 1>> v(row.data());
     sums = keep * sums + v * v.transpose();
@@ -43,12 +44,12 @@ TEST_CASE("a solution is that of the normal equations with the prior") {
   SumTriangle<double> triangle;
   Eigen::Matrix<double, 7, 7> products = Eigen::Matrix<double, 7, 7>::Zero();
   Eigen::Matrix<double, 7, 1> with_output = Eigen::Matrix<double, 7, 1>::Zero();
-  Random random(5);
+  std::mt19937_64 random{5};
   for (int n = 0; n < 200; ++n) {
     SumTriangle<double>::Row row{};
     row[0] = 1;
-    for (std::size_t i = 1; i < 7; ++i) row[i] = random.normal();
-    row[7] = 2 - row[1] + 0.5 * row[4] + 30 * row[6] + random.normal();
+    for (std::size_t i = 1; i < 7; ++i) row[i] = standard_normal(random);
+    row[7] = 2 - row[1] + 0.5 * row[4] + 30 * row[6] + standard_normal(random);
     triangle.add(row, 1.0);
     const Eigen::Map<const Eigen::Matrix<double, 7, 1>> x(row.data());
     products += x * x.transpose();
