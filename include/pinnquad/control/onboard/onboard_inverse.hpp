@@ -238,7 +238,9 @@ class OnboardInverse {
     const Scalar least = settings_.proof.least_share;
     const bool still = second_.asked(1) && second_.asked(2) && second_.share(1) < least && second_.share(2) < least;
     second_ = {};
-    if (!still) return true;
+    const bool any = still || stood_;  // the second of the lift-off too
+    stood_ = still;
+    if (!any) return true;
     regression_.forget();
     answer_ = {};
     bias_.reset();
@@ -373,7 +375,7 @@ class OnboardInverse {
   detail::TickClock<Scalar> clock_;
   std::uint64_t begun_us_ = 0;
   std::uint32_t rows_ = 0, rows_since_ = 0, judged_ = 0;
-  bool excited_ = false, begun_ = false, frozen_ = false, follows_ = false, judging_ = false;
+  bool excited_ = false, begun_ = false, frozen_ = false, follows_ = false, judging_ = false, stood_ = false;
 };
 
 }  // namespace pinnquad
