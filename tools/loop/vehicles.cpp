@@ -18,6 +18,7 @@
 #include "loop/unknown_vehicle.hpp"
 #include "loop/vehicle_course.hpp"
 #include "pinnquad/control/adaptive_inverse.hpp"
+#include "pinnquad/control/onboard/onboard_inverse.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 
 namespace programs {
@@ -193,20 +194,63 @@ class Flown {
         still_(quadrotor_with(truth_.effects, truth_.airframe, Site<double>{})),
         gains_(gains_for(start_.rotor_time_constant_s)) {}
 
-  nlohmann::json row() {
-    const double lag_s = start_.rotor_time_constant_s;
+  nlohmann::json row() { return flight_.controller == "onboard" ? onboard() : known(); }
+
+ private:
+  /// The analytic inverse of what is told.
+  nlohmann::json known() {
     const bool knows = flight_.controller == "true_inverse";
+    const Airframe<double>& told = knows ? truth_.airframe : start_;
     const SwitchedQuadrotor guessed = quadrotor_with(
         switched_effects<Quadrotor<double, StandardAtmosphere, QuadraticDrag>>(), start_, Site<double>{});
-    const double told_lag_s = knows ? truth_.airframe.rotor_time_constant_s : lag_s;
-    KnownInverse policy(StillInverse(knows ? still_ : guessed, knows), bias_for(told_lag_s),
-                        FlownMotion<double>({20'000, told_lag_s, knows ? truth_.delay_s : told_delay_s}));
-    const Airframe<double>& told = knows ? truth_.airframe : start_;
+    const double lag_s = told.rotor_time_constant_s;
+    KnownInverse policy(StillInverse(knows ? still_ : guessed, knows), bias_for(lag_s),
+                        FlownMotion<double>({20'000, lag_s, knows ? truth_.delay_s : told_delay_s}));
     return fly(
         policy, [](double) {}, [&] { return told; });
   }
 
- private:
+  nlohmann::json onboard() {
+    OnboardInverse<double> policy(start_);
+    std::array<double, 4> swapped_s = {-1, -1, -1, -1};
+    std::array<std::uint32_t, 4> row{};
+    std::array<std::size_t, 4> swaps{};
+    std::size_t unproven = 0;
+    const OnboardCertificate<double> at_start = policy.certificate();
+    const auto watch = [&](double time_s) {
+      policy.excite(time_s < VehicleCourse::hover_s && time_s < options_.frozen_s);
+      policy.freeze(time_s >= options_.frozen_s);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const OnboardSum<double>& sum = policy.certificate()[k];
+        if (!sum.proven && sum.forward.theta != at_start[k].forward.theta) ++unproven;
+        if (sum.proven_row == row[k]) continue;
+        row[k] = sum.proven_row;
+        ++swaps[k];
+        if (swapped_s[k] < 0) swapped_s[k] = time_s;
+      }
+    };
+    nlohmann::json result = fly(policy, watch, [&] { return policy.airframe(); });
+    const SignedSums<double> truth = true_slopes();
+    nlohmann::json& learnt = result["learnt"] = {{"rows", policy.rows()},
+                                                 {"unproven_ticks", unproven},
+                                                 {"drag", {policy.drag().linear_1_s, policy.drag().quadratic_1_m}}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const OnboardSum<double>& sum = policy.certificate()[k];
+      const double slope = sum.forward.slope();
+      nlohmann::json& said = learnt[sum_names[k]] = {
+          {"proven", sum.proven},           {"first_swap_s", nullptr}, {"swaps", swaps[k]},
+          {"lag", sum.forward.lag},         {"half_width", nullptr},   {"holds", nullptr},
+          {"terms_bound", sum.terms_bound}, {"gain", sum.gain},        {"refused_last", to_string(sum.refused_last)}};
+      if (swapped_s[k] >= 0) said["first_swap_s"] = swapped_s[k];
+      if (!sum.proven) continue;
+      said["half_width"] = sum.half_width / std::abs(slope);
+      said["holds"] = std::abs(slope - 1 / truth[k]) <= sum.half_width;
+    }
+    return result;
+  }
+
+  SignedSums<double> true_slopes() const { return hover_slopes(AnalyticInverse<SwitchedQuadrotor>(still_), start_); }
+
   /// `at(t)`: before each tick; `airframe()`: the one that flies.
   template <class Policy, class At, class AirframeNow>
   nlohmann::json fly(Policy& policy, const At& at, const AirframeNow& airframe) {
@@ -217,8 +261,7 @@ class Flown {
     if (flight_.condition == "saturated") shaking = shaking_of(airframe());
     const AnyPolicy any(Flying<Policy>{&policy, &shaking});
     fly(any, hover, at, airframe);
-    const SignedSums<double> truth = hover_slopes(AnalyticInverse<SwitchedQuadrotor>(still_), start_);
-    const SignedSums<double> flown = hover_slopes(policy, start_);
+    const SignedSums<double> truth = true_slopes(), flown = hover_slopes(policy, start_);
     nlohmann::json row = {{"controller", flight_.controller},
                           {"condition", flight_.condition},
                           {"vehicle", flight_.vehicle},

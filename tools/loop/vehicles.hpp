@@ -15,8 +15,9 @@ struct NamedChoice {
   const char* summary;
 };
 
-inline constexpr std::array<NamedChoice, 2> vehicle_controllers = {{
+inline constexpr std::array<NamedChoice, 3> vehicle_controllers = {{
     {"start", "the analytic inverse of a guessed airframe, with a bias learnt in flight"},
+    {"onboard", "what learns slopes, lag and drag in flight, each with a proof before it flies"},
     {"true_inverse", "the same of the true vehicle and its drag"},
 }};
 

@@ -99,7 +99,7 @@ class OnboardInverse {
     const Scalar step_s = clock_.step_s(now_us);
     motion_.velocity(now_us, state.velocity_m_s);
     motion_.body_rates(now_us, state.body_rates_rad_s);
-    const bool sound = known && all_finite(state) && all_finite(commands);
+    const bool sound = known && step_s > Scalar(0) && all_finite(state) && all_finite(commands);
     const bool ended = motion_.tick(now_us, sound && !saturated(commands), state, commands);
     if (sound) {
       Commands<Scalar> fractions{};
