@@ -48,6 +48,7 @@ class StillInverse {
     return body_to_world<double>(state.attitude, force_N) / vehicle_.airframe().mass_kg;
   }
   const SwitchedQuadrotor& vehicle() const noexcept { return vehicle_; }
+  const AnalyticInverse<SwitchedQuadrotor>& in_commands() const noexcept { return inverse_; }
 
  private:
   SwitchedQuadrotor vehicle_;
@@ -74,6 +75,8 @@ class KnownInverse {
     adaptive_.learn(now_us, known, state, rotors().fractions(commands));
   }
   Vector3<double> across_m_s2(const State<double>& state) const noexcept { return adaptive_.across_m_s2(state); }
+  const MotionBias<double>& bias() const noexcept { return adaptive_.bias(); }
+  const StillInverse& inverse() const noexcept { return adaptive_.inverse(); }
 
  private:
   const Rotors<double>& rotors() const noexcept { return adaptive_.inverse().vehicle().rotors(); }
@@ -108,22 +111,30 @@ FlightController<double> outer_loop(const Airframe<double>& airframe, const Flig
   return FlightController<double>(gains, flight_limits(airframe, 1.0, gains));
 }
 
-/// Sines on the motion wanted, which ask of each axis for all that hover leaves.
+/// Sines on the motion wanted, of so many times the strength of those that teach.
 struct Shaking {
-  std::array<double, 4> most{};  ///< thrust, m/s^2, then roll, pitch, yaw, rad/s^2
-  double from_s = 0, until_s = 0;
+  std::array<double, 4> slopes{};  ///< of the signed sums
+  double strength = 0, until_s = 0;
 
-  void add_to(Accelerations<double>& wanted, double time_s) const noexcept {
-    if (!(time_s >= from_s && time_s < until_s)) return;
-    constexpr double two_pi = 6.283185307179586;
-    const double t = two_pi * (time_s - from_s);
-    const auto sines = [](double slow, double quick) { return (std::sin(slow) + 2.5 * std::sin(quick)) / 3.5; };
-    wanted.linear_m_s2[2] += most[0] * sines(0.7 * t, 1.7 * t);
-    wanted.angular_rad_s2[0] += most[1] * sines(1.1 * t, 2.3 * t);
-    wanted.angular_rad_s2[1] += most[2] * sines(1.4 * t, 2.9 * t);
-    wanted.angular_rad_s2[2] += most[3] * sines(0.5 * t, 1.3 * t);
+  void add_to(Accelerations<double>& wanted, std::uint64_t time_us) const noexcept {
+    if (!(strength > 0 && seconds_of(time_us) < until_s)) return;
+    const Accelerations<double> added =
+        excitation(ExcitationSettings<double>{}, time_us, slopes, {strength, strength, strength, strength});
+    wanted.linear_m_s2 += added.linear_m_s2;
+    wanted.angular_rad_s2 += added.angular_rad_s2;
   }
 };
+
+/// An airframe whose thrust is that which hover has asked for, by the bias of the sum of thrust fractions; torques as
+/// they were.
+Airframe<double> as_it_hovers(Airframe<double> airframe, double bias) {
+  const double hover = 1 / airframe.thrust_to_weight();
+  const double by = hover / std::clamp(hover + bias / rotor_count, 0.05, 0.9);
+  airframe.thrust_coefficient *= by;
+  airframe.power_coefficient *= by;
+  for (double& inertia : airframe.inertia_kg_m2) inertia *= by;
+  return airframe;
+}
 
 /// A flight's policy, as the controller holds it.
 template <class Policy>
@@ -134,7 +145,7 @@ struct Flying {
   Status operator()(const State<double>& state, const Accelerations<double>& wanted, std::uint64_t time_us,
                     Commands<double>& commands) noexcept {
     Accelerations<double> shaken = wanted;
-    shaking->add_to(shaken, seconds_of(time_us));
+    shaking->add_to(shaken, time_us);
     return (*policy)(state, shaken, time_us, commands);
   }
   void learn(std::uint64_t now_us, bool known, const State<double>& state, const Commands<double>& commands) noexcept {
@@ -207,7 +218,8 @@ class Flown {
     KnownInverse policy(StillInverse(knows ? still_ : guessed, knows), bias_for(lag_s),
                         FlownMotion<double>({20'000, lag_s, knows ? truth_.delay_s : told_delay_s}));
     return fly(
-        policy, [](double) {}, [&] { return told; });
+        policy, policy.inverse().in_commands(), [](double) {},
+        [&] { return as_it_hovers(told, policy.bias().sums()[0]); });
   }
 
   nlohmann::json onboard() {
@@ -229,7 +241,8 @@ class Flown {
         if (swapped_s[k] < 0) swapped_s[k] = time_s;
       }
     };
-    nlohmann::json result = fly(policy, watch, [&] { return policy.airframe(); });
+    nlohmann::json result =
+        fly(policy, policy, watch, [&] { return as_it_hovers(policy.airframe(), policy.bias().sums()[0]); });
     const SignedSums<double> truth = true_slopes();
     nlohmann::json& learnt = result["learnt"] = {{"rows", policy.rows()},
                                                  {"unproven_ticks", unproven},
@@ -251,17 +264,22 @@ class Flown {
 
   SignedSums<double> true_slopes() const { return hover_slopes(AnalyticInverse<SwitchedQuadrotor>(still_), start_); }
 
-  /// `at(t)`: before each tick; `airframe()`: the one that flies.
-  template <class Policy, class At, class AirframeNow>
-  nlohmann::json fly(Policy& policy, const At& at, const AirframeNow& airframe) {
+  /// `inverse`: whose slopes are those of the policy. `at(t)`: before each tick; `airframe()`: the one that flies.
+  template <class Policy, class Inverse, class At, class AirframeNow>
+  nlohmann::json fly(Policy& policy, const Inverse& inverse, const At& at, const AirframeNow& airframe) {
     Commands<double> hover{};
     static_cast<void>(policy(hovering(), {}, 0, hover));
     for (double& command : hover) command = std::clamp(command, 0.0, 1.0);
     Shaking shaking;
-    if (flight_.condition == "saturated") shaking = shaking_of(airframe());
+    if (flight_.condition == "saturated") {
+      const ForwardModel<double> start = forward_model(start_);
+      for (std::size_t k = 0; k < 4; ++k) shaking.slopes[k] = start[k].slope();
+      shaking.strength = flight_.controller == "onboard" ? 4 : 5;  // beside its own
+      shaking.until_s = VehicleCourse::hover_s;
+    }
     const AnyPolicy any(Flying<Policy>{&policy, &shaking});
-    fly(any, hover, at, airframe);
-    const SignedSums<double> truth = true_slopes(), flown = hover_slopes(policy, start_);
+    fly_course(any, hover, at, airframe);
+    const SignedSums<double> truth = true_slopes(), flown = hover_slopes(inverse, start_);
     nlohmann::json row = {{"controller", flight_.controller},
                           {"condition", flight_.condition},
                           {"vehicle", flight_.vehicle},
@@ -279,13 +297,6 @@ class Flown {
     return row;
   }
 
-  /// All of an axis' torque that hover leaves, and the thrust.
-  static Shaking shaking_of(const Airframe<double>& airframe) {
-    const auto [thrust_to_weight, most] = pinnquad::detail::authority(airframe, 1.0);
-    const double g = standard_gravity_m_s2<double>;
-    return {{g * std::min(1.0, thrust_to_weight - 1), most[0], most[1], most[2]}, 0, VehicleCourse::hover_s};
-  }
-
   SwitchedQuadrotor world(std::uint64_t seed) const {
     SwitchedEffects effects = truth_.effects;
     if (flight_.condition == "payload_late") switch_effect(effects, Payload{0.3 * truth_.airframe.mass_kg, 30});
@@ -301,8 +312,8 @@ class Flown {
     return quadrotor_with(effects, truth_.airframe, Site<double>{});
   }
 
-  void fly(AnyPolicy any, const Commands<double>& hover, const std::function<void(double)>& at,
-           const std::function<Airframe<double>()>& airframe) {
+  void fly_course(AnyPolicy any, const Commands<double>& hover, const std::function<void(double)>& at,
+                  const std::function<Airframe<double>()>& airframe) {
     const std::uint64_t seed = options_.seed * 1'000'003 + flight_.vehicle;
     const SwitchedQuadrotor vehicle = world(seed);
     const VehicleCourse course(truth_.airframe.thrust_to_weight(), options_.frozen_s);
