@@ -2,7 +2,6 @@
 // Vehicles that nobody knows, flown by what is guessed of them, by what is learnt on board, and by the truth.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -10,27 +9,14 @@
 
 namespace programs {
 
-struct NamedChoice {
-  const char* name;
-  const char* summary;
-};
+/// By the analytic inverse of a guessed airframe, by what learns slopes, lag and drag in flight, by the analytic inverse
+/// of the true vehicle; each with a bias that is learnt in flight.
+inline std::vector<std::string> vehicle_controllers() { return {"start", "onboard", "true_inverse"}; }
 
-inline constexpr std::array<NamedChoice, 3> vehicle_controllers = {{
-    {"start", "the analytic inverse of a guessed airframe, with a bias learnt in flight"},
-    {"onboard", "what learns slopes, lag and drag in flight, each with a proof before it flies"},
-    {"true_inverse", "the same of the true vehicle and its drag"},
-}};
-
-/// Things that happen to a vehicle while it is learnt. The first is nothing.
-inline constexpr std::array<NamedChoice, 7> vehicle_conditions = {{
-    {"calm", "sensors' noise alone"},
-    {"gusts", "wind of 4 m/s and gusts"},
-    {"noise_3", "three times the noise"},
-    {"payload_late", "30 % heavier after 30 s"},
-    {"ground_minute", "a minute on the ground before, taken for flight"},
-    {"nan", "no numbers from sensors, 15 s to 15.3 s"},
-    {"saturated", "sines that take commands to their ends, the first 10 s"},
-}};
+/// Things that happen to a vehicle while it is learnt (docs/onboard.md); in `calm` nothing does.
+inline std::vector<std::string> vehicle_conditions() {
+  return {"calm", "gusts", "noise_3", "payload_late", "ground_minute", "nan", "saturated"};
+}
 
 struct VehiclesOptions {
   std::vector<std::string> controllers, conditions;
