@@ -27,8 +27,8 @@ namespace {
 
 using namespace pinnquad;
 
-/// The thrust fractions of the analytic inverse of a vehicle in still air; what it knows of drag across the thrust, where
-/// it is told.
+/// The thrust fractions of the analytic inverse of a vehicle in still air; what it knows of drag across the thrust,
+/// where it is told.
 class StillInverse {
  public:
   StillInverse(const SwitchedQuadrotor& vehicle, bool knows_drag) noexcept

@@ -9,8 +9,8 @@
 
 namespace programs {
 
-/// By the analytic inverse of a guessed airframe, by what learns slopes, lag and drag in flight, by the analytic inverse
-/// of the true vehicle; each with a bias that is learnt in flight.
+/// By the analytic inverse of a guessed airframe, by what learns slopes, lag and drag in flight, by the analytic
+/// inverse of the true vehicle; each with a bias that is learnt in flight.
 inline std::vector<std::string> vehicle_controllers() { return {"start", "onboard", "true_inverse"}; }
 
 /// Things that happen to a vehicle while it is learnt (docs/onboard.md); in `calm` nothing does.
