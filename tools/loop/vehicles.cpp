@@ -252,7 +252,7 @@ class Flown {
       const double slope = sum.forward.slope();
       nlohmann::json& said = learnt[sum_names[k]] = {
           {"proven", sum.proven},           {"first_swap_s", nullptr}, {"swaps", swaps[k]},
-          {"lag", sum.forward.lag},         {"half_width", nullptr},   {"holds", nullptr},
+          {"lag_s", sum.forward.lag.seconds()},         {"half_width", nullptr},   {"holds", nullptr},
           {"terms_bound", sum.terms_bound}, {"gain", sum.gain},        {"refused_last", to_string(sum.refused_last)}};
       if (swapped_s[k] >= 0) said["first_swap_s"] = swapped_s[k];
       if (!sum.proven) continue;

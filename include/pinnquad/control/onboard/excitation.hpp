@@ -14,6 +14,7 @@ namespace pinnquad {
 /// Two sines on each sum, of frequencies that none of the others has.
 template <class Scalar>
 struct ExcitationSettings {
+  /// The two of a sum.
   struct Sines {
     Scalar slow, fast;        ///< amplitudes, m/s^2 (thrust, along z) or rad/s^2
     Scalar slow_Hz, fast_Hz;  ///< multiples of 0.1 Hz: it repeats every 10 s

@@ -16,19 +16,36 @@ inline constexpr std::size_t lag_count = 8;
 
 /// Time constants, s, of the thinnest rotor to the slowest one with a state that comes late.
 template <class Scalar>
-inline constexpr std::array<Scalar, lag_count> lag_bank_s{Scalar(0.006), Scalar(0.011), Scalar(0.018), Scalar(0.027),
-                                                          Scalar(0.038), Scalar(0.053), Scalar(0.073), Scalar(0.1)};
+inline constexpr std::array<Scalar, lag_count> lag_bank_s{Scalar(0.008), Scalar(0.014), Scalar(0.022), Scalar(0.032),
+                                                          Scalar(0.045), Scalar(0.063), Scalar(0.09),  Scalar(0.13)};
 
-/// The lag of the bank that is nearest.
+/// A lag between two of the bank: `beside` of the way from the lower one to the next.
 template <class Scalar>
-constexpr std::uint8_t nearest_lag(Scalar lag_s) noexcept {
-  std::uint8_t nearest = 0;
-  for (std::uint8_t i = 1; i < lag_count; ++i) {
-    const Scalar border = (lag_bank_s<Scalar>[i] + lag_bank_s<Scalar>[i - 1]) / Scalar(2);
-    if (lag_s > border) nearest = i;
-  }
-  return nearest;
+struct LagPlace {
+  std::uint8_t lower{0};  ///< 0 to lag_count - 2
+  Scalar beside{0};       ///< 0 to 1
+
+  Scalar seconds() const noexcept { return of(lag_bank_s<Scalar>[lower], lag_bank_s<Scalar>[lower + 1u]); }
+  /// Between the values of the two.
+  Scalar of(Scalar at_lower, Scalar at_next) const noexcept { return at_lower + beside * (at_next - at_lower); }
+};
+
+/// The place of a lag, or the end of the bank that is nearest.
+template <class Scalar>
+constexpr LagPlace<Scalar> lag_place(Scalar lag_s) noexcept {
+  LagPlace<Scalar> place{};
+  while (place.lower + 2u < lag_count && lag_s > lag_bank_s<Scalar>[place.lower + 1u]) ++place.lower;
+  const Scalar low = lag_bank_s<Scalar>[place.lower], next = lag_bank_s<Scalar>[place.lower + 1u];
+  const Scalar beside = (lag_s - low) / (next - low);
+  place.beside = beside < Scalar(0) ? Scalar(0) : (beside > Scalar(1) ? Scalar(1) : beside);
+  return place;
 }
+
+/// A signed sum that the rotors followed.
+template <class Scalar>
+struct Followed {
+  Scalar sum{0}, rise_1_s{0};
+};
 
 /// Means of the sums over the two periods of a FlownMotion, of each lag. It is told each tick beside the motion.
 template <class Scalar>
@@ -74,7 +91,13 @@ class LagBank {
     }
   }
 
-  const Sums& means() const noexcept { return means_; }
+  /// The sum that rotors of a lag would follow, and how fast it rises, 1/s.
+  Followed<Scalar> at(std::size_t k, std::size_t lag) const noexcept { return {means_[lag][k], rises_1_s_[lag][k]}; }
+  /// The same of a lag between two of the bank.
+  Followed<Scalar> at(std::size_t k, const LagPlace<Scalar>& lag) const noexcept {
+    const Followed<Scalar> low = at(k, lag.lower), next = at(k, lag.lower + 1u);
+    return {lag.of(low.sum, next.sum), lag.of(low.rise_1_s, next.rise_1_s)};
+  }
 
   static SignedSums<Scalar> sums_of(const Commands<Scalar>& fractions, const detail::SignedMix<Scalar>& mix) noexcept {
     SignedSums<Scalar> sums{};
@@ -88,6 +111,10 @@ class LagBank {
   struct Period {
     Scalar rising_weight{0}, falling_weight{0};
     Sums rising{}, falling{};
+
+    Scalar mean(std::size_t lag, std::size_t k) const noexcept {
+      return (rising[lag][k] + falling[lag][k]) / (rising_weight + falling_weight);
+    }
   };
 
   void finish() noexcept {
@@ -97,6 +124,7 @@ class LagBank {
     for (std::size_t lag = 0; lag < lag_count; ++lag) {
       for (std::size_t k = 0; k < 4; ++k) {
         means_[lag][k] = inverse * (before_.rising[lag][k] + now_.falling[lag][k]);
+        rises_1_s_[lag][k] = (now_.mean(lag, k) - before_.mean(lag, k)) / period_s_;
       }
     }
   }
@@ -105,7 +133,7 @@ class LagBank {
   Scalar period_s_;
   std::uint64_t number_ = 0;  ///< of the period
   RotorFollower<Scalar> delayed_;
-  Sums following_{}, means_{};
+  Sums following_{}, means_{}, rises_1_s_{};
   Period now_, before_;
 };
 

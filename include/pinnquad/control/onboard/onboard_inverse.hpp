@@ -15,7 +15,7 @@
 #include "pinnquad/control/onboard/forward_model.hpp"
 #include "pinnquad/control/onboard/lag_bank.hpp"
 #include "pinnquad/control/onboard/proof.hpp"
-#include "pinnquad/control/onboard/triangle.hpp"
+#include "pinnquad/control/onboard/sum_regression.hpp"
 #include "pinnquad/control/tick_clock.hpp"
 
 namespace pinnquad {
@@ -33,21 +33,13 @@ constexpr BiasSettings<Scalar> unknown_vehicle_bias() noexcept {
 template <class Scalar>
 struct OnboardSettings {
   std::uint32_t period_us = 20'000;
-  Scalar delay_s = Scalar(0.004);  ///< by which a state comes late beside the commands; the lags of the bank add to it
-  Scalar forget_s = Scalar(20);
-  Scalar forget_drag_s = Scalar(30);
-  Scalar repeats = Scalar(3);            ///< rows that say the same, as two of them share a period
+  Scalar delay_s = Scalar(0.006);        ///< of a state beside the commands; what it lacks is learnt
   std::uint32_t rows_of_candidate = 50;  ///< a candidate each second
   std::uint32_t rows_of_gain = 100;      ///< is judged for two
+  RegressionSettings<Scalar> regression{};
   BiasSettings<Scalar> bias = detail::unknown_vehicle_bias<Scalar>();
   ExcitationSettings<Scalar> excitation{};
   ProofSettings<Scalar> proof{};
-};
-
-/// Drag across the thrust over the mass: a = -(linear + quadratic |v|) v of the two axes across, FRD.
-template <class Scalar>
-struct LateralDrag {
-  Scalar linear_1_s{0}, quadratic_1_m{0};
 };
 
 /// Certificate of a signed sum as it flies.
@@ -57,9 +49,11 @@ struct OnboardSum {
   bool proven = false;           ///< false: the start's
   Scalar half_width{0};          ///< of the slope's interval, in its units; 0 of the start, which has none
   Scalar terms_bound{0};         ///< most that the other terms ask for beside the start's, in units of the sum
-  Scalar gain{1};                ///< mean square of its forward residual over that of the model before
+  Scalar left_square{0};         ///< mean square of its residual in the rows that it is of
+  Scalar gain{1};                ///< mean square of its forward residual over that of the sum that flew before
   std::uint32_t proven_row = 0;  ///< the row after which it has flown
-  OnboardRule refused_last = OnboardRule::few_rows;  ///< of the last candidate; `none` where that flies
+  OnboardRule refused_last =
+      OnboardRule::few_rows;  ///< what refused the last candidate; `none`: it is judged, or flies
 };
 template <class Scalar>
 using OnboardCertificate = std::array<OnboardSum<Scalar>, 4>;
@@ -75,20 +69,17 @@ class OnboardInverse {
         settings_(settings),
         mix_(detail::signed_mix(start)),
         start_model_(forward_model(start)),
+        regression_(settings.regression, settings.period_us),
         motion_(FlownMotionSettings<Scalar>{settings.period_us, Scalar(0), Scalar(0)}),
         bank_(settings.period_us, settings.delay_s),
         bias_(start, settings.bias) {
-    using std::exp;
-    const Scalar period_s = Scalar(1e-6) * static_cast<Scalar>(settings.period_us);
-    root_keep_ = exp(-period_s / (Scalar(2) * settings.forget_s));
-    root_keep_drag_ = exp(-period_s / (Scalar(4) * settings.forget_drag_s));  // two rows a period
-    for (std::size_t k = 0; k < 4; ++k) flown_[k].forward = start_model_[k];
+    for (std::size_t k = 0; k < 4; ++k) flown_[k].forward = before_[k].forward = start_model_[k];
   }
 
   /// Gentle sines on what is asked for, from the next tick on; without them only where a sum is unknown, fainter.
   void excite(bool on) noexcept {
+    begun_ = begun_ && on == excited_;
     excited_ = on;
-    begun_ = begun_ && on;
   }
   /// No model is swapped any more; the bias goes on.
   void freeze(bool on) noexcept { frozen_ = on; }
@@ -100,7 +91,8 @@ class OnboardInverse {
     motion_.velocity(now_us, state.velocity_m_s);
     motion_.body_rates(now_us, state.body_rates_rad_s);
     const bool sound = known && step_s > Scalar(0) && all_finite(state) && all_finite(commands);
-    const bool ended = motion_.tick(now_us, sound && !saturated(commands), state, commands);
+    const bool at_end = sound && saturated(commands);
+    const bool ended = motion_.tick(now_us, sound && !at_end, state, commands);
     if (sound) {
       Commands<Scalar> fractions{};
       for (std::size_t i = 0; i < fractions.size(); ++i) {
@@ -111,8 +103,8 @@ class OnboardInverse {
     }
     follows_ = sound;
     if (ended && sound) {
-      row();
-    } else if (sound && saturated(commands)) {
+      row(now_us);
+    } else if (at_end) {
       bias_.freeze();
     } else {
       bias_.wait(step_s);
@@ -131,7 +123,7 @@ class OnboardInverse {
         motion_inputs(state, {wanted.linear_m_s2 + added.linear_m_s2, wanted.angular_rad_s2 + added.angular_rad_s2}));
     SignedSums<Scalar> sums{};
     for (std::size_t k = 0; k < 4; ++k) {
-      sums[k] = flown_[k].forward.needed(k, motion, sums[0]) + bias_.sums()[k];
+      sums[k] = flown_[k].forward.needed(k, motion, sums[0], Scalar(0)) + bias_.sums()[k];
     }
     Commands<Scalar> result{};
     for (std::size_t i = 0; i < result.size(); ++i) {
@@ -149,14 +141,16 @@ class OnboardInverse {
 
   /// Drag across the thrust and the bias beside it, NED.
   Vector3<Scalar> across_m_s2(const State<Scalar>& state) const noexcept {
-    return drag_across(state.attitude, body_velocity(state)) + bias_.across_ahead_m_s2();
+    return body_to_world<Scalar>(state.attitude, drag_.of(body_velocity(state))) + bias_.across_ahead_m_s2();
   }
 
   /// The sums that fly now, at any tick.
   const OnboardCertificate<Scalar>& certificate() const noexcept { return flown_; }
+  /// The sums that were proposed last, whether they will fly or not.
+  const OnboardCertificate<Scalar>& candidate() const noexcept { return candidate_; }
   const LateralDrag<Scalar>& drag() const noexcept { return drag_; }
   const MotionBias<Scalar>& bias() const noexcept { return bias_; }
-  std::uint32_t rows() const noexcept { return rows_; }
+  std::uint32_t rows() const noexcept { return rows_; }  ///< since the start
   /// The start with the slopes that fly, for limits and desaturation: thrust by coefficient, torques by inertia.
   Airframe<Scalar> airframe() const noexcept {
     Airframe<Scalar> flown = start_;
@@ -170,10 +164,18 @@ class OnboardInverse {
   }
 
  private:
-  /// Beside what flies, over the rows of a judgement: with a bias of its own, as the one that flies has.
+  static constexpr std::uint32_t rows_to_settle = 6;
+
+  /// The forward residuals of sums, past a bias of their own, as the one that flies has.
   struct Shadow {
     SignedSums<Scalar> bias{};
-    std::array<Scalar, 4> square{};  ///< sums of the forward residuals' squares, acceleration units
+    std::array<Scalar, 4> left{};    ///< until they make a row
+    std::array<Scalar, 4> square{};  ///< sums of squares
+  };
+  /// Changes of the angular accelerations from row to row, and those that the commands ask for; squares.
+  struct Turned {
+    std::array<Scalar, 2> last{};
+    Scalar square{0}, said{0};
   };
 
   Accelerations<Scalar> sines(std::uint64_t now_us) noexcept {
@@ -188,170 +190,182 @@ class OnboardInverse {
     return excitation(settings_.excitation, now_us - begun_us_, slopes, shares);
   }
 
-  Vector3<Scalar> drag_across(const Quaternion<Scalar>& attitude, const Vector3<Scalar>& velocity_m_s) const noexcept {
-    using std::sqrt;
-    const Scalar speed = sqrt(dot<Scalar>(velocity_m_s, velocity_m_s));
-    const Scalar by = -(drag_.linear_1_s + drag_.quadratic_1_m * speed);
-    return body_to_world<Scalar>(attitude, Vector3<Scalar>(by * velocity_m_s[0], by * velocity_m_s[1], Scalar(0)));
-  }
-
-  /// A row: two periods of flight.
-  void row() noexcept {
+  /// Two periods of flight.
+  void row(std::uint64_t now_us) noexcept {
     const MotionInputs<Scalar>& flown = motion_.motion();
     const SumMotion<Scalar> motion = sum_motion(flown);
-    const auto& sums = bank_.means();
     SignedSums<Scalar> residual{};
-    for (std::size_t k = 0; k < 4; ++k) residual[k] = lacking(k, flown_[k].forward, motion, sums);
-    judge(motion, sums, residual);
+    for (std::size_t k = 0; k < 4; ++k) residual[k] = lacking(k, flown_[k].forward, motion);
     Vector3<Scalar> across = SpecificForce::of<Scalar>(flown);
-    teach_drag(motion.velocity_m_s, across);
+    const Vector3<Scalar> force = across;
     across[2] = Scalar(0);
-    const Vector3<Scalar> beside =
-        body_to_world<Scalar>(flown.attitude, across) - drag_across(flown.attitude, motion.velocity_m_s);
-    if (!has_output(bias_.learn(residual, beside, motion_.period_s(Scalar(0))))) return;
-    for (std::size_t lag = 0; lag < lag_count; ++lag) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Terms<Scalar> x = terms_of(k, motion, sums[lag][0], sums[lag][k]);
-        typename Triangle<Scalar, term_count>::Row row{};
-        for (std::size_t i = 0; i < term_count; ++i) row[i] = x[i];
-        row[term_count] = motion.accelerations[k];
-        triangles_[lag][k].add(row, root_keep_);
-      }
-    }
+    across -= drag_.of(motion.velocity_m_s);
+    if (!has_output(bias_.learn(residual, body_to_world<Scalar>(flown.attitude, across), period_s()))) return;
+    judge(motion, residual);
+    turn(motion);
+    regression_.teach(now_us, motion, bank_, force);
     ++rows_;
     if (++rows_since_ < settings_.rows_of_candidate) return;
-    if (!judging_) {
-      propose();
-    } else if (judged_ >= settings_.rows_of_gain) {
-      decide();
-      propose();
-    }
+    rows_since_ = 0;
+    if (!answers()) return;
+    if (!frozen_) drag_ = regression_.drag();
+    if (judging_ && judged_ < settings_.rows_of_gain) return;
+    if (judging_) decide();
+    propose();
   }
+
+  Scalar period_s() const noexcept { return motion_.period_s(Scalar(0)); }
+  static constexpr Scalar magnitude(Scalar value) noexcept { return value < Scalar(0) ? -value : value; }
 
   /// Of the sum that the rotors followed, over that which the model says.
-  static Scalar lacking(std::size_t k, const ForwardSum<Scalar>& sum, const SumMotion<Scalar>& motion,
-                        const typename LagBank<Scalar>::Sums& sums) noexcept {
-    return sums[sum.lag][k] - sum.needed(k, motion, sums[sum.lag][0]);
+  Scalar lacking(std::size_t k, const ForwardSum<Scalar>& sum, const SumMotion<Scalar>& motion) const noexcept {
+    const Followed<Scalar> own = bank_.at(k, sum.lag);
+    return own.sum - sum.needed(k, motion, bank_.at(0, sum.lag).sum, own.rise_1_s);
   }
 
-  void teach_drag(const Vector3<Scalar>& velocity_m_s, const Vector3<Scalar>& force_m_s2) noexcept {
-    using std::sqrt;
-    const Scalar speed = sqrt(dot<Scalar>(velocity_m_s, velocity_m_s));
-    for (int axis = 0; axis < 2; ++axis) {
-      const Scalar v = velocity_m_s[axis];
-      drag_triangle_.add({-v, -speed * v, force_m_s2[axis]}, root_keep_drag_);
+  void turn(const SumMotion<Scalar>& motion) noexcept {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const ForwardSum<Scalar>& sum = flown_[axis + 1].forward;
+      const Scalar said = sum.slope() * bank_.at(axis + 1, sum.lag).rise_1_s * period_s();
+      const Scalar turned = motion.accelerations[axis + 1] - turned_.last[axis];
+      turned_.last[axis] = motion.accelerations[axis + 1];
+      turned_.square += turned * turned;
+      turned_.said += said * said;
     }
-    if (frozen_ || rows_ % settings_.rows_of_candidate != 0) return;
-    const TrianglePrior<Scalar, 2> prior{{Scalar(0), Scalar(0)}, {Scalar(0.2), Scalar(0.05)}};
-    const TriangleSolution<Scalar, 2> solution = drag_triangle_.solve(prior, settings_.repeats);
-    if (!all_finite(solution.values)) return;
-    const auto within = [](Scalar value, Scalar most) noexcept {
-      return value < Scalar(0) ? Scalar(0) : (value > most ? most : value);
-    };
-    drag_ = {within(solution.values[0], Scalar(2)), within(solution.values[1], Scalar(0.5))};
+  }
+  /// False where roll and pitch turn a fifth of what the commands say, or less, over a second: the vehicle stands or is
+  /// held. What it was taught is of no flight, and is forgotten.
+  bool answers() noexcept {
+    constexpr Scalar least = Scalar(1) / Scalar(25);
+    const bool still = turned_.square < least * turned_.said;
+    turned_.square = turned_.said = Scalar(0);
+    if (!still) return true;
+    regression_.forget();
+    judging_ = false;
+    for (OnboardSum<Scalar>& sum : flown_) sum.refused_last = OnboardRule::still;
+    return false;
   }
 
-  /// Forward residuals of what flies and of the candidate, each past a bias of its own that is as quick.
-  void judge(const SumMotion<Scalar>& motion, const typename LagBank<Scalar>::Sums& sums,
-             const SignedSums<Scalar>& residual) noexcept {
-    const Scalar period_s = motion_.period_s(Scalar(0));
+  /// Forward residuals of what flies, of what flew before, and of the candidate.
+  void judge(const SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
+    const bool settled = judging_ && judged_ >= rows_to_settle;
     for (std::size_t k = 0; k < 4; ++k) {
-      const Scalar share = period_s / (period_s + settings_.bias.time_constants_s[k]);
-      const Scalar own = residual[k] - own_.bias[k];
-      own_.bias[k] += share * own;
-      if (!judging_) continue;
-      const Scalar said = lacking(k, candidate_[k].forward, motion, sums);
-      if (judged_ == 0) shadow_.bias[k] = said;
-      const Scalar other = said - shadow_.bias[k];
-      shadow_.bias[k] += share * other;
-      if (judged_ < rows_to_settle) continue;
-      const Scalar a = own * flown_[k].forward.slope(), b = other * candidate_[k].forward.slope();
-      own_.square[k] += a * a;
-      shadow_.square[k] += b * b;
+      add(own_, k, residual[k], flown_[k].forward.slope(), settled);
+      if (judging_) {
+        const Scalar said = lacking(k, candidate_[k].forward, motion);
+        if (judged_ == 0) shadow_.bias[k] = said;
+        add(shadow_, k, said, candidate_[k].forward.slope(), settled);
+      }
     }
     if (judging_) ++judged_;
+    watch(motion, residual);
+  }
+  /// Yaw's are those of its rows: means.
+  void add(Shadow& of, std::size_t k, Scalar residual, Scalar slope, bool settled) const noexcept {
+    const Scalar beside = residual - of.bias[k];
+    of.bias[k] += period_s() / (period_s() + settings_.bias.time_constants_s[k]) * beside;
+    if (!settled) return;
+    const std::uint32_t rows = k == 3 ? settings_.regression.rows_of_yaw : 1;
+    of.left[k] += beside * slope;
+    if ((judged_ - rows_to_settle + 1) % rows != 0) return;
+    of.square[k] += of.left[k] * of.left[k] / Scalar(rows);
+    of.left[k] = Scalar(0);
   }
 
-  /// A candidate of each sum, at the lag that leaves least of the angular accelerations; yaw counts a third.
+  /// A candidate of each sum.
   void propose() noexcept {
-    using std::log;
-    rows_since_ = 0;
-    std::uint8_t best = 0;
-    Scalar least(0);
-    for (std::uint8_t lag = 0; lag < lag_count; ++lag) {
-      Scalar left(0);
-      for (std::size_t k = 1; k < 4; ++k) {
-        const Scalar square = triangles_[lag][k].residual_square() + Scalar(1e-12);
-        left += (k == 3 ? Scalar(0.3) : Scalar(1)) * log(square);
-      }
-      if (lag == 0 || left < least) {
-        least = left;
-        best = lag;
-      }
-    }
+    const LagPlace<Scalar> lag = regression_.best_lag();
+    judging_ = false;
     for (std::size_t k = 0; k < 4; ++k) {
-      const Triangle<Scalar, term_count>& triangle = triangles_[best][k];
-      const auto solution = triangle.solve(prior_of(k, start_model_[k]), settings_.repeats);
+      const SumSolution<Scalar> solution = regression_.solution(k, lag, start_model_[k]);
       OnboardSum<Scalar>& sum = candidate_[k];
-      sum.forward = {solution.values, best};
-      sum.half_width = half_width(solution);
+      sum.forward = {solution.theta, lag};
+      sum.half_width = half_width(k, solution);
       sum.terms_bound = terms_bound(k, sum.forward, start_model_[k]);
-      sum.refused_last = refusal(k, sum.forward, start_model_[k], solution, triangle.rows(),
+      sum.left_square = solution.left_square;
+      sum.refused_last = refusal(k, sum.forward, start_model_[k], solution, regression_.rows(k),
                                  candidate_[0].forward.slope(), start_.propeller_diameter_m, settings_.proof);
       sum.proven = sum.refused_last == OnboardRule::none;
+      judging_ = judging_ || sum.proven;
       flown_[k].refused_last = sum.refused_last;
-      solved_[k] = solution;
     }
-    own_.square = shadow_.square = {};
+    own_.square = shadow_.square = own_.left = shadow_.left = {};
     judged_ = 0;
-    judging_ = true;
   }
 
-  /// Each sum by itself: what is proven and explains the rows since it was proposed better flies.
+  /// Each sum by itself: what is proven flies where it explains the rows since it was proposed better.
   void decide() noexcept {
-    judging_ = false;
+    const auto rows = Scalar(judged_ - rows_to_settle);
     for (std::size_t k = 0; k < 4; ++k) {
       OnboardSum<Scalar>& sum = candidate_[k];
       if (!sum.proven) continue;
-      const Scalar apart = sum.forward.slope() - flown_[k].forward.slope();
-      const bool elsewhere = (apart < Scalar(0) ? -apart : apart) > sum.half_width;
       sum.gain = shadow_.square[k] / own_.square[k];
-      const bool gains = sum.gain < (elsewhere ? Scalar(1.005) : Scalar(0.98));
-      if (!gains || frozen_) {
-        flown_[k].refused_last = gains ? OnboardRule::frozen : OnboardRule::no_gain;
-        continue;
-      }
-      sum.proven_row = rows_;
-      flown_[k] = sum;
-      own_.bias[k] = shadow_.bias[k];
-      SignedSums<Scalar> biases = bias_.sums();
-      biases[k] = shadow_.bias[k];
-      bias_.resume(biases, bias_.across_m_s2(), bias_.across_rate_m_s3(), bias_.noise(), Scalar(0), bias_.status());
+      flown_[k].refused_last = verdict(k, sum, shadow_.square[k] / rows);
+      if (flown_[k].refused_last == OnboardRule::none) swap(k, sum, shadow_.bias[k]);
     }
   }
+  /// An interval that is narrower, or elsewhere, is worth a swap by itself, if nothing is lost.
+  OnboardRule verdict(std::size_t k, const OnboardSum<Scalar>& sum, Scalar square) const noexcept {
+    const OnboardSum<Scalar>& flown = flown_[k];
+    if (square > settings_.proof.most_contradiction * sum.left_square) return OnboardRule::contradicted;
+    const bool elsewhere = magnitude(sum.forward.slope() - flown.forward.slope()) > sum.half_width;
+    const bool tighter = !flown.proven || sum.half_width < flown.half_width;
+    if (!(sum.gain < (elsewhere || tighter ? Scalar(1.005) : Scalar(0.98)))) return OnboardRule::no_gain;
+    return frozen_ ? OnboardRule::frozen : OnboardRule::none;
+  }
+  void swap(std::size_t k, const OnboardSum<Scalar>& sum, Scalar bias) noexcept {
+    const OnboardSum<Scalar> flew = flown_[k];
+    flown_[k] = sum;
+    flown_[k].proven_row = rows_;
+    before_[k] = flew;
+    past_.bias[k] = own_.bias[k];
+    past_.square[k] = watched_.square[k] = first_square_[k] = Scalar(0);
+    watched_rows_[k] = 0;
+    own_.bias[k] = bias;
+    SignedSums<Scalar> biases = bias_.sums();
+    biases[k] = bias;
+    bias_.resume(biases, bias_.across_m_s2(), bias_.across_rate_m_s3(), bias_.noise(), Scalar(0), bias_.status());
+  }
 
- public:
-  const auto& candidate() const noexcept { return candidate_; }
-  const auto& solved() const noexcept { return solved_; }
-
- private:
-  static constexpr std::uint32_t rows_to_settle = 6;
+  /// A proven sum whose residual over two seconds is twice that of its first two flies no longer where the one before
+  /// it has less.
+  void watch(const SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!flown_[k].proven) continue;
+      const Scalar said = lacking(k, before_[k].forward, motion) - past_.bias[k];
+      past_.bias[k] += period_s() / (period_s() + settings_.bias.time_constants_s[k]) * said;
+      const Scalar a = (residual[k] - own_.bias[k]) * flown_[k].forward.slope(), b = said * before_[k].forward.slope();
+      watched_.square[k] += a * a;
+      past_.square[k] += b * b;
+      if (++watched_rows_[k] < settings_.rows_of_gain) continue;
+      if (!(first_square_[k] > Scalar(0))) first_square_[k] = watched_.square[k];
+      const bool doubled = watched_.square[k] > Scalar(4) * first_square_[k];
+      if (doubled && past_.square[k] < Scalar(0.8) * watched_.square[k] && !frozen_) {
+        const Scalar bias = past_.bias[k];
+        swap(k, before_[k], bias);
+        flown_[k].refused_last = OnboardRule::went_back;
+        judging_ = false;
+      }
+      watched_.square[k] = past_.square[k] = Scalar(0);
+      watched_rows_[k] = 0;
+    }
+  }
 
   Airframe<Scalar> start_;
   OnboardSettings<Scalar> settings_;
   detail::SignedMix<Scalar> mix_;
   ForwardModel<Scalar> start_model_;
-  OnboardCertificate<Scalar> flown_{}, candidate_{};
-  std::array<TriangleSolution<Scalar, term_count>, 4> solved_{};
-  Shadow own_{}, shadow_{};
-  std::array<std::array<Triangle<Scalar, term_count>, 4>, lag_count> triangles_{};
-  Triangle<Scalar, 2> drag_triangle_{};
+  SumRegression<Scalar> regression_;
+  OnboardCertificate<Scalar> flown_{}, candidate_{}, before_{};
+  Shadow own_{}, shadow_{}, past_{}, watched_{};
+  std::array<Scalar, 4> first_square_{};  ///< of the first two seconds
+  std::array<std::uint32_t, 4> watched_rows_{};
+  Turned turned_{};
   LateralDrag<Scalar> drag_{};
   FlownMotion<Scalar> motion_;
   LagBank<Scalar> bank_;
   MotionBias<Scalar> bias_;
   detail::TickClock<Scalar> clock_;
-  Scalar root_keep_{0}, root_keep_drag_{0};
   std::uint64_t begun_us_ = 0;
   std::uint32_t rows_ = 0, rows_since_ = 0, judged_ = 0;
   bool excited_ = false, begun_ = false, frozen_ = false, follows_ = false, judging_ = false;
