@@ -75,7 +75,6 @@ class KnownInverse {
     adaptive_.learn(now_us, known, state, rotors().fractions(commands));
   }
   Vector3<double> across_m_s2(const State<double>& state) const noexcept { return adaptive_.across_m_s2(state); }
-  const MotionBias<double>& bias() const noexcept { return adaptive_.bias(); }
   const StillInverse& inverse() const noexcept { return adaptive_.inverse(); }
 
  private:
@@ -124,17 +123,6 @@ struct Shaking {
     wanted.angular_rad_s2 += added.angular_rad_s2;
   }
 };
-
-/// An airframe whose thrust is that which hover has asked for, by the bias of the sum of thrust fractions; torques as
-/// they were.
-Airframe<double> as_it_hovers(Airframe<double> airframe, double bias) {
-  const double hover = 1 / airframe.thrust_to_weight();
-  const double by = hover / std::clamp(hover + bias / rotor_count, 0.05, 0.9);
-  airframe.thrust_coefficient *= by;
-  airframe.power_coefficient *= by;
-  for (double& inertia : airframe.inertia_kg_m2) inertia *= by;
-  return airframe;
-}
 
 /// A flight's policy, as the controller holds it.
 template <class Policy>
@@ -218,8 +206,7 @@ class Flown {
     KnownInverse policy(StillInverse(knows ? still_ : guessed, knows), bias_for(lag_s),
                         FlownMotion<double>({20'000, lag_s, knows ? truth_.delay_s : told_delay_s}));
     return fly(
-        policy, policy.inverse().in_commands(), [](double) {},
-        [&] { return as_it_hovers(told, policy.bias().sums()[0]); });
+        policy, policy.inverse().in_commands(), [](double) {}, [&] { return told; });
   }
 
   nlohmann::json onboard() {
@@ -241,8 +228,7 @@ class Flown {
         if (swapped_s[k] < 0) swapped_s[k] = time_s;
       }
     };
-    nlohmann::json result =
-        fly(policy, policy, watch, [&] { return as_it_hovers(policy.airframe(), policy.bias().sums()[0]); });
+    nlohmann::json result = fly(policy, policy, watch, [&] { return policy.airframe(); });
     const SignedSums<double> truth = true_slopes();
     nlohmann::json& learnt = result["learnt"] = {{"rows", policy.rows()},
                                                  {"unproven_ticks", unproven},
@@ -250,10 +236,15 @@ class Flown {
     for (std::size_t k = 0; k < 4; ++k) {
       const OnboardSum<double>& sum = policy.certificate()[k];
       const double slope = sum.forward.slope();
-      nlohmann::json& said = learnt[sum_names[k]] = {
-          {"proven", sum.proven},           {"first_swap_s", nullptr}, {"swaps", swaps[k]},
-          {"lag_s", sum.forward.lag.seconds()},         {"half_width", nullptr},   {"holds", nullptr},
-          {"terms_bound", sum.terms_bound}, {"gain", sum.gain},        {"refused_last", to_string(sum.refused_last)}};
+      nlohmann::json& said = learnt[sum_names[k]] = {{"proven", sum.proven},
+                                                     {"first_swap_s", nullptr},
+                                                     {"swaps", swaps[k]},
+                                                     {"lag_s", sum.forward.lag.seconds()},
+                                                     {"half_width", nullptr},
+                                                     {"holds", nullptr},
+                                                     {"terms_bound", sum.terms_bound},
+                                                     {"gain", sum.gain},
+                                                     {"refused_last", to_string(sum.refused_last)}};
       if (swapped_s[k] >= 0) said["first_swap_s"] = swapped_s[k];
       if (!sum.proven) continue;
       said["half_width"] = sum.half_width / std::abs(slope);
