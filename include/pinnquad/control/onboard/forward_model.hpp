@@ -124,7 +124,6 @@ struct SumSolution {
   Terms<Scalar> theta{};
   Scalar standard_error{0};  ///< of the slope, residuals taken for white
   Scalar left_square{0};     ///< mean square of what the terms leave of the acceleration, in these rows
-  Scalar share{0};  ///< of what the other terms leave of the acceleration's square, the own thrusts explain so much
 };
 
 /// Least squares with a prior, which is added here and is never forgotten: a term of which nothing is said any more
@@ -134,9 +133,6 @@ SumSolution<Scalar> solved(SumTriangle<Scalar> triangle, const Terms<Scalar>& me
                            Scalar repeats) noexcept {
   using std::sqrt;
   SumSolution<Scalar> result;
-  const Scalar explained = triangle.at(own_term, output_column), left = triangle.at(output_column, output_column);
-  const Scalar square = explained * explained + left * left;
-  result.share = square > Scalar(0) ? explained * explained / square : Scalar(0);
   result.left_square = mean_left_square(triangle);
   const Scalar weight = sqrt(repeats * result.left_square + Scalar(1e-12));
   for (std::size_t i = 0; i < term_count; ++i) {

@@ -15,6 +15,7 @@
 #include "pinnquad/control/onboard/forward_model.hpp"
 #include "pinnquad/control/onboard/lag_bank.hpp"
 #include "pinnquad/control/onboard/proof.hpp"
+#include "pinnquad/control/onboard/sine_answer.hpp"
 #include "pinnquad/control/onboard/sum_regression.hpp"
 #include "pinnquad/control/tick_clock.hpp"
 
@@ -172,22 +173,31 @@ class OnboardInverse {
     std::array<Scalar, 4> left{};    ///< until they make a row
     std::array<Scalar, 4> square{};  ///< sums of squares
   };
-  /// Changes of the angular accelerations from row to row, and those that the commands ask for; squares.
-  struct Turned {
-    std::array<Scalar, 2> last{};
-    Scalar square{0}, said{0};
-  };
-
   Accelerations<Scalar> sines(std::uint64_t now_us) noexcept {
     if (!begun_) begun_us_ = now_us;
     begun_ = true;
     std::array<Scalar, 4> slopes{}, shares{};
     for (std::size_t k = 0; k < 4; ++k) {
       slopes[k] = flown_[k].forward.slope();
-      const bool unknown = !flown_[k].proven && !frozen_;
-      shares[k] = excited_ ? Scalar(1) : (unknown ? settings_.excitation.share_unknown : Scalar(0));
+      shares[k] = sine_share(k);
     }
     return excitation(settings_.excitation, now_us - begun_us_, slopes, shares);
+  }
+  Scalar sine_share(std::size_t k) const noexcept {
+    const bool unknown = !flown_[k].proven && !frozen_;
+    return excited_ ? Scalar(1) : (unknown ? settings_.excitation.share_unknown : Scalar(0));
+  }
+  /// The middle of a row is a period ago.
+  void listen(std::uint64_t now_us, const SumMotion<Scalar>& motion) noexcept {
+    std::array<Scalar, 4> amplitudes{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Scalar slope = flown_[k].forward.slope();
+      amplitudes[k] = sine_amplitudes(settings_.excitation, k, slope, sine_share(k)).fast;
+    }
+    if (!begun_ || now_us - begun_us_ < settings_.period_us) return;
+    const Scalar t_s = sine_time_s<Scalar>(now_us - begun_us_ - settings_.period_us);
+    answer_.add(t_s, settings_.excitation, amplitudes, motion, bank_, regression_.keep());
+    second_.add(t_s, settings_.excitation, amplitudes, motion, bank_, Scalar(1));
   }
 
   /// Two periods of flight.
@@ -202,7 +212,7 @@ class OnboardInverse {
     across -= drag_.of(motion.velocity_m_s);
     if (!has_output(bias_.learn(residual, body_to_world<Scalar>(flown.attitude, across), period_s()))) return;
     judge(motion, residual);
-    turn(motion);
+    listen(now_us, motion);
     regression_.teach(now_us, motion, bank_, force);
     ++rows_;
     if (++rows_since_ < settings_.rows_of_candidate) return;
@@ -223,24 +233,16 @@ class OnboardInverse {
     return own.sum - sum.needed(k, motion, bank_.at(0, sum.lag).sum, own.rise_1_s);
   }
 
-  void turn(const SumMotion<Scalar>& motion) noexcept {
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const ForwardSum<Scalar>& sum = flown_[axis + 1].forward;
-      const Scalar said = sum.slope() * bank_.at(axis + 1, sum.lag).rise_1_s * period_s();
-      const Scalar turned = motion.accelerations[axis + 1] - turned_.last[axis];
-      turned_.last[axis] = motion.accelerations[axis + 1];
-      turned_.square += turned * turned;
-      turned_.said += said * said;
-    }
-  }
-  /// False where roll and pitch turn a fifth of what the commands say, or less, over a second: the vehicle stands or is
-  /// held. What it was taught is of no flight, and is forgotten.
+  /// False where roll and pitch make little of a second of sines: the vehicle stands or is held. What it was taught is
+  /// of no flight, and is forgotten, bias and all.
   bool answers() noexcept {
-    constexpr Scalar least = Scalar(1) / Scalar(25);
-    const bool still = turned_.square < least * turned_.said;
-    turned_.square = turned_.said = Scalar(0);
+    const Scalar least = settings_.proof.least_share;
+    const bool still = second_.asked(1) && second_.asked(2) && second_.share(1) < least && second_.share(2) < least;
+    second_ = {};
     if (!still) return true;
     regression_.forget();
+    answer_ = {};
+    bias_.reset();
     judging_ = false;
     for (OnboardSum<Scalar>& sum : flown_) sum.refused_last = OnboardRule::still;
     return false;
@@ -283,8 +285,9 @@ class OnboardInverse {
       sum.half_width = half_width(k, solution);
       sum.terms_bound = terms_bound(k, sum.forward, start_model_[k]);
       sum.left_square = solution.left_square;
+      const SineWitness<Scalar> sines{answer_.share(k), answer_.slope(k, sum.forward, settings_.excitation)};
       sum.refused_last = refusal(k, sum.forward, start_model_[k], solution, regression_.rows(k),
-                                 candidate_[0].forward.slope(), start_.propeller_diameter_m, settings_.proof);
+                                 candidate_[0].forward.slope(), sines, start_.propeller_diameter_m, settings_.proof);
       sum.proven = sum.refused_last == OnboardRule::none;
       judging_ = judging_ || sum.proven;
       flown_[k].refused_last = sum.refused_last;
@@ -360,7 +363,7 @@ class OnboardInverse {
   Shadow own_{}, shadow_{}, past_{}, watched_{};
   std::array<Scalar, 4> first_square_{};  ///< of the first two seconds
   std::array<std::uint32_t, 4> watched_rows_{};
-  Turned turned_{};
+  SineAnswer<Scalar> answer_{}, second_{};  ///< of the rows remembered, and of the last second
   LateralDrag<Scalar> drag_{};
   FlownMotion<Scalar> motion_;
   LagBank<Scalar> bank_;

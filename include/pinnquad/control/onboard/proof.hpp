@@ -20,7 +20,8 @@ enum class OnboardRule : std::uint8_t {
   not_finite,        ///< a term is no number
   lag_unknown,       ///< the best lag is at an end of the bank
   slope_impossible,  ///< beyond what mass and propeller allow, or of the wrong sign
-  unexcited,         ///< the sum's own thrusts explain too little of the acceleration
+  unexcited,         ///< the vehicle makes too little of the sines that it was asked for
+  sines_disagree,    ///< its answer to them is of another slope
   uncertain,         ///< its interval is too wide
   terms_large,       ///< the other terms may grow too large in the envelope
   contradicted,      ///< the next two seconds are much further from it than the rows that it is of
@@ -39,6 +40,7 @@ constexpr const char* to_string(OnboardRule rule) noexcept {
     case OnboardRule::lag_unknown: return "lag_unknown";
     case OnboardRule::slope_impossible: return "slope_impossible";
     case OnboardRule::unexcited: return "unexcited";
+    case OnboardRule::sines_disagree: return "sines_disagree";
     case OnboardRule::uncertain: return "uncertain";
     case OnboardRule::terms_large: return "terms_large";
     case OnboardRule::contradicted: return "contradicted";
@@ -54,7 +56,9 @@ template <class Scalar>
 struct ProofSettings {
   Scalar least_rows = Scalar(60);
   Scalar most_contradiction = Scalar(9);  ///< mean square of the judged rows over that of its own
-  std::array<Scalar, 4> least_share{Scalar(0.1), Scalar(0.1), Scalar(0.1), Scalar(0.1)};
+  Scalar least_share = Scalar(0.1);       ///< of the sines' acceleration that is made
+  /// Of the slope that the sines say, beside it; less sharp than its interval.
+  std::array<Scalar, 4> most_disagreement{Scalar(0.25), Scalar(0.5), Scalar(0.5), Scalar(0.25)};
   std::array<Scalar, 4> most_half_width{Scalar(0.15), Scalar(0.15), Scalar(0.15), Scalar(0.15)};  ///< over the slope
   std::array<Scalar, 4> most_by_terms{Scalar(1.2), Scalar(0.8), Scalar(0.8),
                                       Scalar(0.8)};  ///< of a sum, in the envelope
@@ -105,17 +109,27 @@ Scalar terms_bound(std::size_t k, const ForwardSum<Scalar>& sum, const ForwardSu
   return bound;
 }
 
-/// The first rule that refuses it, but for the gain; `none` where it is proven.
+/// The vehicle's answer to the sines.
+template <class Scalar>
+struct SineWitness {
+  Scalar share{0}, slope{0};
+};
+
+/// The first rule that refuses it, but for the gain; `none` where it is proven. `thrust`: the slope of the first sum
+/// that comes with it.
 template <class Scalar>
 OnboardRule refusal(std::size_t k, const ForwardSum<Scalar>& sum, const ForwardSum<Scalar>& start,
-                    const SumSolution<Scalar>& solution, Scalar rows, Scalar thrust, Scalar propeller_diameter_m,
-                    const ProofSettings<Scalar>& settings) noexcept {
+                    const SumSolution<Scalar>& solution, Scalar rows, Scalar thrust, const SineWitness<Scalar>& sines,
+                    Scalar propeller_diameter_m, const ProofSettings<Scalar>& settings) noexcept {
+  const auto magnitude = [](Scalar value) noexcept { return value < Scalar(0) ? -value : value; };
   if (!(rows >= settings.least_rows)) return OnboardRule::few_rows;
   if (!(all_finite(sum.theta) && is_finite(solution.standard_error))) return OnboardRule::not_finite;
   if (sum.lag.lower + 2u == lag_count && !(sum.lag.beside < Scalar(1))) return OnboardRule::lag_unknown;
   if (!slope_possible(k, sum.slope(), thrust, propeller_diameter_m)) return OnboardRule::slope_impossible;
-  if (!(solution.share >= settings.least_share[k])) return OnboardRule::unexcited;
-  const Scalar slope = sum.slope() < Scalar(0) ? -sum.slope() : sum.slope();
+  if (!(sines.share >= settings.least_share)) return OnboardRule::unexcited;
+  const Scalar slope = magnitude(sum.slope());
+  const Scalar apart = magnitude(sines.slope - sum.slope());
+  if (!(apart <= settings.most_disagreement[k] * slope)) return OnboardRule::sines_disagree;
   if (!(half_width(k, solution) <= settings.most_half_width[k] * slope)) return OnboardRule::uncertain;
   if (!(terms_bound(k, sum, start) <= settings.most_by_terms[k])) return OnboardRule::terms_large;
   return OnboardRule::none;

@@ -87,6 +87,8 @@ class SumRegression {
     teach_drag(motion.velocity_m_s, force_m_s2);
   }
 
+  /// Share of the rows before that is kept.
+  Scalar keep() const noexcept { return root_keep_ * root_keep_; }
   /// Rows of a sum that are remembered.
   Scalar rows(std::size_t k) const noexcept {
     return triangles_[0][k].rows() * (k == 3 ? Scalar(settings_.rows_of_yaw) : Scalar(1));
@@ -131,7 +133,6 @@ class SumRegression {
     for (std::size_t i = 0; i < term_count; ++i) result.theta[i] = lag.of(result.theta[i], next.theta[i]);
     result.standard_error = lag.of(result.standard_error, next.standard_error);
     result.left_square = lag.of(result.left_square, next.left_square);
-    result.share = lag.of(result.share, next.share);
     return result;
   }
 
