@@ -53,8 +53,7 @@ struct OnboardSum {
   Scalar left_square{0};         ///< mean square of its residual in the rows that it is of
   Scalar gain{1};                ///< mean square of its forward residual over that of the sum that flew before
   std::uint32_t proven_row = 0;  ///< the row after which it has flown
-  OnboardRule refused_last =
-      OnboardRule::few_rows;  ///< what refused the last candidate; `none`: it is judged, or flies
+  OnboardRule refused_last{OnboardRule::few_rows};  ///< it refused a candidate last; `none` once one flies
 };
 template <class Scalar>
 using OnboardCertificate = std::array<OnboardSum<Scalar>, 4>;
@@ -290,7 +289,7 @@ class OnboardInverse {
                                  candidate_[0].forward.slope(), sines, start_.propeller_diameter_m, settings_.proof);
       sum.proven = sum.refused_last == OnboardRule::none;
       judging_ = judging_ || sum.proven;
-      flown_[k].refused_last = sum.refused_last;
+      if (!sum.proven) flown_[k].refused_last = sum.refused_last;
     }
     own_.square = shadow_.square = own_.left = shadow_.left = {};
     judged_ = 0;
@@ -307,21 +306,24 @@ class OnboardInverse {
       if (flown_[k].refused_last == OnboardRule::none) swap(k, sum, shadow_.bias[k]);
     }
   }
+  static bool elsewhere(const OnboardSum<Scalar>& sum, const OnboardSum<Scalar>& other) noexcept {
+    return magnitude(sum.forward.slope() - other.forward.slope()) > sum.half_width;
+  }
   /// An interval that is narrower, or elsewhere, is worth a swap by itself, if nothing is lost.
   OnboardRule verdict(std::size_t k, const OnboardSum<Scalar>& sum, Scalar square) const noexcept {
     const OnboardSum<Scalar>& flown = flown_[k];
     if (square > settings_.proof.most_contradiction * sum.left_square) return OnboardRule::contradicted;
-    const bool elsewhere = magnitude(sum.forward.slope() - flown.forward.slope()) > sum.half_width;
     const bool tighter = !flown.proven || sum.half_width < flown.half_width;
-    if (!(sum.gain < (elsewhere || tighter ? Scalar(1.005) : Scalar(0.98)))) return OnboardRule::no_gain;
+    if (!(sum.gain < (elsewhere(sum, flown) || tighter ? Scalar(1.005) : Scalar(0.98)))) return OnboardRule::no_gain;
     return frozen_ ? OnboardRule::frozen : OnboardRule::none;
   }
   void swap(std::size_t k, const OnboardSum<Scalar>& sum, Scalar bias) noexcept {
-    const OnboardSum<Scalar> flew = flown_[k];
+    if (elsewhere(sum, flown_[k])) {  // a finer one of the same slope is no other model
+      before_[k] = flown_[k];
+      past_.bias[k] = own_.bias[k];
+    }
     flown_[k] = sum;
     flown_[k].proven_row = rows_;
-    before_[k] = flew;
-    past_.bias[k] = own_.bias[k];
     past_.square[k] = watched_.square[k] = first_square_[k] = Scalar(0);
     watched_rows_[k] = 0;
     own_.bias[k] = bias;
@@ -344,8 +346,8 @@ class OnboardInverse {
       if (!(first_square_[k] > Scalar(0))) first_square_[k] = watched_.square[k];
       const bool doubled = watched_.square[k] > Scalar(4) * first_square_[k];
       if (doubled && past_.square[k] < Scalar(0.8) * watched_.square[k] && !frozen_) {
-        const Scalar bias = past_.bias[k];
-        swap(k, before_[k], bias);
+        const OnboardSum<Scalar> again = before_[k];
+        swap(k, again, past_.bias[k]);
         flown_[k].refused_last = OnboardRule::went_back;
         judging_ = false;
       }
