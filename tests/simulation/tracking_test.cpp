@@ -297,6 +297,30 @@ TEST_CASE("the loop recovers from a start far off, in every direction") {
   }
 }
 
+TEST_CASE("a controller that changes to another airframe and other limits flies as one that was made of them") {
+  Airframe<double> other = vehicle().airframe();
+  other.rotors[0].y_m *= 1.4;  // who desaturates by it gives up another share of the torque
+  FlightLimits<double> low;
+  low.max_horizontal_acceleration_m_s2 = 2;
+  const FlightController<double> outer({}, low);
+  using Tracking = TrackingController<double, Analytic>;
+  Tracking changes(vehicle().airframe(), FlightController<double>{}, analytic_inverse());
+  Tracking stays = changes, made(other, outer, analytic_inverse());
+  State<double> far;
+  far.position_m = course().center_m + Vector3<double>(20, -9, 30);
+  far.body_rates_rad_s = Vector3<double>(6, -5, 2);
+  const TrajectoryPoint<double> point = course().sample(0.0);
+  Commands<double> before{}, after{}, unchanged{}, wanted{};
+  REQUIRE(has_output(changes(far, point, 2'000, before)));
+  changes.change_to(other, outer);
+  REQUIRE(has_output(changes(far, point, 4'000, after)));
+  REQUIRE(has_output(stays(far, point, 4'000, unchanged)));
+  REQUIRE(has_output(made(far, point, 4'000, wanted)));
+  CHECK(before == unchanged);
+  CHECK(after == wanted);
+  CHECK(after != before);
+}
+
 TEST_CASE("mirror symmetry: the mirrored course is missed by as much") {
   FigureEight<double> right = course(), left = course();
   left.half_width_m = -left.half_width_m;

@@ -3,6 +3,8 @@
 // ships, under conditions that they do not know of.
 //   pinnquad loop my_model/model.block --trajectory circle --column battery_voltage=15.2
 //   pinnquad loop my_model/model.block --controllers adaptive,indi --conditions calm,payload
+// Or vehicles that nobody knows, by what is guessed or learnt of them.
+//   pinnquad loop --vehicles 20 --controllers start,true_inverse --out flown
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -25,6 +27,7 @@
 #include "flight/loop_figures.hpp"
 #include "loop/controlled_loop.hpp"
 #include "loop/loop_model.hpp"
+#include "loop/vehicles.hpp"
 #include "pinnquad/exported/model.hpp"
 
 namespace {
@@ -35,6 +38,7 @@ struct LoopOptions : programs::LoopModelOptions {
   std::string trajectory = programs::loop_trajectories.front();
   std::string guard = "envelope";
   std::vector<std::string> controllers, conditions;
+  programs::VehiclesOptions unknown;
   bool json = false;
 };
 
@@ -171,7 +175,36 @@ int fly_controllers(const LoopOptions& options, const programs::LoopModel& given
   return 0;
 }
 
+/// Throws std::invalid_argument, one line, for a name that `mode` does not fly.
+void require_names(const std::string& option, const std::vector<std::string>& names,
+                   const std::vector<std::string>& known, const std::string& mode) {
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw std::invalid_argument(option + ": " + name + " is none of those that " + mode +
+                                " flies: " + programs::listed(known));
+  }
+}
+
+/// Vehicles that nobody knows.
+int fly_unknown(const LoopOptions& options) {
+  programs::VehiclesOptions unknown = options.unknown;
+  if (!options.model.empty()) {
+    throw std::invalid_argument("--vehicles: a model was given, which these flights don't fly");
+  }
+  if (unknown.out.empty()) throw std::invalid_argument("--out is required with --vehicles: the folder of loop.json");
+  require_names("--controllers", options.controllers, programs::vehicle_controllers(), "--vehicles");
+  require_names("--conditions", options.conditions, programs::vehicle_conditions(), "--vehicles");
+  unknown.controllers = programs::names_or(options.controllers, programs::vehicle_controllers());
+  unknown.conditions = programs::names_or(options.conditions, {"calm"});
+  unknown.json = options.json;
+  return programs::fly_vehicles(unknown);
+}
+
 int loop(const LoopOptions& options) {
+  if (options.unknown.vehicles > 0) return fly_unknown(options);
+  if (options.model.empty()) throw std::invalid_argument("a model is required, or --vehicles");
+  require_names("--controllers", options.controllers, programs::names_of(programs::loop_controllers), "a model");
+  require_names("--conditions", options.conditions, programs::names_of(programs::loop_conditions), "a model");
   const programs::LoopModel given = programs::read_loop_model(options);
   const BlockModel& model = given.model;
   if (!options.controllers.empty() || !options.conditions.empty()) return fly_controllers(options, given);
@@ -198,13 +231,12 @@ int loop(const LoopOptions& options) {
 namespace programs {
 
 Command loop_command(CLI::App& program) {
-  CLI::App* line = program.add_subcommand(
-      "loop", "Flies a model in a closed loop in the simulator, from its block, without compiling");
+  CLI::App* line =
+      program.add_subcommand("loop", "Flies a model in a closed loop in the simulator, or vehicles that nobody knows");
   const auto options = std::make_shared<LoopOptions>();
-  const auto name_of = [](const LoopCondition& condition) { return condition.name; };
   add_loop_model(*line, *options);
-  line->add_option("--trajectory", options->trajectory,
-                   "a figure-eight that airframe and envelope hold, a quicker one whose nose swings, a level circle")
+  line->get_option("model")->required(false);  // of vehicles that nobody knows there is none
+  line->add_option("--trajectory", options->trajectory, "as large as airframe and envelope hold")
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>(loop_trajectories.begin(), loop_trajectories.end())));
   CLI::Option* guard =
@@ -213,18 +245,40 @@ Command loop_command(CLI::App& program) {
               "what flies outside of the model's training envelope: the analytic inverse, or the model too (none)")
           ->capture_default_str()
           ->check(CLI::IsMember({"envelope", "none"}));
-  add_names(*line, "--controllers", options->controllers, loop_controllers,
-            "fly these, of those below (default: pid,formula,indi,structured,adaptive)")
+  const std::vector<std::string> of_model = names_of(loop_controllers), under = names_of(loop_conditions);
+  const auto with = [](std::vector<std::string> names, const std::vector<std::string>& more) {
+    names.insert(names.end(), more.begin(), more.end());
+    return names;
+  };
+  add_names(*line, "--controllers", options->controllers, with(of_model, vehicle_controllers()),
+            "fly these (docs/loop.md; default: pid,formula,indi,structured,adaptive): " + listed(of_model))
       ->excludes(guard);
-  add_names(*line, "--conditions", options->conditions, loop_conditions,
-            "fly controllers under these (docs/loop.md; default: calm): " + listed(loop_conditions, name_of))
+  add_names(*line, "--conditions", options->conditions, with(under, vehicle_conditions()),
+            "fly controllers under these (docs/loop.md; default: calm): " + listed(under))
       ->excludes(guard);
+  VehiclesOptions& unknown = options->unknown;
+  CLI::Option* vehicles = add_number(*line, "--vehicles", unknown.vehicles, std::size_t{1}, std::size_t{10'000},
+                                     "fly so many vehicles that nobody knows, no model (docs/onboard.md), by " +
+                                         listed(vehicle_controllers()) + "; under " + listed(vehicle_conditions()))
+                              ->default_str("");
+  for (const char* other : {"--column", "--airframe", "--battery", "--battery-charge", "--trajectory", "--guard"}) {
+    vehicles->excludes(line->get_option(other));
+  }
+  add_number(*line, "--seed", unknown.seed, std::uint64_t{0}, most_seed, "of vehicles, noise and wind")
+      ->needs(vehicles);
+  line->add_option("--start", unknown.start, "what is guessed: numbers within 40 %, or laws of mass and propeller")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"forty", "laws"}))
+      ->needs(vehicles);
+  add_number(*line, "--frozen", unknown.frozen_s, 1.0, 3600.0, "a model learnt on board is frozen then, s")
+      ->needs(vehicles);
+  add_path(*line, "--out", unknown.out, "FOLDER", "where loop.json of these vehicles goes")->needs(vehicles);
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(
-      described("Controllers:", loop_controllers) +
       "Examples:\n"
       "  pinnquad loop trained.block --battery 3x2200 --battery-charge 40\n"
       "  pinnquad loop trained.block --controllers adaptive,indi --conditions calm,payload\n"
+      "  pinnquad loop --vehicles 20 --out flown\n"
       "Exit codes: 0; 1 the model loses the vehicle, or answers nothing; 2 bad input or a file that can't be read; "
       "130\n"
       "interrupted.");

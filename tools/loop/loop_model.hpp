@@ -84,14 +84,18 @@ std::string described(const char* title, const Named& all) {
   return result + "\n";
 }
 
-/// An option that takes names of `all`, parted by commas.
 template <class Named>
-CLI::Option* add_names(CLI::App& line, const char* option, std::vector<std::string>& value, const Named& all,
-                       const std::string& text) {
+std::vector<std::string> names_of(const Named& all) {
   std::vector<std::string> names;
   for (const auto& each : all) names.emplace_back(each.name);
+  return names;
+}
+
+/// An option that takes some of these names, parted by commas.
+inline CLI::Option* add_names(CLI::App& line, const char* option, std::vector<std::string>& value,
+                              const std::vector<std::string>& names, const std::string& text) {
   CLI::IsMember known(names);
-  known.description("");  // the names are in the footer
+  known.description("");  // the help says them elsewhere
   return line.add_option(option, value, text)->delimiter(',')->type_name("NAME,...")->check(known);
 }
 

@@ -96,9 +96,9 @@ programs::Command loop_command(CLI::App& program) {
       "loop", "Controllers compared in the loop, under conditions, with equal and with tuned gains");
   const auto options = std::make_shared<LoopOptions>();
   add_loop_model(*line, *options);
-  add_names(*line, "--controllers", options->controllers, studied_controllers(),
+  add_names(*line, "--controllers", options->controllers, programs::names_of(studied_controllers()),
             "compare these controllers, of those below (default: pid,formula,indi,structured,adaptive)");
-  add_names(*line, "--conditions", options->conditions, programs::loop_conditions,
+  add_names(*line, "--conditions", options->conditions, programs::names_of(programs::loop_conditions),
             "under these conditions, of those below (default: calm,wind_8,gusts,payload,weak_rotor,battery)");
   const auto list = [&](const char* name, std::vector<std::string>& value, const std::vector<std::string>& known,
                         const char* text) {

@@ -73,6 +73,14 @@ class TrackingController {
   template <class Seconds, std::enable_if_t<std::is_floating_point_v<Seconds>, int> = 0>
   Status operator()(const State<Scalar>&, const TrajectoryPoint<Scalar>&, Seconds, Commands<Scalar>&) = delete;
 
+  /// From now on of this airframe, with this controller: a policy that learns finds more of either in flight. What it
+  /// has learnt stays.
+  void change_to(const Airframe<Scalar>& airframe, const FlightController<Scalar>& controller) noexcept {
+    airframe_ = airframe;
+    rotors_ = Rotors<Scalar>(airframe);
+    controller_ = controller;
+  }
+
   const FeedForward& feed_forward() const noexcept { return feed_forward_; }
   /// The policy's own Status of the last tick that asked it.
   Status feed_forward_status() const noexcept { return feed_forward_status_; }

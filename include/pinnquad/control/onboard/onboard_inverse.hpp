@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: MIT
+// A vehicle that nobody knows, learnt while it flies: rows of 20 ms from what the rotors really did -> triangles of
+// each signed sum and lag -> candidate -> proof -> two seconds beside what flies -> swap. Inverse, bias and drag across
+// the thrust fly from the first tick; where nothing is proven the inverse is the start's.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "pinnquad/control/desaturate.hpp"
+#include "pinnquad/control/flown_motion.hpp"
+#include "pinnquad/control/onboard/excitation.hpp"
+#include "pinnquad/control/onboard/forward_model.hpp"
+#include "pinnquad/control/onboard/lag_bank.hpp"
+#include "pinnquad/control/onboard/proof.hpp"
+#include "pinnquad/control/onboard/sine_answer.hpp"
+#include "pinnquad/control/onboard/sum_regression.hpp"
+#include "pinnquad/control/tick_clock.hpp"
+
+namespace pinnquad {
+
+namespace detail {
+template <class Scalar>
+constexpr BiasSettings<Scalar> unknown_vehicle_bias() noexcept {
+  BiasSettings<Scalar> settings;
+  settings.most = {Scalar(2.4), Scalar(1), Scalar(1), Scalar(1)};
+  return settings;
+}
+}  // namespace detail
+
+/// Settings of an OnboardInverse.
+template <class Scalar>
+struct OnboardSettings {
+  std::uint32_t period_us = 20'000;
+  Scalar delay_s = Scalar(0.006);        ///< of a state beside the commands; what it lacks is learnt
+  std::uint32_t rows_of_candidate = 50;  ///< a candidate each second
+  std::uint32_t rows_of_gain = 100;      ///< is judged for two
+  RegressionSettings<Scalar> regression{};
+  BiasSettings<Scalar> bias = detail::unknown_vehicle_bias<Scalar>();
+  ExcitationSettings<Scalar> excitation{};
+  ProofSettings<Scalar> proof{};
+};
+
+/// Certificate of a signed sum as it flies.
+template <class Scalar>
+struct OnboardSum {
+  ForwardSum<Scalar> forward{};
+  bool proven = false;           ///< false: the start's
+  Scalar half_width{0};          ///< of the slope's interval, in its units; 0 of the start, which has none
+  Scalar terms_bound{0};         ///< most that the other terms ask for beside the start's, in units of the sum
+  Scalar left_square{0};         ///< mean square of its residual in the rows that it is of
+  Scalar gain{1};                ///< mean square of its forward residual over that of the sum that flew before
+  std::uint32_t proven_row = 0;  ///< the row after which it has flown
+  OnboardRule refused_last{OnboardRule::few_rows};  ///< it refused a candidate last; `none` once one flies
+};
+template <class Scalar>
+using OnboardCertificate = std::array<OnboardSum<Scalar>, 4>;
+
+/// A feed-forward policy (control/feed_forward.hpp) that learns in flight and knows of an acceleration across
+/// (control/adaptive_inverse.hpp). Commands are thrust fractions through the start's curves; its signs are what is
+/// known of the vehicle for sure.
+template <class Scalar>
+class OnboardInverse {
+ public:
+  explicit OnboardInverse(const Airframe<Scalar>& start, const OnboardSettings<Scalar>& settings = {}) noexcept
+      : start_(start),
+        settings_(settings),
+        mix_(detail::signed_mix(start)),
+        start_model_(forward_model(start)),
+        regression_(settings.regression, settings.period_us),
+        motion_(FlownMotionSettings<Scalar>{settings.period_us, Scalar(0), Scalar(0)}),
+        bank_(settings.period_us, settings.delay_s),
+        bias_(start, settings.bias) {
+    for (std::size_t k = 0; k < 4; ++k) flown_[k].forward = before_[k].forward = start_model_[k];
+  }
+
+  /// Gentle sines on what is asked for, from the next tick on; without them only where a sum is unknown, fainter.
+  void excite(bool on) noexcept {
+    begun_ = begun_ && on == excited_;
+    excited_ = on;
+  }
+  /// No model is swapped any more; the bias goes on.
+  void freeze(bool on) noexcept { frozen_ = on; }
+
+  /// One tick, before the inverse is asked: the state, and the commands in force since the tick before. `known`: they
+  /// drove the motors, in flight, and the state is fresh. A row is of two periods in which no command was at its end.
+  void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
+    const Scalar step_s = clock_.step_s(now_us);
+    motion_.velocity(now_us, state.velocity_m_s);
+    motion_.body_rates(now_us, state.body_rates_rad_s);
+    const bool sound = known && step_s > Scalar(0) && all_finite(state) && all_finite(commands);
+    const bool at_end = sound && saturated(commands);
+    const bool ended = motion_.tick(now_us, sound && !at_end, state, commands);
+    if (sound) {
+      Commands<Scalar> fractions{};
+      for (std::size_t i = 0; i < fractions.size(); ++i) {
+        fractions[i] = thrust_fraction(start_.rotors[i].thrust_curve, commands[i]);
+      }
+      if (!follows_) bank_.restart(fractions, mix_);
+      bank_.tick(now_us, step_s, ended, fractions, mix_);
+    }
+    follows_ = sound;
+    if (ended && sound) {
+      row(now_us);
+    } else if (at_end) {
+      bias_.freeze();
+    } else {
+      bias_.wait(step_s);
+    }
+  }
+
+  /// `not_finite` of a state or motion that is no number, `output_not_finite`, else `ok`. Commands may lie beyond 0 and
+  /// 1: they are to be desaturated (control/desaturate.hpp).
+  Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& wanted, std::uint64_t now_us,
+                    Commands<Scalar>& commands) noexcept {
+    if (!(all_finite(state) && all_finite(wanted.linear_m_s2) && all_finite(wanted.angular_rad_s2))) {
+      return Status::not_finite;
+    }
+    const Accelerations<Scalar> added = sines(now_us);
+    const SumMotion<Scalar> motion = sum_motion(
+        motion_inputs(state, {wanted.linear_m_s2 + added.linear_m_s2, wanted.angular_rad_s2 + added.angular_rad_s2}));
+    SignedSums<Scalar> sums{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      sums[k] = flown_[k].forward.needed(k, motion, sums[0], Scalar(0)) + bias_.sums()[k];
+    }
+    Commands<Scalar> result{};
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      Scalar fraction(0);
+      for (std::size_t k = 0; k < 4; ++k) fraction += mix_.by[i][k] * sums[k];
+      result[i] = command_of_fraction(start_.rotors[i].thrust_curve, fraction);
+    }
+    if (!all_finite(result)) return Status::output_not_finite;
+    commands = result;
+    return Status::ok;
+  }
+  /// Time in seconds would be truncated.
+  template <class Seconds, std::enable_if_t<std::is_floating_point_v<Seconds>, int> = 0>
+  Status operator()(const State<Scalar>&, const Accelerations<Scalar>&, Seconds, Commands<Scalar>&) = delete;
+
+  /// Drag across the thrust and the bias beside it, NED.
+  Vector3<Scalar> across_m_s2(const State<Scalar>& state) const noexcept {
+    return body_to_world<Scalar>(state.attitude, drag_.of(body_velocity(state))) + bias_.across_ahead_m_s2();
+  }
+
+  /// The sums that fly now, at any tick.
+  const OnboardCertificate<Scalar>& certificate() const noexcept { return flown_; }
+  /// The sums that were proposed last, whether they will fly or not.
+  const OnboardCertificate<Scalar>& candidate() const noexcept { return candidate_; }
+  const LateralDrag<Scalar>& drag() const noexcept { return drag_; }
+  const MotionBias<Scalar>& bias() const noexcept { return bias_; }
+  std::uint32_t rows() const noexcept { return rows_; }  ///< since the start
+  /// The start with the slopes that fly, for limits and desaturation: thrust by coefficient, torques by inertia.
+  Airframe<Scalar> airframe() const noexcept {
+    Airframe<Scalar> flown = start_;
+    const Scalar thrust = flown_[0].forward.slope() / start_model_[0].slope();
+    flown.thrust_coefficient *= thrust;
+    flown.power_coefficient *= thrust;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      flown.inertia_kg_m2[axis] *= thrust * start_model_[axis + 1].slope() / flown_[axis + 1].forward.slope();
+    }
+    return flown;
+  }
+
+ private:
+  static constexpr std::uint32_t rows_to_settle = 6;
+
+  /// The forward residuals of sums, past a bias of their own, as the one that flies has.
+  struct Shadow {
+    SignedSums<Scalar> bias{};
+    std::array<Scalar, 4> left{};    ///< until they make a row
+    std::array<Scalar, 4> square{};  ///< sums of squares
+  };
+  Accelerations<Scalar> sines(std::uint64_t now_us) noexcept {
+    if (!begun_) begun_us_ = now_us;
+    begun_ = true;
+    std::array<Scalar, 4> slopes{}, shares{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      slopes[k] = flown_[k].forward.slope();
+      shares[k] = sine_share(k);
+    }
+    return excitation(settings_.excitation, now_us - begun_us_, slopes, shares);
+  }
+  Scalar sine_share(std::size_t k) const noexcept {
+    const bool unknown = !flown_[k].proven && !frozen_;
+    return excited_ ? Scalar(1) : (unknown ? settings_.excitation.share_unknown : Scalar(0));
+  }
+  /// The middle of a row is a period ago.
+  void listen(std::uint64_t now_us, const SumMotion<Scalar>& motion) noexcept {
+    std::array<Scalar, 4> amplitudes{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Scalar slope = flown_[k].forward.slope();
+      amplitudes[k] = sine_amplitudes(settings_.excitation, k, slope, sine_share(k)).fast;
+    }
+    if (!begun_ || now_us - begun_us_ < settings_.period_us) return;
+    const Scalar t_s = sine_time_s<Scalar>(now_us - begun_us_ - settings_.period_us);
+    answer_.add(t_s, settings_.excitation, amplitudes, motion, bank_, regression_.keep());
+    second_.add(t_s, settings_.excitation, amplitudes, motion, bank_, Scalar(1));
+  }
+
+  /// Two periods of flight.
+  void row(std::uint64_t now_us) noexcept {
+    const MotionInputs<Scalar>& flown = motion_.motion();
+    const SumMotion<Scalar> motion = sum_motion(flown);
+    SignedSums<Scalar> residual{};
+    for (std::size_t k = 0; k < 4; ++k) residual[k] = lacking(k, flown_[k].forward, motion);
+    Vector3<Scalar> across = SpecificForce::of<Scalar>(flown);
+    const Vector3<Scalar> force = across;
+    across[2] = Scalar(0);
+    across -= drag_.of(motion.velocity_m_s);
+    if (!has_output(bias_.learn(residual, body_to_world<Scalar>(flown.attitude, across), period_s()))) return;
+    judge(motion, residual);
+    listen(now_us, motion);
+    regression_.teach(now_us, motion, bank_, force);
+    ++rows_;
+    if (++rows_since_ < settings_.rows_of_candidate) return;
+    rows_since_ = 0;
+    if (!answers()) return;
+    if (!frozen_) drag_ = regression_.drag();
+    if (judging_ && judged_ < settings_.rows_of_gain) return;
+    if (judging_) decide();
+    propose();
+  }
+
+  Scalar period_s() const noexcept { return motion_.period_s(Scalar(0)); }
+  static constexpr Scalar magnitude(Scalar value) noexcept { return value < Scalar(0) ? -value : value; }
+
+  /// Of the sum that the rotors followed, over that which the model says.
+  Scalar lacking(std::size_t k, const ForwardSum<Scalar>& sum, const SumMotion<Scalar>& motion) const noexcept {
+    const Followed<Scalar> own = bank_.at(k, sum.lag);
+    return own.sum - sum.needed(k, motion, bank_.at(0, sum.lag).sum, own.rise_1_s);
+  }
+
+  /// False where roll and pitch make little of a second of sines: the vehicle stands or is held. What it was taught is
+  /// of no flight, and is forgotten, bias and all.
+  bool answers() noexcept {
+    const Scalar least = settings_.proof.least_share;
+    const bool still = second_.asked(1) && second_.asked(2) && second_.share(1) < least && second_.share(2) < least;
+    second_ = {};
+    const bool any = still || stood_;  // the second of the lift-off too
+    stood_ = still;
+    if (!any) return true;
+    regression_.forget();
+    answer_ = {};
+    bias_.reset();
+    judging_ = false;
+    for (OnboardSum<Scalar>& sum : flown_) sum.refused_last = OnboardRule::still;
+    return false;
+  }
+
+  /// Forward residuals of what flies, of what flew before, and of the candidate.
+  void judge(const SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
+    const bool settled = judging_ && judged_ >= rows_to_settle;
+    for (std::size_t k = 0; k < 4; ++k) {
+      add(own_, k, residual[k], flown_[k].forward.slope(), settled);
+      if (judging_) {
+        const Scalar said = lacking(k, candidate_[k].forward, motion);
+        if (judged_ == 0) shadow_.bias[k] = said;
+        add(shadow_, k, said, candidate_[k].forward.slope(), settled);
+      }
+    }
+    if (judging_) ++judged_;
+    watch(motion, residual);
+  }
+  /// Yaw's are those of its rows: means.
+  void add(Shadow& of, std::size_t k, Scalar residual, Scalar slope, bool settled) const noexcept {
+    const Scalar beside = residual - of.bias[k];
+    of.bias[k] += period_s() / (period_s() + settings_.bias.time_constants_s[k]) * beside;
+    if (!settled) return;
+    const std::uint32_t rows = k == 3 ? settings_.regression.rows_of_yaw : 1;
+    of.left[k] += beside * slope;
+    if ((judged_ - rows_to_settle + 1) % rows != 0) return;
+    of.square[k] += of.left[k] * of.left[k] / Scalar(rows);
+    of.left[k] = Scalar(0);
+  }
+
+  /// A candidate of each sum.
+  void propose() noexcept {
+    const LagPlace<Scalar> lag = regression_.best_lag();
+    judging_ = false;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const SumSolution<Scalar> solution = regression_.solution(k, lag, start_model_[k]);
+      OnboardSum<Scalar>& sum = candidate_[k];
+      sum.forward = {solution.theta, lag};
+      sum.half_width = half_width(k, solution);
+      sum.terms_bound = terms_bound(k, sum.forward, start_model_[k]);
+      sum.left_square = solution.left_square;
+      const SineWitness<Scalar> sines{answer_.share(k), answer_.slope(k, sum.forward, settings_.excitation)};
+      sum.refused_last = refusal(k, sum.forward, start_model_[k], solution, regression_.rows(k),
+                                 candidate_[0].forward.slope(), sines, start_.propeller_diameter_m, settings_.proof);
+      sum.proven = sum.refused_last == OnboardRule::none;
+      judging_ = judging_ || sum.proven;
+      if (!sum.proven) flown_[k].refused_last = sum.refused_last;
+    }
+    own_.square = shadow_.square = own_.left = shadow_.left = {};
+    judged_ = 0;
+  }
+
+  /// Each sum by itself: what is proven flies where it explains the rows since it was proposed better.
+  void decide() noexcept {
+    const auto rows = Scalar(judged_ - rows_to_settle);
+    for (std::size_t k = 0; k < 4; ++k) {
+      OnboardSum<Scalar>& sum = candidate_[k];
+      if (!sum.proven) continue;
+      sum.gain = shadow_.square[k] / own_.square[k];
+      flown_[k].refused_last = verdict(k, sum, shadow_.square[k] / rows);
+      if (flown_[k].refused_last == OnboardRule::none) swap(k, sum, shadow_.bias[k]);
+    }
+  }
+  static bool elsewhere(const OnboardSum<Scalar>& sum, const OnboardSum<Scalar>& other) noexcept {
+    return magnitude(sum.forward.slope() - other.forward.slope()) > sum.half_width;
+  }
+  /// An interval that is narrower, or elsewhere, is worth a swap by itself, if nothing is lost.
+  OnboardRule verdict(std::size_t k, const OnboardSum<Scalar>& sum, Scalar square) const noexcept {
+    const OnboardSum<Scalar>& flown = flown_[k];
+    if (square > settings_.proof.most_contradiction * sum.left_square) return OnboardRule::contradicted;
+    const bool tighter = !flown.proven || sum.half_width < flown.half_width;
+    if (!(sum.gain < (elsewhere(sum, flown) || tighter ? Scalar(1.005) : Scalar(0.98)))) return OnboardRule::no_gain;
+    return frozen_ ? OnboardRule::frozen : OnboardRule::none;
+  }
+  void swap(std::size_t k, const OnboardSum<Scalar>& sum, Scalar bias) noexcept {
+    if (elsewhere(sum, flown_[k])) {  // a finer one of the same slope is no other model
+      before_[k] = flown_[k];
+      past_.bias[k] = own_.bias[k];
+    }
+    flown_[k] = sum;
+    flown_[k].proven_row = rows_;
+    past_.square[k] = watched_.square[k] = first_square_[k] = Scalar(0);
+    watched_rows_[k] = 0;
+    own_.bias[k] = bias;
+    SignedSums<Scalar> biases = bias_.sums();
+    biases[k] = bias;
+    bias_.resume(biases, bias_.across_m_s2(), bias_.across_rate_m_s3(), bias_.noise(), Scalar(0), bias_.status());
+  }
+
+  /// A proven sum whose residual over two seconds is twice that of its first two flies no longer where the one before
+  /// it has less.
+  void watch(const SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!flown_[k].proven) continue;
+      const Scalar said = lacking(k, before_[k].forward, motion) - past_.bias[k];
+      past_.bias[k] += period_s() / (period_s() + settings_.bias.time_constants_s[k]) * said;
+      const Scalar a = (residual[k] - own_.bias[k]) * flown_[k].forward.slope(), b = said * before_[k].forward.slope();
+      watched_.square[k] += a * a;
+      past_.square[k] += b * b;
+      if (++watched_rows_[k] < settings_.rows_of_gain) continue;
+      if (!(first_square_[k] > Scalar(0))) first_square_[k] = watched_.square[k];
+      const bool doubled = watched_.square[k] > Scalar(4) * first_square_[k];
+      if (doubled && past_.square[k] < Scalar(0.8) * watched_.square[k] && !frozen_) {
+        const OnboardSum<Scalar> again = before_[k];
+        swap(k, again, past_.bias[k]);
+        flown_[k].refused_last = OnboardRule::went_back;
+        judging_ = false;
+      }
+      watched_.square[k] = past_.square[k] = Scalar(0);
+      watched_rows_[k] = 0;
+    }
+  }
+
+  Airframe<Scalar> start_;
+  OnboardSettings<Scalar> settings_;
+  detail::SignedMix<Scalar> mix_;
+  ForwardModel<Scalar> start_model_;
+  SumRegression<Scalar> regression_;
+  OnboardCertificate<Scalar> flown_{}, candidate_{}, before_{};
+  Shadow own_{}, shadow_{}, past_{}, watched_{};
+  std::array<Scalar, 4> first_square_{};  ///< of the first two seconds
+  std::array<std::uint32_t, 4> watched_rows_{};
+  SineAnswer<Scalar> answer_{}, second_{};  ///< of the rows remembered, and of the last second
+  LateralDrag<Scalar> drag_{};
+  FlownMotion<Scalar> motion_;
+  LagBank<Scalar> bank_;
+  MotionBias<Scalar> bias_;
+  detail::TickClock<Scalar> clock_;
+  std::uint64_t begun_us_ = 0;
+  std::uint32_t rows_ = 0, rows_since_ = 0, judged_ = 0;
+  bool excited_ = false, begun_ = false, frozen_ = false, follows_ = false, judging_ = false, stood_ = false;
+};
+
+}  // namespace pinnquad

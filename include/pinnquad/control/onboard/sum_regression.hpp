@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// Rows of a flight -> the forward model of each signed sum: a triangle for each sum and lag, the lag that leaves least,
+// and the drag across the thrust.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "pinnquad/control/onboard/forward_model.hpp"
+#include "pinnquad/control/onboard/lag_bank.hpp"
+#include "pinnquad/control/onboard/triangle.hpp"
+#include "pinnquad/core/finite.hpp"
+
+namespace pinnquad {
+
+/// Settings of a SumRegression.
+template <class Scalar>
+struct RegressionSettings {
+  Scalar forget_s = Scalar(20), forget_drag_s = Scalar(30);
+  Scalar repeats = Scalar(3);     ///< rows that say the same, as two of them share a period
+  std::uint32_t rows_of_yaw = 4;  ///< are one of yaw, their mean: feedback answers gyro noise that is quicker
+};
+
+/// Drag across the thrust over the mass: a = -(linear + quadratic |v|) v of the two axes across, FRD.
+template <class Scalar>
+struct LateralDrag {
+  Scalar linear_1_s{0}, quadratic_1_m{0};
+
+  /// At a body velocity, m/s^2, FRD.
+  Vector3<Scalar> of(const Vector3<Scalar>& velocity_m_s) const noexcept {
+    using std::sqrt;
+    const Scalar by = -(linear_1_s + quadratic_1_m * sqrt(dot<Scalar>(velocity_m_s, velocity_m_s)));
+    return {by * velocity_m_s[0], by * velocity_m_s[1], Scalar(0)};
+  }
+};
+
+/// Least squares of all sums at all lags, row by row.
+template <class Scalar>
+class SumRegression {
+ public:
+  SumRegression(const RegressionSettings<Scalar>& settings, std::uint32_t period_us) noexcept
+      : settings_(settings), period_us_(period_us) {
+    using std::exp;
+    const Scalar period_s = Scalar(1e-6) * static_cast<Scalar>(period_us);
+    root_keep_ = exp(-period_s / (Scalar(2) * settings.forget_s));
+    root_keep_yaw_ = exp(-Scalar(settings.rows_of_yaw) * period_s / (Scalar(2) * settings.forget_s));
+    root_keep_drag_ = exp(-period_s / (Scalar(4) * settings.forget_drag_s));  // two rows a period
+  }
+
+  /// Forgets all rows: they are of no flight.
+  void forget() noexcept {
+    triangles_ = {};
+    drag_ = {};
+    yaw_rows_ = 0;
+    yaw_means_ = {};
+  }
+
+  /// A row: the motion, the thrusts that the rotors of each lag would have followed, and the specific force, FRD.
+  void teach(std::uint64_t now_us, const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank,
+             const Vector3<Scalar>& force_m_s2) noexcept {
+    if (now_us - row_us_ > period_us_) {  // rows of one mean follow each other
+      yaw_rows_ = 0;
+      yaw_means_ = {};
+    }
+    row_us_ = now_us;
+    const bool whole = ++yaw_rows_ >= settings_.rows_of_yaw;
+    for (std::size_t lag = 0; lag < lag_count; ++lag) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Terms<Scalar> x = terms_of(k, motion, bank.at(0, lag).sum, bank.at(k, lag));
+        typename SumTriangle<Scalar>::Row row{};
+        for (std::size_t i = 0; i < term_count; ++i) row[i] = x[i];
+        row[output_column] = motion.accelerations[k];
+        if (k < 3) {
+          triangles_[lag][k].add(row, root_keep_);
+          continue;
+        }
+        auto& mean = yaw_means_[lag];
+        for (std::size_t i = 0; i < row.size(); ++i) mean[i] += row[i] / Scalar(settings_.rows_of_yaw);
+        if (!whole) continue;
+        triangles_[lag][k].add(mean, root_keep_yaw_);
+        mean = {};
+      }
+    }
+    if (whole) yaw_rows_ = 0;
+    teach_drag(motion.velocity_m_s, force_m_s2);
+  }
+
+  /// Share of the rows before that is kept.
+  Scalar keep() const noexcept { return root_keep_ * root_keep_; }
+  /// Rows of a sum that are remembered.
+  Scalar rows(std::size_t k) const noexcept {
+    return triangles_[0][k].rows() * (k == 3 ? Scalar(settings_.rows_of_yaw) : Scalar(1));
+  }
+
+  /// The lag that leaves least of the angular accelerations, between those of the bank by the parabola through the best
+  /// one and its neighbours; yaw counts a third.
+  LagPlace<Scalar> best_lag() const noexcept {
+    using std::log;
+    std::array<std::array<Scalar, 3>, lag_count> left{};
+    std::array<Scalar, lag_count> sum{};
+    std::size_t best = 0;
+    for (std::size_t lag = 0; lag < lag_count; ++lag) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        left[lag][axis] = mean_left_square(triangles_[lag][axis + 1]) + Scalar(1e-12);
+        sum[lag] += weights[axis] * log(left[lag][axis]);
+      }
+      if (sum[lag] < sum[best]) best = lag;
+    }
+    const Scalar at = lag_bank_s<Scalar>[best];
+    if (best == 0 || best + 1 == lag_count) return lag_place(at);
+    const Scalar low = lag_bank_s<Scalar>[best - 1] - at, high = lag_bank_s<Scalar>[best + 1] - at;
+    Scalar by_low(0), by_high(0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      by_low += weights[axis] * (left[best - 1][axis] / left[best][axis] - Scalar(1)) / low;
+      by_high += weights[axis] * (left[best + 1][axis] / left[best][axis] - Scalar(1)) / high;
+    }
+    const Scalar curvature = (by_high - by_low) / (high - low);
+    const Scalar beside = curvature > Scalar(0) ? (curvature * low - by_low) / (Scalar(2) * curvature) : Scalar(0);
+    return lag_place(at + beside);
+  }
+
+  /// Solution of a sum at a lag, between those of the two beside it. `start`: its prior.
+  SumSolution<Scalar> solution(std::size_t k, const LagPlace<Scalar>& lag,
+                               const ForwardSum<Scalar>& start) const noexcept {
+    const Terms<Scalar> deviations = prior_deviations(k, start);
+    const auto at = [&](std::size_t place) noexcept {
+      return solved(triangles_[place][k], start.theta, deviations, settings_.repeats);
+    };
+    SumSolution<Scalar> result = at(lag.lower);
+    const SumSolution<Scalar> next = at(lag.lower + 1u);
+    for (std::size_t i = 0; i < term_count; ++i) result.theta[i] = lag.of(result.theta[i], next.theta[i]);
+    result.standard_error = lag.of(result.standard_error, next.standard_error);
+    result.left_square = lag.of(result.left_square, next.left_square);
+    return result;
+  }
+
+  /// The drag, each number from 0 to as much as a vehicle has; a prior of 0.2 /s and 0.05 /m around none.
+  LateralDrag<Scalar> drag() const noexcept {
+    using std::sqrt;
+    if (!(drag_.rows() > Scalar(0))) return {};
+    Triangle<Scalar, 3> triangle = drag_;
+    const Scalar left = triangle.at(2, 2) * triangle.at(2, 2) / triangle.rows();
+    const Scalar weight = sqrt(settings_.repeats * left + Scalar(1e-12));
+    triangle.turn_in({weight / Scalar(0.2), Scalar(0), Scalar(0)}, 0);
+    triangle.turn_in({Scalar(0), weight / Scalar(0.05), Scalar(0)}, 1);
+    const Scalar quadratic = triangle.at(1, 2) / triangle.at(1, 1);
+    const Scalar linear = (triangle.at(0, 2) - triangle.at(0, 1) * quadratic) / triangle.at(0, 0);
+    const auto within = [](Scalar value, Scalar most) noexcept {
+      return value > Scalar(0) ? (value < most ? value : most) : Scalar(0);  // NaN: none
+    };
+    return {within(linear, Scalar(2)), within(quadratic, Scalar(0.5))};
+  }
+
+ private:
+  static constexpr std::array<Scalar, 3> weights{Scalar(1), Scalar(1), Scalar(0.3)};
+
+  void teach_drag(const Vector3<Scalar>& velocity_m_s, const Vector3<Scalar>& force_m_s2) noexcept {
+    using std::sqrt;
+    const Scalar speed = sqrt(dot<Scalar>(velocity_m_s, velocity_m_s));
+    for (int axis = 0; axis < 2; ++axis) {
+      const Scalar v = velocity_m_s[axis];
+      drag_.add({-v, -speed * v, force_m_s2[axis]}, root_keep_drag_);
+    }
+  }
+
+  RegressionSettings<Scalar> settings_;
+  std::uint32_t period_us_;
+  Scalar root_keep_{0}, root_keep_yaw_{0}, root_keep_drag_{0};
+  std::uint64_t row_us_ = 0;
+  std::uint32_t yaw_rows_ = 0;
+  std::array<std::array<SumTriangle<Scalar>, 4>, lag_count> triangles_{};
+  std::array<typename SumTriangle<Scalar>::Row, lag_count> yaw_means_{};
+  Triangle<Scalar, 3> drag_{};
+};
+
+}  // namespace pinnquad
