@@ -200,7 +200,7 @@ ALL, ONE = NAMES, ("third",)
 FAULTS = {
     "degrees as radians": (scaled(DEGREES, *ANGLES), ALL, ("degrees", "logs/first.csv:", "90"), 2),
     "degrees as radians in one": (scaled(DEGREES, *ANGLES), ONE, ("degrees", "logs/third.csv:"), 2),
-    "radians as degrees": (scaled(1 / DEGREES, *ANGLES), ALL, ("57", "roll", "w_x", "times the turning"), 2),
+    "radians as degrees": (scaled(1 / DEGREES, *ANGLES), ALL, ("57", "roll", "w_x"), 2),
     "rates 57 times too small": (scaled(1 / DEGREES, *RATES), ALL, ("57", "w_x"), 2),
     "rates in deg/s": (scaled(DEGREES, *RATES), ALL, ("degrees per second", "w_x", "agreement 0.03"), 2),
     "roll negated": (scaled(-1, "roll"), ALL, ("w_x or roll is negated", "correlation -"), 2),
