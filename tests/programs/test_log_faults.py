@@ -378,6 +378,24 @@ def test_without_an_accelerometer(pinnquad, logs):
     assert not Path("trained").exists()
 
 
+NO_GRAVITY = {
+    "off but for noise": (each(lambda _, noise=random.Random(3): noise.uniform(-0.02, 0.02), *FORCES), "is off"),
+    "in g": (scaled(1 / GRAVITY, *FORCES), 'unit = "g"'),
+    "in counts": (scaled(512 / GRAVITY, *FORCES), "a scale"),
+}
+
+
+@pytest.mark.parametrize("name", NO_GRAVITY)
+def test_an_accelerometer_without_gravity(pinnquad, logs, name):
+    """No velocity stands beside it that would say so."""
+    plant, word = NO_GRAVITY[name]
+    logs(plant)
+    replaced("log.toml", "log.toml", (r"\[velocity\]\n.*\n", ""), (r"\[position\]\n.*\n", ""))
+    before = listing(".")
+    finds(pinnquad(f"import logs {MAPPED} --out dataset", code=2), ("vdot_bx, vdot_by, vdot_bz", "near 9.8 m/s^2", word))
+    left_nothing(before)
+
+
 def shifted(rows):
     return [{**row, "t": row["t"] + 100} for row in rows]
 
