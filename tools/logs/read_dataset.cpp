@@ -514,7 +514,7 @@ class Import {
       }
     }
     dataset_.lag_removed_s = std::round(*lag_s * 1e6) / 1e6;
-    if (dataset_.lag_removed_s < 0) {
+    if (dataset_.lag_removed_s < -CommandLag::most_give_or_take_s) {  // less may be chance
       dataset_.warnings.push_back(
           "lag: the commands stand " + number_text(std::round(-dataset_.lag_removed_s * 1e4) / 10) +
           " ms behind the motion that they make: the log's clocks or filters are off by more than the rotors lag; the "
