@@ -196,7 +196,34 @@ order = "betaflight"
     assert "32767" in said
 
 
-@pytest.mark.parametrize("beside", ["LOG.01.gps.csv", "LOG.01.headers.csv", "LOG.01.event"])
+def test_a_cut_table(pinnquad):
+    """The file ends within a row: that row is left out with a word. A short row before it is refused."""
+    plain("log.csv")
+    whole = Path("log.csv").read_text()
+    last = whole.splitlines()[-1]
+    Path("log.csv").write_text(whole[:-len(last) // 2])
+    assert f"line {ROWS + 1} ends in the middle" in comes_out(pinnquad, "log.csv")
+    Path("log.csv").write_text(whole[:-len(last) // 2] + "\n")
+    pinnquad.refused("import log.csv --mapping table.toml --out bad", at=f"log.csv:{ROWS + 1}:*", keyword="14 cells")
+
+
+def test_keys_without_a_table(pinnquad):
+    """Explorer's first rows alone: said so, and no list of nearest names that is empty."""
+    Path("log.csv").write_text('"Product","Blackbox flight data recorder"\n"firmware","4.4.2"\n"craft","mine"\n')
+    said = pinnquad.refused("import log.csv --mapping betaflight --out bad", at="betaflight.toml:*", keyword="no column of numbers")
+    assert "nearest" not in str(said)
+
+
+@pytest.mark.parametrize("coding", ["utf-16", "utf-16-be"])
+def test_another_coding(pinnquad, coding):
+    plain("log.csv")
+    text = Path("log.csv").read_text()
+    Path("log.csv").write_bytes((text if coding == "utf-16" else "\ufeff" + text).encode(coding))
+    Path("table.toml").write_text(TABLE)
+    pinnquad.refused("import log.csv --mapping table.toml --out bad", at="log.csv", keyword="iconv")
+
+
+@pytest.mark.parametrize("beside", ["LOG.01.gps.csv", "LOG.01.GPS.CSV", "LOG.01.headers.csv", "LOG.01.event"])
 def test_beside_a_log(pinnquad, beside):
     """What blackbox_decode writes beside a log is skipped with a word, named alone it is refused."""
     Path("folder").mkdir()
@@ -207,8 +234,18 @@ def test_beside_a_log(pinnquad, beside):
         said = pinnquad("import", *given, "--mapping", "table.toml", *LAG, "--out", "out").out
         assert len(facts("out")["flights"]) == 1
         assert ("skipped" in said) == (beside.endswith(".csv") or len(given) > 1), said
-    pinnquad.refused(f"import folder/{beside} --mapping table.toml --out bad", at=f"folder/{beside}",
-                     keyword="beside")
+    for words in ("--mapping table.toml", ""):
+        pinnquad.refused(f"import folder/{beside} {words} --out bad", at=f"folder/{beside}", keyword="beside")
+
+
+def test_beside_a_log_without_a_mapping(pinnquad):
+    """It asks for no mapping of its own."""
+    names = [re.sub("^time$", "time (us)", name) for name in [*EXPLORER, *(f"imuQuaternion[{i}]" for i in range(3))]]
+    write("LOG.01.csv", [names], [[*blackbox_row(n, motors=(48, 2047)), *quaternion_of(n)] for n in range(ROWS)])
+    Path("LOG.01.gps.csv").write_text("time (us), GPS_numSat\n1, 9\n")
+    for out, given in enumerate((["LOG.01.csv", "LOG.01.gps.csv"], ["LOG.01.gps.csv", "LOG.01.csv"])):
+        said = pinnquad("import", *given, "--airframe", "paper_quadrotor", *LAG, "--out", f"out{out}").out
+        assert "mapping betaflight taken" in said and "skipped" in said, said
 
 
 def sparse(path, *, forward=0):
@@ -266,6 +303,13 @@ CONTROLS = TABLE.replace('["u1", "u2", "u3", "u4"]', '["control[0]", "control[1]
 def test_unused_slots(pinnquad, unused):
     """ROS 2's twelve motors: slots that never move from 0 are no motors."""
     motors_table("log.csv", lambda u: [*u, *8 * [unused]])
+    comes_out(pinnquad, "log.csv", mapping=CONTROLS)
+
+
+def test_a_wild_row_is_no_motor(pinnquad):
+    """One row in 2,000 in which unused slots have a number."""
+    rows = iter(range(ROWS))
+    motors_table("log.csv", lambda u: [*u, *8 * [0.5 if next(rows) == 1000 else 0]])
     comes_out(pinnquad, "log.csv", mapping=CONTROLS)
 
 
@@ -400,7 +444,9 @@ optional = true
 @pytest.mark.parametrize("how, warned", [
     ({}, False), ({"sample": lambda stamp: 0}, False), ({"battery": lambda s: 2**63 if s == 5 * 10**6 else s}, True),
     ({"sample": lambda s: 2**63 if s == 5 * 10**6 else s}, False),
-    ({"battery": lambda s: s - 5 * 10**6 if s > 10**7 else s}, "its time begins again")])
+    ({"battery": lambda s: s - 5 * 10**6 if s > 10**7 else s}, "its time begins again"),
+    ({"battery": lambda s: 2**62 + s}, "its time is none of the flight's"),
+    ({"battery": lambda s: 2**63}, "its time is none of the flight's")])
 def test_ulog_stamps(pinnquad, how, warned):
     """A sample's time that is 0 or wild is that of its message; a wild message is left out."""
     px4_log("log.ulg", **how)

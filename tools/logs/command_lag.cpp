@@ -27,10 +27,35 @@ void low_pass_without_phase(std::vector<double>& series, double period_s, double
   }
 }
 
-/// Sets the sums of products of `Count` columns, the `First` and those behind it, with all columns. How many rows.
+/// A series at `fine` times its rows, by a windowed sinc: rows that are far apart hold a motion's maximum to their own
+/// places otherwise.
+std::vector<double> between_rows(const std::vector<double>& series, std::size_t fine) {
+  constexpr std::ptrdiff_t reach = 6;
+  constexpr double pi = 3.14159265358979;
+  const auto sinc = [](double x) { return std::abs(x) < 1e-12 ? 1.0 : std::sin(pi * x) / (pi * x); };
+  const auto rows = static_cast<std::ptrdiff_t>(series.size());
+  std::vector<double> result;
+  result.reserve(series.size() * fine);
+  for (std::ptrdiff_t row = 0; row < rows; ++row) {
+    for (std::size_t part = 0; part < fine; ++part) {
+      const double share = static_cast<double>(part) / static_cast<double>(fine);
+      double sum = 0, weights = 0;
+      for (std::ptrdiff_t k = 1 - reach; k <= reach; ++k) {
+        const double x = share - static_cast<double>(k), weight = sinc(x) * sinc(x / static_cast<double>(reach));
+        sum += weight * series[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(row + k, 0, rows - 1))];
+        weights += weight;
+      }
+      result.push_back(part == 0 ? series[static_cast<std::size_t>(row)] : sum / weights);
+    }
+  }
+  return result;
+}
+
+/// Sets the sums of products of `Count` columns, the `First` and those behind it, with all columns. `lag` counts
+/// parts of rows, of which commands have `fine` each. How many rows.
 template <std::size_t First, std::size_t Count>
 std::size_t set_products(const std::vector<LagSeries>& all, std::size_t ahead, std::size_t behind, int lag,
-                         std::size_t step, LagMoments& moments) {
+                         std::size_t fine, std::size_t step, LagMoments& moments) {
   using Columns = Eigen::Array<double, static_cast<int>(lag_columns), 1>;
   std::array<Columns, Count> sums;
   sums.fill(Columns::Zero());
@@ -40,7 +65,7 @@ std::size_t set_products(const std::vector<LagSeries>& all, std::size_t ahead, s
       Columns x;
       Eigen::Index column = 0;
       x[column++] = 1;
-      const auto commanded = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(row) - lag);
+      const auto commanded = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(row * fine) - lag);
       for (const auto& series : one.commands) x[column++] = series[commanded];
       for (const auto& series : one.rates) x[column++] = series[row];
       for (const auto& series : one.motions) x[column++] = series[row];
@@ -78,31 +103,39 @@ Explained explained_beyond_rates(LagMoments moments) {
   return result;
 }
 
-/// Lags in whole rows, a few milliseconds apart at most.
+/// Lags a few milliseconds apart, in rows, or in parts of rows that are far apart.
 struct LagGrid {
+  std::size_t fine = 1;  ///< parts of a row
   int first = 0, last = 0, stride = 1;
-  double period_s = 0;
-  LagGrid(double period, const LagRange& range) : period_s(period) {
-    constexpr double step_s = 0.004;
-    stride = std::max(1, static_cast<int>(step_s / period));
-    first = stride * static_cast<int>(std::floor(range.shortest_s / (period * stride)));
-    last = stride * static_cast<int>(std::ceil(range.longest_s / (period * stride)));
+  double period_s = 0;  ///< of a part
+  LagGrid(double row_s, const LagRange& range) {
+    constexpr double shortest_s = 0.004, longest_s = 0.01, rounding = 1e-6;
+    fine = static_cast<std::size_t>(std::max(1.0, std::ceil(row_s / longest_s - rounding)));
+    period_s = row_s / static_cast<double>(fine);
+    stride = std::max(1, static_cast<int>(shortest_s / period_s));
+    first = stride * static_cast<int>(std::floor(range.shortest_s / step_s()));
+    last = stride * static_cast<int>(std::ceil(range.longest_s / step_s()));
   }
   double lag_s(double index) const noexcept { return (first + index * stride) * period_s; }
   double step_s() const noexcept { return stride * period_s; }
+  /// Rows that hold so many parts.
+  std::size_t rows(int parts) const noexcept { return (static_cast<std::size_t>(parts) + fine - 1) / fine; }
 };
 
 /// By lag, all over the same rows, at most about `most_rows` of them. `rows`: how many.
-std::vector<Explained> explained_by_lag(const std::vector<LagSeries>& all, const LagGrid& grid, std::size_t& rows) {
+std::vector<Explained> explained_by_lag(std::vector<LagSeries> all, const LagGrid& grid, std::size_t& rows) {
   constexpr std::size_t most_rows = 8000;
-  const auto ahead = static_cast<std::size_t>(grid.last), behind = static_cast<std::size_t>(-grid.first);
+  const std::size_t ahead = grid.rows(grid.last), behind = grid.rows(-grid.first);
   std::size_t whole = 0;
   for (const LagSeries& one : all) whole += one.size() > ahead + behind ? one.size() - ahead - behind : 0;
   const std::size_t step = std::max<std::size_t>(1, whole / most_rows);
   std::vector<Explained> result;
   LagMoments moments = lag_moments(all, ahead, behind, 0, step, rows);
+  for (LagSeries& one : all) {
+    for (auto& series : one.commands) series = between_rows(series, grid.fine);
+  }
   for (int lag = grid.first; lag <= grid.last; lag += grid.stride) {
-    set_products<1, rotor_count>(all, ahead, behind, lag, step, moments);  // the others are those of any lag
+    set_products<1, rotor_count>(all, ahead, behind, lag, grid.fine, step, moments);  // others are those of any lag
     result.push_back(rows > lag_columns ? explained_beyond_rates(moments) : Explained{});
   }
   return result;
@@ -131,6 +164,21 @@ double sharpness_of(const std::vector<double>& curve, double step_s) noexcept {
   if (top - reach >= 0) better = std::max(better, curve[static_cast<std::size_t>(top - reach)]);
   if (top + reach < size) better = std::max(better, curve[static_cast<std::size_t>(top + reach)]);
   return peak > 0 ? 1 - better / peak : 0;
+}
+
+/// Half of the 95 % interval of a maximum, by how the log-likelihood per row bends there. Rows that a low-pass leaves
+/// alike count as one; what lies between rows is told to a fifteenth of their distance at best.
+double give_or_take_s(const std::vector<double>& curve, const LagGrid& grid, double seconds, std::size_t rows,
+                      double low_pass_Hz) noexcept {
+  constexpr double deviations = 2, between_rows = 1.0 / 15;
+  const auto top = static_cast<std::size_t>(std::max_element(curve.begin(), curve.end()) - curve.begin());
+  if (top == 0 || top + 1 >= curve.size()) return 0;
+  const double bend = 2 * curve[top] - curve[top - 1] - curve[top + 1];
+  double independent = static_cast<double>(rows);
+  if (low_pass_Hz > 0) independent = std::min(independent, 2 * low_pass_Hz * seconds);
+  if (!(bend > 0 && independent > 0)) return HUGE_VAL;
+  const double row_s = grid.period_s * static_cast<double>(grid.fine);
+  return std::hypot(deviations * grid.step_s() / std::sqrt(independent * bend), between_rows * row_s);
 }
 
 /// Gives rows weights by blocks of time, so that a catch by hand or a knock weighs no more than the liveliest of the
@@ -165,9 +213,11 @@ void weigh(std::vector<LagSeries>& all, double period_s) {
 std::string milliseconds(double seconds) { return std::to_string(std::lround(seconds * 1e3)) + " ms"; }
 
 CommandLag command_lag_of(const std::vector<LagSeries>& series, const LagGrid& grid, double low_pass_Hz) {
-  constexpr double least_explained = 0.05, least_sharpness = 0.1, says_as_much = 0.6;
+  constexpr double least_explained = 0.05, least_sharpness = 0.1, says_as_much = 0.6, alike_s = 0.02;
   CommandLag result;
   result.low_pass_Hz = low_pass_Hz;
+  double seconds = 0;
+  for (const LagSeries& one : series) seconds += static_cast<double>(one.size() * grid.fine) * grid.period_s;
   const std::vector<Explained> explained = explained_by_lag(series, grid, result.rows);
   std::array<std::vector<double>, lag_motions> curves;
   bool any_told = false;
@@ -184,6 +234,12 @@ CommandLag command_lag_of(const std::vector<LagSeries>& series, const LagGrid& g
     motion.found =
         motion.explained >= least_explained && motion.sharpness >= least_sharpness && top > 0 && top + 1 < curve.size();
     result.found = result.found || motion.found;
+  }
+  for (MotionLag& motion : result.motions) {
+    const auto with = std::count_if(result.motions.begin(), result.motions.end(), [&](const MotionLag& other) {
+      return other.found && std::abs(other.lag_s - motion.lag_s) <= alike_s;
+    });
+    motion.alone = with < 2;  // itself
     any_told = any_told || motion.told();
   }
   if (!result.found) return result;
@@ -198,11 +254,16 @@ CommandLag command_lag_of(const std::vector<LagSeries>& series, const LagGrid& g
   }
   result.lag_s = grid.lag_s(peak_at(together));
   result.confidence = sharpness_of(together, grid.step_s());
+  result.give_or_take_s = give_or_take_s(together, grid, seconds, result.rows, low_pass_Hz);
   for (const MotionLag& motion : result.motions) {
     if (!counts(motion) || say(motion.explained) * motion.sharpness < says_as_much * most) continue;
     result.spread_s = std::max(result.spread_s, std::abs(motion.lag_s - result.lag_s));
   }
-  result.told = any_told;
+  // motion before its command is the fault of a clock, which all motions show, or an answer to a blow
+  const bool all_alike = std::all_of(result.motions.begin(), result.motions.end(), [&](const MotionLag& motion) {
+    return !motion.found || std::abs(motion.lag_s - result.lag_s) <= alike_s;
+  });
+  result.told = any_told && (all_alike || result.lag_s > -0.5 * grid.step_s());
   return result;
 }
 
@@ -247,7 +308,7 @@ std::vector<LagSeries> low_passed(std::vector<LagSeries> all, double period_s, d
 LagMoments lag_moments(const std::vector<LagSeries>& all, std::size_t ahead, std::size_t behind, int lag,
                        std::size_t step, std::size_t& rows) {
   LagMoments moments{};
-  rows = set_products<0, lag_columns>(all, ahead, behind, lag, step, moments);
+  rows = set_products<0, lag_columns>(all, ahead, behind, lag, 1, step, moments);
   return moments;
 }
 
@@ -287,6 +348,9 @@ CommandLag estimate_command_lag(const std::vector<Flight>& segments, double peri
         milliseconds(best.lag_s);
   } else if (best.spread_s > CommandLag::spread_of_doubt_s) {
     best.warning = "the motions disagree about the lag by " + milliseconds(best.spread_s);
+  } else if (best.give_or_take_s > CommandLag::most_give_or_take_s) {
+    best.warning = "the flight is too short or too calm to tell it: it looks like " + milliseconds(best.lag_s) +
+                   ", give or take " + milliseconds(best.give_or_take_s);
   } else {
     best.warning = "the lag hardly stands out: one that is 50 ms away explains the motion nearly as well";
   }

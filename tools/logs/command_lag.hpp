@@ -47,31 +47,34 @@ struct MotionLag {
   double sharpness = 0;     ///< how much of -log(1 - R^2) is lost 50 ms away on the better side, 0..1
   bool found = false;       ///< a maximum inside the range, above and sharper than chance
   bool low_passed = false;  ///< a filter makes a blow as sharp as it is wide
+  bool alone = false;       ///< no other motion has this lag to 20 ms
 
   /// The commands leave too little unexplained to move the maximum, or the maximum is too sharp to be moved; a
-  /// sharp one before the command is the controller's answer to a gyro's noise.
+  /// sharp one before the command is the controller's answer to a gyro's noise, one that no other motion has is chance.
   bool told() const noexcept {
     constexpr double nearly_all = 0.8, sharp = 0.78, most = 0.6, least = 0.1, shortest_s = 0.008;
     const bool enough = explained >= most || (!low_passed && explained >= least);
-    return found && (explained >= nearly_all || (sharpness >= sharp && enough && lag_s > shortest_s));
+    return found && (explained >= nearly_all || (sharpness >= sharp && enough && !alone && lag_s > shortest_s));
   }
 };
 
 struct CommandLag {
   std::array<MotionLag, lag_motions> motions;  ///< roll, pitch, yaw, collective
   double lag_s = 0;                            ///< where those found are explained best together
-  double spread_s = 0;     ///< largest distance of one of them, with half the best one's say or more, to it
-  double confidence = 0;   ///< sharpness of all found together, 0..1
-  double low_pass_Hz = 0;  ///< up to where commands and motion were compared; 0: as they are
-  bool found = false;      ///< otherwise lag_s is 0 and nothing should be removed
-  bool told = false;       ///< by a motion that tells it: lag_s is of those
-  std::string warning;     ///< why it is not known, or that it is negative; empty for none
+  double spread_s = 0;        ///< largest distance of one of them, with half the best one's say or more, to it
+  double confidence = 0;      ///< sharpness of all found together, 0..1
+  double give_or_take_s = 0;  ///< half of the 95 % interval of lag_s
+  double low_pass_Hz = 0;     ///< up to where commands and motion were compared; 0: as they are
+  bool found = false;         ///< otherwise lag_s is 0 and nothing should be removed
+  bool told = false;          ///< by a motion that tells it: lag_s is of those
+  std::string warning;        ///< why it is not known, or that it is negative; empty for none
   std::size_t rows = 0;
 
-  static constexpr double spread_of_doubt_s = 0.01, confidence_of_doubt = 0.2;
-  /// Told by a motion, the same by all that tell one, and one 50 ms away explains clearly less.
+  static constexpr double spread_of_doubt_s = 0.01, confidence_of_doubt = 0.2, most_give_or_take_s = 0.005;
+  /// Told by a motion, the same by all that tell one, to 5 ms, and one 50 ms away explains clearly less.
   bool known() const noexcept {
-    return found && told && spread_s <= spread_of_doubt_s && confidence >= confidence_of_doubt;
+    return found && told && spread_s <= spread_of_doubt_s && confidence >= confidence_of_doubt &&
+           give_or_take_s <= most_give_or_take_s;
   }
 };
 
@@ -87,7 +90,8 @@ struct LagRange {
 /// phase, and the band in which most is explained is taken: gyro noise that comes back through the controller as
 /// commands pulls the plain correlation to shorter lags, by tens of milliseconds in calm flights. So do gusts, to
 /// longer ones, by as much: a lag is known only by motions that tell it (MotionLag::told()). Blocks of time count as
-/// those of motion_pair.hpp: a catch by hand or a knock doesn't decide.
+/// those of motion_pair.hpp: a catch by hand or a knock doesn't decide. Commands of rows that are far apart are
+/// compared between the rows too, every 10 ms.
 /// Segments of one log, each on a uniform clock of `period_s`, commands as they were logged, idle and ground left out.
 /// Limits: a motor behaves like a first-order lag, of which the best pure delay depends on how fast the commands
 /// change: 36 to 40 ms for a time constant of 50 ms. A filter's delay in what was measured counts as lag.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <system_error>
 #include <utility>
@@ -26,9 +27,12 @@ class Table {
  public:
   static constexpr std::size_t no_text = static_cast<std::size_t>(-1);
 
-  Table(const std::string& path, const LogSelection& selection) : path_(path), selection_(selection), records_(path) {
+  /// `may_be_cut`: the file may end within a row, as a logger leaves it that lost its power.
+  Table(const std::string& path, const LogSelection& selection, bool may_be_cut)
+      : path_(path), selection_(selection), records_(path) {
     std::error_code ignored;
     bytes_ = std::filesystem::file_size(path, ignored);
+    ends_in_row_ = may_be_cut && last_byte(path) != '\n';
     head_ = csv_head(path);
     names_ = head_.names;
     for (std::size_t i = 0; i < head_.records; ++i) records_.next(record_);
@@ -44,6 +48,8 @@ class Table {
   /// Of each column, the first row whose cell is no number.
   const std::vector<std::size_t>& first_text() const noexcept { return first_text_; }
   void set_first_text(const std::vector<std::size_t>& first_text) { first_text_ = first_text; }
+  /// The last row, where the file ends before its last cell and a line's end; 0: none. It is not among the rows.
+  std::size_t cut_line() const noexcept { return cut_line_; }
   /// False where a column turned out to be text when there were rows already: they are not among its texts.
   bool complete() const noexcept { return complete_; }
 
@@ -65,6 +71,10 @@ class Table {
         records_.split(record_, cells_);
       } else {
         split_cells(record_, head_.separator, cells_);
+      }
+      if (cells_.size() < size && ends_in_row_ && records_.bytes() >= bytes_) {
+        cut_line_ = records_.line();
+        break;
       }
       if (cells_.size() != size) refuse_length();
       for (std::size_t i = 0; i < size; ++i) {
@@ -94,6 +104,12 @@ class Table {
 
  private:
   static constexpr std::size_t rows_per_report = 4096;
+
+  static int last_byte(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    file.seekg(-1, std::ios::end);
+    return file.get();
+  }
 
   static bool is_blank(std::string_view text) { return text.find_first_not_of(" \t\r") == std::string_view::npos; }
 
@@ -132,7 +148,8 @@ class Table {
   std::vector<std::string_view> cells_;
   std::vector<std::string> names_;
   std::vector<std::size_t> first_text_;
-  bool complete_ = true;
+  bool complete_ = true, ends_in_row_ = false;
+  std::size_t cut_line_ = 0;
 };
 
 /// Seconds by the column that is the clock.
@@ -159,12 +176,14 @@ void set_clock(LogTopic& topic, const Table& table, const LogSelection& selectio
 
 namespace {
 
-LogTopic read_table(const std::string& path, const LogSelection& selection, CsvHead& head) {
-  Table table(path, selection);
+/// `cut_line`: null where a last row that is cut short is refused; else its line, 0 for none.
+LogTopic read_table(const std::string& path, const LogSelection& selection, CsvHead& head, std::size_t* cut_line) {
+  Table table(path, selection, cut_line != nullptr);
   head = table.head();
   LogTopic topic = table.read();
+  if (cut_line != nullptr) *cut_line = table.cut_line();
   if (!table.complete()) {
-    Table again(path, selection);
+    Table again(path, selection, cut_line != nullptr);
     again.set_first_text(table.first_text());
     topic = again.read();
   }
@@ -189,16 +208,21 @@ void keep(FlightLog& log, const std::string& key, const std::string& value) {
 
 LogTopic read_csv_topic(const std::string& path, const LogSelection& selection) {
   CsvHead head;
-  return read_table(path, selection, head);
+  return read_table(path, selection, head, nullptr);
 }
 
 FlightLog read_csv_log(const std::string& path, const LogSelection& selection) {
   FlightLog log;
   log.source = path;
   CsvHead head;
-  log.topics.push_back(read_table(path, selection, head));
+  std::size_t cut_line = 0;
+  log.topics.push_back(read_table(path, selection, head, &cut_line));
   if (log.topics[0].place.empty()) throw InputError(path, head.line + 1, 0, "a row of data", "none");
   for (const auto& [key, value] : head.facts) keep(log, key, value);
+  if (cut_line > 0) {
+    log.warnings.push_back(printable(std::filesystem::path(path).stem().string()) + ": line " +
+                           std::to_string(cut_line) + " ends in the middle, and so does the file: left out");
+  }
   return log;
 }
 

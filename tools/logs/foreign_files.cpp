@@ -15,7 +15,7 @@ struct Container {
   const char* words;  ///< what it is, and how to get at the log
 };
 
-constexpr std::array<Container, 17> containers{{
+constexpr std::array<Container, 19> containers{{
     {{"\xfd"
       "7zXZ\0",
       6},
@@ -39,6 +39,8 @@ constexpr std::array<Container, 17> containers{{
     {{"\x80\x02", 2}, "a Python pickle, as old PyTorch files are: a network, not a log (pinnquad convert)"},
     {{"{\"", 2},
      "JSON (a table, of an object a line: pandas.read_json(FILE, lines=True).to_csv('log.csv', index=False))"},
+    {{"\xff\xfe", 2}, "text in UTF-16 (make it UTF-8: iconv -f UTF-16 -t UTF-8 FILE > log.csv)"},
+    {{"\xfe\xff", 2}, "text in UTF-16 (make it UTF-8: iconv -f UTF-16 -t UTF-8 FILE > log.csv)"},
     {{"FMT, 128, 89", 12}, "a DataFlash log as text (give the .bin of the vehicle)"},
     {{"<?xml", 5}, "an XML file, as a layout of PlotJuggler is, which holds no data (export the data as CSV there)"},
     {{"<root", 5}, "an XML file, as a layout of PlotJuggler is, which holds no data (export the data as CSV there)"},

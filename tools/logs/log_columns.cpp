@@ -65,6 +65,11 @@ std::vector<const LogColumn*> columns_in(const LogTopic& topic, const std::vecto
                            " rows of times alone (a comment or a wrong name in the logger's list of variables, a "
                            "Crazyflie's config.txt?)");
     }
+    if (topic.columns.empty()) {
+      throw InputError(mapping_file, one.place.line, one.place.column, "`" + printable(one.name) + "` in " + where,
+                       "no column of numbers at all: rows of keys and texts, such as Blackbox Explorer's before its "
+                       "table, which is missing");
+    }
     std::vector<std::string> known;
     for (const LogColumn& column : topic.columns) known.push_back(column.name);
     throw InputError(mapping_file, one.place.line, one.place.column, "a column of " + where,

@@ -2,6 +2,7 @@
 #include "logs/log_parts.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -113,7 +114,8 @@ bool is_name_pattern(std::string_view pattern) {
 }
 
 bool stands_beside_log(const std::string& path) {
-  const std::string name = std::filesystem::path(path).filename().string();
+  std::string name = std::filesystem::path(path).filename().string();
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));  // of a FAT card: .GPS.CSV
   const auto ends = [&name](std::string_view end) {
     return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
   };

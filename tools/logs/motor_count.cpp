@@ -119,7 +119,8 @@ bool is_plus_frame(const FlightLog& log) {
 
 void require_four_motors(const FlightLog& log, const LogTopic& topic, const Source& source, double least, double most,
                          const std::string& mapping_file) {
-  constexpr double moves = 0.01;  // of the range: what is disarmed has up to .0025
+  constexpr double moves = 0.01;   // of the range: what is disarmed has up to .0025
+  constexpr double seldom = 0.01;  // of the rows of the busiest: a wild row is no motor
   const auto highest = [](const LogColumn& column) {
     double value = -HUGE_VAL;
     for (const double one : column.values) {
@@ -142,9 +143,17 @@ void require_four_motors(const FlightLog& log, const LogTopic& topic, const Sour
     range = 0;
     for (const LogColumn* column : columns) range = std::max(range, highest(*column));
   }
+  const double idle = (source.numbers == MotorNumbers::speed ? 0 : least) + moves * range;
+  std::vector<double> busy;  // rows in which a column commands something
+  for (const LogColumn* column : columns) {
+    const auto rows = std::count_if(column->values.begin(), column->values.end(),
+                                    [idle](double one) { return std::isfinite(one) && one > idle; });
+    busy.push_back(static_cast<double>(rows));
+  }
+  const double busiest = *std::max_element(busy.begin(), busy.end());
   const NamedColumn* unused = nullptr;
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (highest(*columns[i]) - (source.numbers == MotorNumbers::speed ? 0 : least) > moves * range) {
+    if (busy[i] > seldom * busiest) {
       commanded.push_back(columns[i]);
     } else if (i < source.columns.size() && unused == nullptr) {
       unused = &source.columns[i];

@@ -28,8 +28,9 @@ inline std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// "nearest: a, b, c" of those known, at most three, each once.
+/// "nearest: a, b, c" of those known, at most three, each once; "it has none" of none.
 inline std::string nearest_names(const std::string& name, std::vector<std::string> known) {
+  if (known.empty()) return "it has none";
   std::sort(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
   std::stable_sort(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {

@@ -126,10 +126,7 @@ class Import {
       }
     }
     tell_apart(places);
-    if (places.empty()) {
-      throw InputError(logs_.front(), 0, 0, "a flight log, such as LOG00001.01.csv",
-                       "what blackbox_decode writes beside one");
-    }
+    if (places.empty()) refuse_without_log();
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double done = static_cast<double>(i), all = static_cast<double>(places.size());
       use(mappings[i]);
@@ -166,6 +163,11 @@ class Import {
   }
 
  private:
+  [[noreturn]] void refuse_without_log() const {
+    throw InputError(logs_.front(), 0, 0, "a flight log, such as LOG00001.01.csv",
+                     "what blackbox_decode writes beside one");
+  }
+
   void report(const std::string& job, double share) const {
     if (settings_.on_progress) settings_.on_progress(job, share);
   }
@@ -174,6 +176,7 @@ class Import {
     mapping_of_log_.assign(logs_.size(), 0);
     if (!settings_.mapping.empty()) mappings_.push_back(chosen_mapping(settings_.mapping));
     for (std::size_t i = 0; i < logs_.size() && settings_.mapping.empty(); ++i) {
+      if (stands_beside_log(logs_[i])) continue;  // run() says that it is skipped
       const OfferedMapping offered = required_offer(logs_[i]);
       const auto known = std::find_if(mappings_.begin(), mappings_.end(),
                                       [&offered](const Mapping& mapping) { return mapping.name == offered.name; });
@@ -181,6 +184,7 @@ class Import {
       if (known == mappings_.end()) mappings_.push_back(chosen_mapping(offered.name));
       add(dataset_.taken, "mapping " + offered.name + " taken: " + offered.why);
     }
+    if (mappings_.empty()) refuse_without_log();
     use(0);
   }
 
@@ -206,7 +210,7 @@ class Import {
     if (finding) warn(of + ": " + *finding);
   }
 
-  /// Optional topics whose clock begins again are none afterwards.
+  /// Optional topics whose clock begins again, or is that of another time, are none afterwards.
   void count_topics(BoundLog& bound, const std::string& name) {
     std::vector<const LogTopic*> counted, restarted;
     const auto count = [&](Signal& signal) {
@@ -237,12 +241,15 @@ class Import {
     };
     for (Signal& signal : bound.signals) count(signal);
     for (BoundExtra& extra : bound.extras) count(extra.signal);
+    const CleanClock flown = *bound.of(Quantity::body_rates).clock;
     const auto is_left_out = [&](Signal& signal) {
-      if (!signal.present() || std::find(restarted.begin(), restarted.end(), signal.topic) == restarted.end())
-        return false;
-      if (!signal.source->optional) refuse_restart(signal);
-      warn(name + ", " + topic_words(signal.topic->name, signal.topic->instance) +
-           ": left out, for its time begins again");
+      if (!signal.present()) return false;
+      const bool restarts = std::find(restarted.begin(), restarted.end(), signal.topic) != restarted.end();
+      if (restarts && !signal.source->optional) refuse_restart(signal);
+      const bool apart = signal.source->optional && !meet(*signal.clock, flown);
+      if (!restarts && !apart) return false;
+      warn(name + ", " + topic_words(signal.topic->name, signal.topic->instance) + ": left out, for its time " +
+           (restarts ? "begins again" : "is none of the flight's"));
       signal = {};
       return true;
     };
@@ -250,6 +257,12 @@ class Import {
     bound.extras.erase(std::remove_if(bound.extras.begin(), bound.extras.end(),
                                       [&](BoundExtra& extra) { return is_left_out(extra.signal); }),
                        bound.extras.end());
+  }
+
+  /// True where one has a row within the time of the other.
+  static bool meet(const CleanClock& a, const CleanClock& b) {
+    if (a.size() == 0 || b.size() == 0) return false;
+    return a.time_s.front() <= b.time_s.back() && b.time_s.front() <= a.time_s.back();
   }
 
   /// Two recordings in one table would be mixed by sorting.
@@ -501,7 +514,7 @@ class Import {
       }
     }
     dataset_.lag_removed_s = std::round(*lag_s * 1e6) / 1e6;
-    if (dataset_.lag_removed_s < 0) {
+    if (dataset_.lag_removed_s < -CommandLag::most_give_or_take_s) {  // less may be chance
       dataset_.warnings.push_back(
           "lag: the commands stand " + number_text(std::round(-dataset_.lag_removed_s * 1e4) / 10) +
           " ms behind the motion that they make: the log's clocks or filters are off by more than the rotors lag; the "
@@ -627,6 +640,7 @@ class Import {
   void require_plausible_flight(const Flight& flight, const std::string& source) const {
     auto found = find_implausible(flight);
     if (!found) found = find_standing_column(flight, {!dataset_.lacks("velocity"), !dataset_.lacks("altitude")});
+    if (!found) found = find_wrong_gravity(flight);
     if (!found) return;
     const auto cause = causes_.find(flight.name);
     throw InputError(source, 0, 0, found->expected,

@@ -161,12 +161,14 @@ SourceKind kind_of_source(const std::string& path) {
 
 SourceKind kind_of_sources(const std::vector<std::string>& paths, const std::string& mapping) {
   if (paths.empty()) throw std::invalid_argument("expected FLIGHTS: flights, a dataset, or logs");
-  const SourceKind kind = kind_of_source(paths.front());
+  const auto first = std::find_if_not(paths.begin(), paths.end(), stands_beside_log);
+  const SourceKind kind = kind_of_source(first == paths.end() ? paths.front() : *first);
   if (!mapping.empty()) {
     if (kind != SourceKind::dataset) return SourceKind::logs;
     throw InputError(paths.front(), 0, 0, "logs, whose columns --mapping names", "a dataset, which needs none");
   }
   for (const std::string& path : paths) {
+    if (kind == SourceKind::logs && stands_beside_log(path)) continue;  // it is skipped
     if (kind_of_source(path) == kind && (kind != SourceKind::dataset || paths.size() == 1)) continue;
     throw std::invalid_argument("expected flights, one dataset, or logs, found " + printable(paths.front()) + " and " +
                                 printable(path) + ": import them into one dataset first");

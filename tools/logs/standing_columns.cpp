@@ -259,6 +259,24 @@ std::optional<detail::Implausible> find_standing_column(const Flight& flight, co
   return std::nullopt;
 }
 
+std::optional<detail::Implausible> find_wrong_gravity(const Flight& flight) {
+  constexpr double least = 0.6, most = 5, shortest_s = 5;
+  if (flight.size() < 2 || flight[flight.size() - 1].time_s - flight[0].time_s < shortest_s) return std::nullopt;
+  Series sizes;
+  sizes.reserve(flight.size());
+  for (const Sample& sample : flight) sizes.push_back(specific_force_m_s2(sample).norm());
+  const double usual = detail::median_of(std::move(sizes)), in_g = usual / standard_gravity_m_s2<double>;
+  if (in_g >= least && in_g <= most) return std::nullopt;
+  return detail::Implausible{
+      0, detail::linear_field,
+      "a specific force near 9.8 m/s^2 in columns " + detail::field_name(detail::linear_field, 0) + ", " +
+          detail::field_name(detail::linear_field, 1) + ", " + detail::field_name(detail::linear_field, 2) +
+          ", as gravity asks of what stays in the air",
+      "one of " + short_number(usual) + " m/s^2 in most rows: " +
+          (in_g < least ? "an accelerometer that is off, without gravity, or in g (unit = \"g\")"
+                        : "another unit (unit = \"mg\", \"cm/s^2\", or a scale)")};
+}
+
 StandingRows standing_rows(const Flight& flight, const HasQuantities& has, double period_s, double begin_s) {
   constexpr double shortest_s = 0.5, longer = 5, margin_s = 0.1;
   constexpr std::size_t fewest_rows = 10, fewest_runs = 20, usual = 3;  // the longest but three

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Columns of a flight that repeat a value while what goes with them moves: a sensor that is off or has stopped, a
-// logger that writes on what it had last. In all rows, or from some time on.
+// logger that writes on what it had last. In all rows, or from some time on. An accelerometer that shows no gravity.
 #pragma once
 
 #include <optional>
@@ -24,6 +24,11 @@ struct HasQuantities {
 /// m/s^2 throughout is no flight. A heading that stays while w_z turns by less than 0.5 rad passes, and so does a
 /// vehicle that hovers without noise.
 std::optional<detail::Implausible> find_standing_column(const Flight& flight, const HasQuantities& has);
+
+/// A specific force whose size is below 0.6 or above 5 times gravity in half of the rows of five seconds or more: an
+/// accelerometer that is off but for its noise, one in another unit, or without gravity. The rotors of what stays in
+/// the air carry it: the mean of R f + g is the change of velocity over the time.
+std::optional<detail::Implausible> find_wrong_gravity(const Flight& flight);
 
 /// Rows in which such a column stands still for half a second or longer, five times as long as it otherwise does, a
 /// tenth of a second around them included; of each column what it is and when:
