@@ -267,11 +267,16 @@ TEST_CASE("float learns what double does, to 1e-4 of the slope") {
   fly(axes, policy, 15, [&](double, State<double>& state, bool& known, Commands<double>& commands) {
     State<float> sample;
     for (int i = 0; i < 3; ++i) {
-      state.velocity_m_s[i] = sample.velocity_m_s[i] = static_cast<float>(state.velocity_m_s[i]);
-      state.body_rates_rad_s[i] = sample.body_rates_rad_s[i] = static_cast<float>(state.body_rates_rad_s[i]);
+      sample.velocity_m_s[i] = static_cast<float>(state.velocity_m_s[i]);
+      state.velocity_m_s[i] = static_cast<double>(sample.velocity_m_s[i]);
+      sample.body_rates_rad_s[i] = static_cast<float>(state.body_rates_rad_s[i]);
+      state.body_rates_rad_s[i] = static_cast<double>(sample.body_rates_rad_s[i]);
     }
     Commands<float> same{};
-    for (std::size_t i = 0; i < 4; ++i) commands[i] = same[i] = static_cast<float>(commands[i]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      same[i] = static_cast<float>(commands[i]);
+      commands[i] = static_cast<double>(same[i]);
+    }
     narrow.learn(axes.now_us, known, sample, same);
     Commands<float> unused{};
     CHECK(narrow(sample, {}, axes.now_us, unused) == Status::ok);
