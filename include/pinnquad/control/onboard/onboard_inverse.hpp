@@ -39,6 +39,7 @@ struct OnboardSettings {
   std::uint32_t rows_of_gain = 100;      ///< is judged for two
   RegressionSettings<Scalar> regression{};
   BiasSettings<Scalar> bias = detail::unknown_vehicle_bias<Scalar>();
+  Scalar young_bias_s = Scalar(0.1);  ///< its time constants at first; its age is added until they are the bias' own
   ExcitationSettings<Scalar> excitation{};
   ProofSettings<Scalar> proof{};
 };
@@ -209,7 +210,9 @@ class OnboardInverse {
     const Vector3<Scalar> force = across;
     across[2] = Scalar(0);
     across -= drag_.of(motion.velocity_m_s);
+    bias_.time_constants(bias_times_s());
     if (!has_output(bias_.learn(residual, body_to_world<Scalar>(flown.attitude, across), period_s()))) return;
+    bias_age_s_ += period_s();
     judge(motion, residual);
     listen(now_us, motion);
     regression_.teach(now_us, motion, bank_, force);
@@ -225,6 +228,16 @@ class OnboardInverse {
 
   Scalar period_s() const noexcept { return motion_.period_s(Scalar(0)); }
   static constexpr Scalar magnitude(Scalar value) noexcept { return value < Scalar(0) ? -value : value; }
+
+  /// Nothing is known of a young bias: it is nearly the mean of its rows, before a centre of gravity that is off turns
+  /// the vehicle over.
+  SignedSums<Scalar> bias_times_s() const noexcept {
+    SignedSums<Scalar> times_s = settings_.bias.time_constants_s;
+    for (Scalar& time_s : times_s) {
+      if (time_s > settings_.young_bias_s + bias_age_s_) time_s = settings_.young_bias_s + bias_age_s_;
+    }
+    return times_s;
+  }
 
   /// Of the sum that the rotors followed, over that which the model says.
   Scalar lacking(std::size_t k, const ForwardSum<Scalar>& sum, const SumMotion<Scalar>& motion) const noexcept {
@@ -244,6 +257,7 @@ class OnboardInverse {
     regression_.forget();
     answer_ = {};
     bias_.reset();
+    bias_age_s_ = Scalar(0);
     judging_ = false;
     for (OnboardSum<Scalar>& sum : flown_) sum.refused_last = OnboardRule::still;
     return false;
@@ -374,6 +388,7 @@ class OnboardInverse {
   MotionBias<Scalar> bias_;
   detail::TickClock<Scalar> clock_;
   std::uint64_t begun_us_ = 0;
+  Scalar bias_age_s_{0};  ///< time of the rows that it has learnt from
   std::uint32_t rows_ = 0, rows_since_ = 0, judged_ = 0;
   bool excited_ = false, begun_ = false, frozen_ = false, follows_ = false, judging_ = false, stood_ = false;
 };
