@@ -68,10 +68,10 @@ struct ProofSettings {
 /// that feedback has answered. It does not fall with the rows, as the standard error does.
 template <class Scalar>
 inline constexpr std::array<Scalar, 4> model_error{Scalar(0.02), Scalar(0.05), Scalar(0.05), Scalar(0.02)};
-/// The 90 % quantile of error over sqrt(standard error^2 + (model error slope)^2), of 120 vehicles after 3 to 20 s
-/// (docs/onboard.md).
+/// The 90 % quantile of error over sqrt(standard error^2 + (model error slope)^2), of 120 vehicles after 3 to 20 s; yaw
+/// more, for a start by laws (docs/onboard.md).
 template <class Scalar>
-inline constexpr std::array<Scalar, 4> coverage_factor{Scalar(1.1), Scalar(2.4), Scalar(2.4), Scalar(0.75)};
+inline constexpr std::array<Scalar, 4> coverage_factor{Scalar(1.1), Scalar(2.4), Scalar(2.4), Scalar(1.2)};
 
 /// Half of the interval of a slope: coverage_factor sqrt(standard error^2 + (model error slope)^2).
 template <class Scalar>
