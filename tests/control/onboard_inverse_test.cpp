@@ -32,6 +32,7 @@ struct Axes {
   std::array<double, 4> slopes{};  ///< the truth
   double lag_s = 0.03, gyro_rad_s = 0.01, velocity_m_s = 0.003;
   bool held = false;
+  SignedSums<double> off{};  ///< a centre of gravity that is off: so much more of each sum acts
 
   State<double> state{};
   SignedSums<double> followed{};
@@ -59,8 +60,8 @@ struct Axes {
     now_us += tick_us;
     if (held) return;
     for (int i = 0; i < 3; ++i) {
-      state.body_rates_rad_s[i] +=
-          tick_s * slopes[static_cast<std::size_t>(i) + 1] * followed[static_cast<std::size_t>(i) + 1];
+      state.body_rates_rad_s[i] += tick_s * slopes[static_cast<std::size_t>(i) + 1] *
+                                   (followed[static_cast<std::size_t>(i) + 1] + off[static_cast<std::size_t>(i) + 1]);
     }
     state.velocity_m_s[2] += tick_s * (slopes[0] * followed[0] + standard_gravity_m_s2<double>);
   }
@@ -123,6 +124,19 @@ TEST_CASE("after ten seconds of sines every sum flies within its interval, and t
     for (std::size_t k = 0; k < 4; ++k) {
       CHECK(std::abs(flown[k].slope() / policy.certificate()[k].forward.slope() - 1) < 1e-12);
     }
+  }
+}
+
+TEST_CASE("a young bias has seven tenths of what is off after 0.3 s, by its own time constants it has not") {
+  for (const bool young : {true, false}) {
+    Axes axes({1, 1, 1, 1});
+    axes.off[1] = 0.05;
+    OnboardSettings<double> settings;
+    if (!young) settings.young_bias_s = settings.bias.time_constants_s[1];
+    OnboardInverse<double> policy(start, settings);
+    fly(axes, policy, 0.3, as_measured);
+    CAPTURE(policy.bias().sums()[1]);
+    CHECK((std::abs(policy.bias().sums()[1] + 0.05) < 0.015) == young);
   }
 }
 
