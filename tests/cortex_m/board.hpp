@@ -96,6 +96,34 @@ inline void print_bits(float value) {
   print(text);
 }
 
+/// "<kind> <name> <number>".
+inline void print_line(const char* kind, const char* name, std::uint32_t number) {
+  print(kind);
+  print(" ");
+  print(name);
+  print(" ");
+  print_number(number);
+  print("\n");
+}
+
+/// Instructions of one call, to 40 of them; 0 on the host.
+template <class Function>
+std::uint32_t once(const Function& function) {
+#if defined(__ARM_ARCH_7EM__)
+  SysTick& timer = systick();
+  timer.control = 0;
+  timer.reload = systick_range;
+  timer.value = 0;
+  timer.control = 5;  // processor clock, running
+  const std::uint32_t begin = timer.value;
+  function();
+  return ((begin - timer.value) & systick_range) * instructions_per_tick;
+#else
+  function();
+  return 0;
+#endif
+}
+
 }  // namespace board
 
 /// A measurement.

@@ -7,8 +7,7 @@ set -euo pipefail
 root=$1 work=$2 eigen=$3 target=$4
 # shellcheck source=machine.sh
 source "$root/tests/cortex_m/machine.sh"
-need_tools
-[ -f "$work/prepared" ] || { echo "SKIPPED: the host's results are not there (cortex_m.prepare)"; exit 77; }
+need_prepared
 
 for optimisation in -Os -O2; do
   name=$work/$target$optimisation

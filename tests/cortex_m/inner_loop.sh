@@ -7,12 +7,10 @@ set -euo pipefail
 root=$1 work=$2 compiler=$3 eigen=$4
 # shellcheck source=machine.sh
 source "$root/tests/cortex_m/machine.sh"
-need_tools
-[ -f "$work/prepared" ] || { echo "SKIPPED: the host's results are not there (cortex_m.prepare)"; exit 77; }
+need_prepared
 mkdir -p "$work/inner_loop"
 
-fma=
-if [ "$(uname -m)" = x86_64 ]; then fma=-mfma; fi
+fma=$(host_fma)
 
 # loop_flags <loop>: the flight stacks' core with the shipped structured model, with one that has a residual network,
 # and the library's AdaptiveInverse in a TrackingController

@@ -21,6 +21,15 @@ need_tools() {
   fi
 }
 
+# The same where the host's results are not there.
+need_prepared() {
+  need_tools
+  [ -f "$work/prepared" ] || { echo "SKIPPED: the host's results are not there (cortex_m.prepare)"; exit 77; }
+}
+
+# The host's multiply-add in hardware, as the target has one.
+host_fma() { if [ "$(uname -m)" = x86_64 ]; then echo -mfma; fi; }
+
 # Targets: the processor, its FPU (sp: single precision alone), and QEMU's board that has it.
 target_flags() {
   case $1 in

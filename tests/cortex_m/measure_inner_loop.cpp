@@ -42,38 +42,12 @@ void print_numbers(const char* name, const float* values) {
   for (int i = 0; i < 4; ++i) board::print_bits(values[i]);
   board::print("\n");
 }
-void print_line(const char* kind, const char* name, std::uint32_t number) {
-  board::print(kind);
-  board::print(" ");
-  board::print(name);
-  board::print(" ");
-  board::print_number(number);
-  board::print("\n");
-}
-
-/// Instructions of one call, to 40 of them; 0 on the host.
-template <class Function>
-std::uint32_t once(const Function& function) {
-#if defined(__ARM_ARCH_7EM__)
-  board::SysTick& timer = board::systick();
-  timer.control = 0;
-  timer.reload = board::systick_range;
-  timer.value = 0;
-  timer.control = 5;
-  const std::uint32_t begin = timer.value;
-  function();
-  return ((begin - timer.value) & board::systick_range) * board::instructions_per_tick;
-#else
-  function();
-  return 0;
-#endif
-}
 
 }  // namespace
 
 extern "C" int board_main() {
   const auto length = static_cast<std::size_t>(board_block_end - board_block);
-  print_line("status", "start", pinnquad_loop_start(board_block, length));
+  board::print_line("status", "start", pinnquad_loop_start(board_block, length));
   float commands[4] = {}, sums[4] = {};
   std::uint32_t learning = 0, between = 0, far = 0;
   [[maybe_unused]] std::uint32_t stack = 0;  // of the target alone
@@ -92,23 +66,23 @@ extern "C" int board_main() {
 #endif
     {
       std::uint32_t& most = is_far ? far : (learns ? learning : between);
-      const std::uint32_t count = once(call);
+      const std::uint32_t count = board::once(call);
       if (count > most) most = count;
     }
     if (tick % 50 == 0) {
-      print_line("status", is_far ? "far" : "near", status);
+      board::print_line("status", is_far ? "far" : "near", status);
       print_numbers("commands", commands);
     }
     if (tick + 1 == ticks) {
-      print_line("status", "bias", pinnquad_loop_bias(sums));
+      board::print_line("status", "bias", pinnquad_loop_bias(sums));
       print_numbers("sums", sums);
     }
   }
 #if defined(__ARM_ARCH_7EM__)
-  print_line("instructions", "learning", learning);
-  print_line("instructions", "between", between);
-  print_line("instructions", "far", far);
-  print_line("stack", "tick", stack);
+  board::print_line("instructions", "learning", learning);
+  board::print_line("instructions", "between", between);
+  board::print_line("instructions", "far", far);
+  board::print_line("stack", "tick", stack);
 #endif
   return 0;
 }

@@ -62,33 +62,6 @@ void ask() {
   static_cast<void>(flight->learner(flight->state, wanted, now_us, answer));
 }
 
-/// Instructions of one call, to 40 of them; 0 on the host.
-template <class Function>
-std::uint32_t once(const Function& function) {
-#if defined(__ARM_ARCH_7EM__)
-  board::SysTick& timer = board::systick();
-  timer.control = 0;
-  timer.reload = board::systick_range;
-  timer.value = 0;
-  timer.control = 5;
-  const std::uint32_t begin = timer.value;
-  function();
-  return ((begin - timer.value) & board::systick_range) * board::instructions_per_tick;
-#else
-  function();
-  return 0;
-#endif
-}
-
-void print_line(const char* kind, const char* name, std::uint32_t number) {
-  board::print(kind);
-  board::print(" ");
-  board::print(name);
-  board::print(" ");
-  board::print_number(number);
-  board::print("\n");
-}
-
 }  // namespace
 
 extern "C" int board_main() {
@@ -101,7 +74,7 @@ extern "C" int board_main() {
     now_us = begin_us + tick * tick_us;
     command(tick, noise, flight->commands);
     flight->step(noise);
-    const std::uint32_t of_question = once(ask);
+    const std::uint32_t of_question = board::once(ask);
     if (of_question > asked) asked = of_question;
 #if defined(__ARM_ARCH_7EM__)
     if (tick % 53 == 0) {  // stack and instructions are of different calls
@@ -111,7 +84,7 @@ extern "C" int board_main() {
       continue;
     }
 #endif
-    const std::uint32_t count = once(learn);
+    const std::uint32_t count = board::once(learn);
     second += count;
     if (tick % ticks_per_second == 0) {
       if (second > most_of_second) most_of_second = second;
@@ -122,18 +95,18 @@ extern "C" int board_main() {
     if (count > most) most = count;
     before = rows;
   }
-  print_line("rows", "learnt", flight->learner.rows());
+  board::print_line("rows", "learnt", flight->learner.rows());
   board::print("slopes");
   for (const auto& sum : flight->learner.candidate()) board::print_bits(sum.forward.slope());
   board::print("\n");
-  print_line("bytes", "learner", sizeof(Learner));
+  board::print_line("bytes", "learner", sizeof(Learner));
 #if defined(__ARM_ARCH_7EM__)
-  print_line("instructions", "row", row);
-  print_line("instructions", "proposal", proposal);
-  print_line("instructions", "between", between);
-  print_line("instructions", "asked", asked);
-  print_line("second", "learnt", most_of_second);
-  print_line("stack", "tick", stack);
+  board::print_line("instructions", "row", row);
+  board::print_line("instructions", "proposal", proposal);
+  board::print_line("instructions", "between", between);
+  board::print_line("instructions", "asked", asked);
+  board::print_line("second", "learnt", most_of_second);
+  board::print_line("stack", "tick", stack);
 #endif
   return 0;
 }

@@ -7,8 +7,7 @@ set -euo pipefail
 root=$1 work=$2 compiler=$3 eigen=$4
 # shellcheck source=machine.sh
 source "$root/tests/cortex_m/machine.sh"
-need_tools
-[ -f "$work/prepared" ] || { echo "SKIPPED: the host's results are not there (cortex_m.prepare)"; exit 77; }
+need_prepared
 mkdir -p "$work/onboard"
 
 # Instructions of the longest tick and of a second, by optimisation: a tenth above what is measured. 1 % of 400 MHz are
@@ -18,8 +17,7 @@ most_bytes=10300 most_stack=1000
 # Microseconds of the clock become a float by doubles, which this M7 has.
 forbidden=${forbidden%"|$doubles"}
 
-fma=
-if [ "$(uname -m)" = x86_64 ]; then fma=-mfma; fi
+fma=$(host_fma)
 host=$work/onboard/host
 "$compiler" -std=c++17 -O1 $fma -DNDEBUG -ffp-contract=off "-I$root/include" -isystem "$eigen" "$here/onboard.cpp" -o "$host"
 "$host" >"$host.txt"

@@ -2,9 +2,11 @@
 #include "logs/command_lag.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "logs/specific_force.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 #include "pinnquad/data/plausibility.hpp"
 
 namespace pinnquad::logs {
@@ -31,21 +33,30 @@ void low_pass_without_phase(std::vector<double>& series, double period_s, double
 /// places otherwise.
 std::vector<double> between_rows(const std::vector<double>& series, std::size_t fine) {
   constexpr std::ptrdiff_t reach = 6;
-  constexpr double pi = 3.14159265358979;
   const auto sinc = [](double x) { return std::abs(x) < 1e-12 ? 1.0 : std::sin(pi * x) / (pi * x); };
+  if (fine == 1) return series;
+  std::vector<std::array<double, 2 * reach>> weights(fine);  // of each part
+  std::vector<double> total(fine, 0.0);
+  for (std::size_t part = 1; part < fine; ++part) {
+    const double share = static_cast<double>(part) / static_cast<double>(fine);
+    for (std::size_t i = 0; i < weights[part].size(); ++i) {
+      const double x = share - static_cast<double>(1 - reach + static_cast<std::ptrdiff_t>(i));
+      weights[part][i] = sinc(x) * sinc(x / static_cast<double>(reach));
+      total[part] += weights[part][i];
+    }
+  }
   const auto rows = static_cast<std::ptrdiff_t>(series.size());
   std::vector<double> result;
   result.reserve(series.size() * fine);
   for (std::ptrdiff_t row = 0; row < rows; ++row) {
-    for (std::size_t part = 0; part < fine; ++part) {
-      const double share = static_cast<double>(part) / static_cast<double>(fine);
-      double sum = 0, weights = 0;
-      for (std::ptrdiff_t k = 1 - reach; k <= reach; ++k) {
-        const double x = share - static_cast<double>(k), weight = sinc(x) * sinc(x / static_cast<double>(reach));
-        sum += weight * series[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(row + k, 0, rows - 1))];
-        weights += weight;
+    result.push_back(series[static_cast<std::size_t>(row)]);
+    for (std::size_t part = 1; part < fine; ++part) {
+      double sum = 0;
+      for (std::size_t i = 0; i < weights[part].size(); ++i) {
+        const std::ptrdiff_t at = row + 1 - reach + static_cast<std::ptrdiff_t>(i);
+        sum += weights[part][i] * series[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, rows - 1))];
       }
-      result.push_back(part == 0 ? series[static_cast<std::size_t>(row)] : sum / weights);
+      result.push_back(sum / total[part]);
     }
   }
   return result;

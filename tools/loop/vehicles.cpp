@@ -157,12 +157,7 @@ SignedSums<double> hover_slopes(Policy policy, const Airframe<double>& start) {
   const auto sums = [&](const Accelerations<double>& wanted) {
     Commands<double> commands{};
     static_cast<void>(policy(hovering(), wanted, 0, commands));
-    const ThrustFractions<double> fractions = rotors.fractions(commands);
-    SignedSums<double> result{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t i = 0; i < rotor_count; ++i) result[k] += mix.signs[k][i] * fractions[i];
-    }
-    return result;
+    return LagBank<double>::sums_of(rotors.fractions(commands), mix);
   };
   constexpr std::array<double, 4> by = {-0.3, 0.3, 0.3, 0.03};
   const SignedSums<double> before = sums({});

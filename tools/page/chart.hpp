@@ -15,7 +15,7 @@ inline constexpr const char *text = "text", *muted = "muted", *grid = "line", *g
                             *red = "series-5", *violet = "series-6";
 }  // namespace colour
 
-/// Of a series: a line through its points, or a mark on each.
+/// A series is a line through its points, or a mark on each.
 enum class Shape { line, dots, pluses, squares, strokes };
 
 /// Points over each other. In a panel whose y axis names rows, the y of a point is its row's number.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The vehicle that is learnt on board: the acceleration that each signed sum of thrust fractions makes, by itself, as a
-// sum of six terms. It is regressed this way round, as the noise is in the accelerations, and inverted to fly.
+// sum of seven terms. It is regressed this way round, as the noise is in the accelerations, and inverted to fly.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct SumMotion {
   Vector3<Scalar> velocity_m_s = Vector3<Scalar>::Zero(), body_rates_rad_s = Vector3<Scalar>::Zero();
 };
 
-/// That of a motion, measured or asked for.
+/// A motion, measured or asked for, as the sums see it.
 template <class Scalar>
 SumMotion<Scalar> sum_motion(const MotionInputs<Scalar>& motion) noexcept {
   const Vector3<Scalar>& turn = motion.angular_acceleration_rad_s2;
@@ -73,7 +73,7 @@ struct ForwardSum {
 template <class Scalar>
 using ForwardModel = std::array<ForwardSum<Scalar>, 4>;
 
-/// That of an airframe: rotors of equal strength around a centre of gravity in their middle.
+/// The model of an airframe: rotors of equal strength around a centre of gravity in their middle.
 template <class Scalar>
 ForwardModel<Scalar> forward_model(const Airframe<Scalar>& airframe) noexcept {
   ForwardModel<Scalar> model{};

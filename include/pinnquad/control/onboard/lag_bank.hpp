@@ -64,7 +64,7 @@ class LagBank {
   }
 
   /// One tick after the motion's: the thrust fractions in force since the tick before, of `step_s`. `ended`: the motion
-  /// has ended a window; means() are its.
+  /// has ended a window, which at() then tells.
   void tick(std::uint64_t now_us, Scalar step_s, bool ended, const Commands<Scalar>& fractions,
             const detail::SignedMix<Scalar>& mix) noexcept {
     const std::uint64_t number = now_us / period_us_;

@@ -239,7 +239,7 @@ class OnboardInverse {
     return times_s;
   }
 
-  /// Of the sum that the rotors followed, over that which the model says.
+  /// The sum that the rotors followed, less the one that the model says.
   Scalar lacking(std::size_t k, const ForwardSum<Scalar>& sum, const SumMotion<Scalar>& motion) const noexcept {
     const Followed<Scalar> own = bank_.at(k, sum.lag);
     return own.sum - sum.needed(k, motion, bank_.at(0, sum.lag).sum, own.rise_1_s);

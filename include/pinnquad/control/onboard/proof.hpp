@@ -57,7 +57,7 @@ struct ProofSettings {
   Scalar least_rows = Scalar(60);
   Scalar most_contradiction = Scalar(9);  ///< mean square of the judged rows over that of its own
   Scalar least_share = Scalar(0.1);       ///< of the sines' acceleration that is made
-  /// Of the slope that the sines say, beside it; less sharp than its interval.
+  /// Share of the slope by which the slope of the sines may differ; less sharp than its interval.
   std::array<Scalar, 4> most_disagreement{Scalar(0.25), Scalar(0.5), Scalar(0.5), Scalar(0.25)};
   std::array<Scalar, 4> most_half_width{Scalar(0.15), Scalar(0.15), Scalar(0.15), Scalar(0.15)};  ///< over the slope
   /// In units of a sum, over the envelope; wider for yaw, which has little torque and gives way first.

@@ -36,7 +36,7 @@ class SineAnswer {
 
   /// True where sines were asked for.
   bool asked(std::size_t k) const noexcept { return energy_[k] > least_energy; }
-  /// Of the acceleration that a sine asked for, so much was made, against feedback: 0 to about 1.
+  /// The vehicle made this share of the acceleration that a sine asked for, against feedback: 0 to about 1.
   Scalar share(std::size_t k) const noexcept {
     using std::sqrt;
     const Wave& a = acceleration_[k];
