@@ -62,8 +62,8 @@ using ObservedCall = decltype(std::declval<Policy&>().observed(
     std::declval<const State<Scalar>&>(), std::declval<const Accelerations<Scalar>&>(), {std::declval<std::uint64_t>()},
     std::declval<Commands<Scalar>&>()));
 
-/// Finds a policy's member by name, whatever its type: `&WithPolicyNames<Policy>::name` is ambiguous, and no type, where
-/// the policy has one.
+/// Finds a policy's member by name, whatever its type: `&WithPolicyNames<Policy>::name` is ambiguous, and no type,
+/// where the policy has one.
 struct PolicyNames {
   void learn();
   void integrate();
