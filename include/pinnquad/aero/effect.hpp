@@ -217,12 +217,18 @@ template <class Effect>
 using IsBattery = std::enable_if_t<Effect::is_battery>;
 template <class Effect>
 using ComesLast = std::enable_if_t<Effect::comes_last>;
-/// False where an effect that comes last is followed by another one.
 template <class... Effects>
-constexpr bool last_ones_are_last() noexcept {
-  std::size_t place = 0, first = sizeof...(Effects);
-  ((first = is_detected<ComesLast, UnswitchedEffect<Effects>> && place < first ? place : first, ++place), ...);
-  return first + 1 >= sizeof...(Effects);
+constexpr bool require_last_ones_last() noexcept {
+  constexpr bool comes_last[] = {is_detected<ComesLast, UnswitchedEffect<Effects>>..., false};
+  constexpr auto followed = [](const bool* last) constexpr {
+    for (std::size_t i = 0; i + 1 < sizeof...(Effects); ++i)
+      if (last[i]) return true;
+    return false;
+  };
+  static_assert(!followed(comes_last),
+                "pinnquad: an effect that comes last, such as Payload, scales the forces of those before it: no other "
+                "effect may follow it (aero/effect.hpp)");
+  return true;
 }
 }  // namespace detail
 /// True for an effect that reads and sets Surroundings::battery.
