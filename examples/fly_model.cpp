@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Flies an exported model in a simulator, by the controller that flies it in PX4 and on a Crazyflie: a figure-eight,
-// whose vehicle carries a fifth more mass from half time on. Prints the errors and draws the flights as a moving picture.
+// whose vehicle carries a fifth more mass from half time on. Prints the errors and draws a moving picture of them.
 //   fly_model MODEL.block PICTURE.svg       compiled with the folder of model.hpp as an include path
 #include <algorithm>
 #include <cmath>
@@ -133,7 +133,8 @@ struct Curve {
 };
 
 /// A moving picture as SVG, 760 x 530: above, the vehicles on their path, seen from the west and a little from above;
-/// below, the error over time, up to `most_m`. It plays twice as fast as they fly; without animation the curves are whole.
+/// below, the error over time, up to `most_m`. It plays twice as fast as they fly; without animation the curves are
+/// whole.
 void draw(const std::string& path, const std::vector<Curve>& curves, double most_m) {
   AtomicFile file(path);
   std::ostream& svg = file.stream();
