@@ -180,6 +180,10 @@ inline void let_choose(Fold& fold, const HoldOutChoice& choice) {
     return listed(list);
   };
   const bool whole = pinnquad::whole_flight_groups(alike).size() > 1;
+  const std::string path = alike.empty() ? "" : alike.pieces().front().flight->trajectory;
+  const bool one_path = whole && !path.empty() &&
+                        std::all_of(alike.pieces().begin(), alike.pieces().end(),
+                                    [&](const auto& piece) { return piece.flight->trajectory == path; });
   for (const pinnquad::RowSet& group :
        named ? std::vector<pinnquad::RowSet>{alike} : pinnquad::left_out_groups(alike)) {
     Judge judge{names(group), others, group};
@@ -198,9 +202,18 @@ inline void let_choose(Fold& fold, const HoldOutChoice& choice) {
     fold.judges.push_back(std::move(judge));
   }
   fold.chosen_by = named   ? names(alike) + ", as --validate says"
-                   : whole ? names(alike) + ", each trajectory left out in turn"
+                   : whole ? names(alike) + (one_path ? ", each flight" : ", each trajectory") + " left out in turn"
                            : names(alike) + ", each quarter of it left out in turn";
-  if (named) return;
+  if (named) {
+    const auto is_unlike = [&](const auto& piece) { return is_among(piece.flight->name, choice.unlike); };
+    if (std::any_of(alike.pieces().begin(), alike.pieces().end(), is_unlike) &&
+        !std::all_of(others.pieces().begin(), others.pieces().end(), is_unlike)) {
+      fold.caution =
+          "another vehicle or payload than in most flights chooses between models fitted to them; better: a flight "
+          "like those that train, or flights of this vehicle alone";
+    }
+    return;
+  }
   if (!others.empty()) fold.chosen_by += "; not by " + names(others) + ", of another vehicle or payload";
   if (unlike) {
     fold.caution =
@@ -210,6 +223,9 @@ inline void let_choose(Fold& fold, const HoldOutChoice& choice) {
     fold.caution =
         "one flight chooses by quarters of itself, which are alike; better: another flight of this vehicle, "
         "on another trajectory";
+  } else if (one_path) {
+    fold.caution =
+        "all of them fly trajectory " + pinnquad::printable(path) + "; better: flights on other trajectories";
   }
 }
 

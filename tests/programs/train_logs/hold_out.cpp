@@ -200,6 +200,8 @@ TEST_CASE("every trajectory that is not held out chooses in turn; another vehicl
   const auto named = fold_of({"eight"}, {"eight_1"});
   CHECK(judges_of(named) == Names{"eight_1"});
   CHECK(named.validation == Names{"eight_1"});
+  CHECK(named.caution.find("another vehicle or payload than in most") == 0);
+  CHECK(fold_of({"eight"}, {"circle_1"}).caution.empty());
   CHECK_FALSE(fold_of({}, {"circle_1", "circle_2", "eight_1", "star_1", "x"}).caution.empty());
 
   // the only one of its vehicle chooses by quarters of itself, and the others train
@@ -208,6 +210,10 @@ TEST_CASE("every trajectory that is not held out chooses in turn; another vehicl
   CHECK(one.part_validates);
   CHECK(one.validation == Names{"x"});
   CHECK(one.caution.find("quarters") != std::string::npos);
+  const auto repeated = fold_of({}, {"x", "eight_1", "star_1"});
+  CHECK(judges_of(repeated) == Names{"circle_1", "circle_2"});
+  CHECK(repeated.chosen_by.find("circle_1, circle_2, each flight left out in turn") == 0);
+  CHECK(repeated.caution == "all of them fly trajectory circle; better: flights on other trajectories");
 
   refused([&] { fold_of({"y"}, {}); }, "--validate y: is held out");
   refused([&] { fold_of({"eigth"}, {}); }, "--validate eigth: no flight");
