@@ -9,7 +9,7 @@ add_library(flight_stacks_crazyflie_core OBJECT "${PROJECT_SOURCE_DIR}/examples/
 target_link_libraries(flight_stacks_crazyflie_core PRIVATE pinnquad::pinnquad pinnquad_development)
 
 find_package(Threads REQUIRED) # one test has two
-add_executable(test_flight_stacks answers_test.cpp bias_test.cpp cores_test.cpp flights_test.cpp past_test.cpp record_test.cpp steps_test.cpp trust_test.cpp
+add_executable(test_flight_stacks answers_test.cpp bias_test.cpp cores_test.cpp flights_test.cpp onboard_test.cpp past_test.cpp record_test.cpp steps_test.cpp trust_test.cpp
   px4_module_test.cpp takeover_test.cpp "${PROJECT_SOURCE_DIR}/examples/px4_module/pinnquad_control.cpp"
   crazyflie_firmware_test.cpp
   $<TARGET_OBJECTS:flight_stacks_crazyflie_glue> $<TARGET_OBJECTS:flight_stacks_crazyflie_core> $<TARGET_OBJECTS:test_main>)

@@ -196,6 +196,7 @@ class CrazyflieStackOf {
   void situation(const Situation& now) {
     state_.drives_motors = now.drives_motors;
     state_.landed = now.landed;
+    state_.learning = static_cast<std::uint8_t>(now.learning);
   }
 
   Answer run(std::uint64_t now_us) {
