@@ -53,6 +53,11 @@ class StrangeVehicle {
     heavier.mass_kg *= share;
     vehicle_ = Vehicle(heavier, pinnquad::paper_site<double>());
   }
+  /// Time of a tick: PX4's follow the gyro, and a step is late by up to 0.4 ms.
+  static std::uint64_t time_us(long tick) {
+    const std::uint32_t late_us = Stack::period_ms == 1 ? (static_cast<std::uint32_t>(tick) * 2654435761u) % 401u : 0;
+    return static_cast<std::uint64_t>(5'000'000 + tick * 1000 * Stack::period_ms) + late_us;
+  }
   const pinnquad::State<double>& body() const { return body_.body; }
 
   /// The samples of a tick, some of them with each.

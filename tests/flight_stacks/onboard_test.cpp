@@ -57,7 +57,7 @@ struct StrangeFlight {
   void fly(double until_s, const OnTick& on_tick) {
     for (; static_cast<double>(tick) * vehicle.tick_s < until_s; ++tick) {
       const double time_s = static_cast<double>(tick) * vehicle.tick_s;
-      const auto now_us = static_cast<std::uint64_t>(5'000'000 + tick * 1000 * Stack::period_ms);
+      const std::uint64_t now_us = vehicle.time_us(tick);
       const TrajectoryPoint<double> point = strange_course(time_s);
       worst_m = std::max(worst_m, (point.position_m - vehicle.body().position_m).norm());
       vehicle.feed(stack, tick, now_us, point);
@@ -121,8 +121,11 @@ TEST_CASE_TEMPLATE("a core that learns makes the commands of the loop's policy, 
   TrackingController<float, Held> loop(airframe, outer_loop(airframe), Held{&policy});
   std::uint32_t rows = 0;
   std::size_t ticks = 0;
+  std::uint64_t excited_us = 0, before_us = 0;
   const auto loop_too = [&](const CoreRecord& record) {
-    policy.excite(flight.learning == Learning::excites && record.timestamp < 15'000'000);
+    if (before_us != 0) excited_us += record.timestamp - before_us;
+    before_us = record.timestamp;
+    policy.excite(flight.learning == Learning::excites && excited_us < 10'000'000);
     policy.freeze(flight.learning == Learning::frozen);
     if (rows != policy.rows()) loop.change_to(airframe, outer_loop(policy.airframe()));
     rows = policy.rows();
