@@ -91,6 +91,11 @@ foreach(missing IN ITEMS "WITHOUT_KALMAN:needs the Kalman estimator" "MINIMAL_ST
   set_tests_properties("${name}" PROPERTIES LABELS flight_stacks PASS_REGULAR_EXPRESSION "${CMAKE_MATCH_2}")
 endforeach()
 
+# The glue of an app that learns its vehicle; its core is compiled by flight_stacks.stack.crazyflie_onboard.
+add_test(NAME flight_stacks.crazyflie_glue.onboard COMMAND "${CMAKE_C_COMPILER}" -fsyntax-only -std=gnu11 -Wall -Wextra -Werror
+  -DPINNQUAD_ONBOARD "-I${crazyflie_headers}" "-I${stand_in}/crazyflie" "-I${PROJECT_SOURCE_DIR}/examples/crazyflie_app/src" "${crazyflie_glue}")
+set_tests_properties(flight_stacks.crazyflie_glue.onboard PROPERTIES LABELS flight_stacks)
+
 # ROS 2's package: its core alone, and its component against a stand-in of rclcpp.
 add_executable(test_flight_stacks_ros2 ros2/core_test.cpp ros2/node_test.cpp
   "${PROJECT_SOURCE_DIR}/examples/ros2_package/src/inverse_node.cpp" $<TARGET_OBJECTS:test_main>)

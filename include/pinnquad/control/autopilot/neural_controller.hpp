@@ -287,8 +287,12 @@ class NeuralController {
     const auto sums = [](const float(&b)[4]) noexcept { return SignedSums<float>{b[0], b[1], b[2], b[3]}; };
     const Vector3<float> across(logged.bias_across_m_s2);
     const Vector3<float> rate(logged.bias_across_rate_m_s3[0], logged.bias_across_rate_m_s3[1], 0);
-    learner_.own().resume(sums(logged.bias_sums), across, rate, {logged.bias_noise, logged.bias_across_noise_m_s2},
-                          logged.bias_waited_s, static_cast<Status>(logged.bias_status));
+    if (logged.learning != 0) {  // it is the learner's that was logged
+      learner_.own().reset();
+    } else {
+      learner_.own().resume(sums(logged.bias_sums), across, rate, {logged.bias_noise, logged.bias_across_noise_m_s2},
+                            logged.bias_waited_s, static_cast<Status>(logged.bias_status));
+    }
     learner_.last().resume(sums(logged.analytic_bias_sums), across, rate,
                            {logged.analytic_bias_noise, logged.bias_across_noise_m_s2}, logged.analytic_bias_waited_s,
                            static_cast<Status>(logged.analytic_bias_status));
@@ -305,6 +309,7 @@ class NeuralController {
       if (learnt_before_ && !learns()) learner_.another_model();  // the network's again
       learnt_before_ = learns();
       if (!learns()) return;
+      learner_.own().reset();  // the network is not asked
       const bool known = tick.known && !tick.freezes && !jumped_;
       if (situation_.learning != Learning::excites) {
         excited_us_ = 0;
