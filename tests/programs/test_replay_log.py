@@ -353,10 +353,11 @@ def test_learnt(pinnquad, core, same, differs, stack):
     differs("u1", part, *words)
 
 
-def test_learnt_of_no_learner(pinnquad, eight, flights):
+def test_learnt_of_no_learner(pinnquad, eight, flown):
     head(eight / RECORD, RECORD, 101)
     pinnquad.refused("replay", RECORD, *models(eight), "--learnt", "none", keyword="in no tick of this log")
-    pinnquad.refused("replay", flights / "clean.csv", "--model", DEMO, "--learnt", "none", keyword="none of its records")
+    flight = flown("d1 --seed 3 --samples 1200")
+    pinnquad.refused("replay", flight, "--model", DEMO, "--learnt", "none", keyword="none of its records")
 
 
 def test_earlier_core(pinnquad, eight):
