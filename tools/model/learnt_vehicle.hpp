@@ -209,9 +209,13 @@ class LearntVehicle {
       for (const Swap& swap : swaps_) {
         if (swap.sum == k) add(swapped, swap.time_s, swap.slope / start);
       }
-      panel.note = before.proven ? in_words("%.3g +- %.1f %%", before.slope / start,
-                                            100 * before.half_width / std::fabs(before.slope))
-                                 : std::string("the start's: ") + before.rule;
+      const std::string rule = before.rule == std::string(to_string(pinnquad::OnboardRule::none))
+                                   ? std::string()
+                                   : std::string("; refused last: ") + before.rule;
+      panel.note = (before.proven ? in_words("%.3g +- %.1f %%", before.slope / start,
+                                             100 * before.half_width / std::fabs(before.slope))
+                                  : std::string("the start's")) +
+                   rule;
       panel.series = {low, high, candidates, flown, swapped};
       chart.panels.push_back(panel);
     }
