@@ -22,6 +22,7 @@
 #include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/filtered_motion.hpp"
+#include "pinnquad/control/integral_inverse.hpp"
 #include "pinnquad/control/onboard/onboard_inverse.hpp"
 #include "pinnquad/control/tracking_controller.hpp"
 #include "pinnquad/control/trajectory.hpp"

@@ -4,7 +4,7 @@
 #pragma once
 
 #define PINNQUAD_VERSION_MAJOR 0
-#define PINNQUAD_VERSION_MINOR 2
+#define PINNQUAD_VERSION_MINOR 3
 #define PINNQUAD_VERSION_PATCH 0
 
 #define PINNQUAD_DETAIL_TEXT_OF(number) #number

@@ -9,7 +9,8 @@
 // CASE RESIDUAL_SEES_TOO_MUCH: pinnquad: a predictor inside Masked takes all features that are not masked
 // CASE WITHHELD_TWICE: pinnquad: Masked features are in threes, ascending, and do not overlap
 // CASE BASE_SEES_THE_TURNING: pinnquad: SignedSumsOn needs a base that is not shown the angular acceleration
-// CASE BASE_SAYS_NOTHING: pinnquad: a base says which features it reads, by name
+// CASE BASE_SAYS_NOTHING: pinnquad: a base has `reads`, prepare.., commands.. and slopes.., static and noexcept
+// CASE BASE_WITHOUT_SLOPES: pinnquad: a base has `reads`, prepare.., commands.. and slopes.., static and noexcept
 // CASE RIGID_BODY_OF_INVERSE_FEATURES: pinnquad: the outputs' base reads a feature that the feature set has not
 // CASE RIGID_BODY_OF_PAPER_FEATURES: pinnquad: the outputs' base reads a feature that the feature set has not
 // CASE RIGID_BODY_OF_OTHER_UNITS: pinnquad: the outputs' base reads a feature that the feature set has not
@@ -131,6 +132,11 @@ struct Silent {
   static constexpr const char* description = "Silent";
 };
 constexpr int wrong = SignedSumsOn<Silent>::size;
+#elif defined(BASE_WITHOUT_SLOPES)
+struct Slopeless : RigidBodyBase {
+  static void slopes() noexcept;
+};
+constexpr int wrong = ResidualOutputs<Slopeless>::size;
 #elif defined(NO_ANGULAR_ACCELERATION)
 constexpr int wrong = MonotoneBase<Joined<SpecificForce, BodyRates>>::outputs;
 #else

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CASE NOT_AN_EFFECT: pinnquad: this type is not an aerodynamic effect
 // CASE EFFECT_RETURNS_A_FORCE: pinnquad: this type is not an aerodynamic effect
+// CASE PAYLOAD_FIRST: pinnquad: an effect that comes last, such as Payload, scales the forces of those before it
 // CASE NOT_AN_AIRFRAME: pinnquad: an airframe needs
 // CASE AIRFRAME_CANNOT_HOVER: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
 // CASE AIRFRAME_WITHOUT_MASS: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
@@ -25,6 +26,7 @@
 // CASE GROUND_EFFECT_WITH_A_POLE: pinnquad: an effect, as it is by default, refuses this airframe .its status...
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
+#include "pinnquad/aero/payload.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
@@ -166,6 +168,12 @@ using Effect = ForceOnly;
 using Effect = pinnquad::QuadraticDrag;
 #endif
 
+#if defined(PAYLOAD_FIRST)
+using Loaded = pinnquad::Quadrotor<double, pinnquad::Payload, Effect>;
+#else
+using Loaded = pinnquad::Quadrotor<double, Effect, pinnquad::Payload>;
+#endif
+
 #if defined(NOT_AN_AIRFRAME)
 using Vehicle = Nothing;
 #else
@@ -176,12 +184,13 @@ using Vehicle = Changed;
 
 int main() {
   const pinnquad::Quadrotor<double, Effect> quadrotor(pinnquad::airframe_value<Vehicle, double>());
+  const Loaded loaded(quadrotor.airframe());
   pinnquad::VehicleState<double> state;
   pinnquad::Status status = pinnquad::Quadrotor<double, Whole>(quadrotor.airframe()).step(state, {}, 0.001);
 #if !defined(NOT_AN_AIRFRAME)
   using NearGround = pinnquad::Quadrotor<double, pinnquad::GroundEffect<pinnquad::Conyers>>;
   if (status == pinnquad::Status::ok) status = NearGround::of<Vehicle>().step(state, {}, 0.001);
 #endif
-  return static_cast<int>(quadrotor.status()) + static_cast<int>(status) +
+  return static_cast<int>(quadrotor.status()) + static_cast<int>(loaded.status()) + static_cast<int>(status) +
          static_cast<int>(sizeof(Nothing) + sizeof(ForceOnly) + sizeof(Changed) + sizeof(MayThrow)) - 4;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pinnquad/aero/air_density.hpp"
+#include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/control/integral_inverse.hpp"
 #include "pinnquad/control/rotor_follower.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
@@ -112,6 +113,25 @@ TEST_CASE("the integral takes a steady error away, is bounded, and stands still 
   policy.learn(now_us + 2000, true, State<double>{}, {0.5, 0.5, 0.5, 0.5});
   policy.integrate({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {0, 0, 0}});
   CHECK(policy.across_m_s2({})[0] == doctest::Approx(-settings.most_m_s2));
+}
+
+TEST_CASE("policies around each other both learn") {
+  std::uint64_t now_us = 1'000'000;
+  using Integral = IntegralInverse<double, Scripted>;
+  AdaptiveInverse<double, Integral> outer(Integral({0.5}), airframe());
+  IntegralInverse<double, AdaptiveInverse<double, Scripted>> inner({{0.5}, airframe()});
+  State<double> state;
+  for (int i = 0; i < 1500; ++i) {  // 0.04 of the sum, and an error of 1 m/s^2
+    now_us += 2000;
+    outer.learn(now_us, true, state, {0.51, 0.51, 0.51, 0.51});
+    inner.learn(now_us, true, state, {0.51, 0.51, 0.51, 0.51});
+    outer.integrate({{0.5, 0, 0}, {0, 0, 0}});
+    inner.integrate({{0.5, 0, 0}, {0, 0, 0}});
+  }
+  Commands<double> commands{};
+  REQUIRE(inner(state, {}, now_us, commands) == Status::ok);
+  CHECK(commands[0] == doctest::Approx(0.51));
+  CHECK(outer.inverse().across_m_s2(state)[0] == doctest::Approx(-1.5).epsilon(0.01));
 }
 
 TEST_CASE("a bias beyond its bound hands over to the reserve with its own, and comes back below half of it") {

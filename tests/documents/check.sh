@@ -192,7 +192,7 @@ while IFS=$'\t' read -r line language action argument; do
       fault "$line" "$argument writes something else:"
       cat "$work/difference"
     fi
-  elif [ "$language:$action" = sh:skip ]; then
+  elif [[ $language:$action == @(sh|console):skip ]]; then
     check_commands "$line"
   elif [ "$action" = run ]; then
     case $language in
@@ -209,4 +209,4 @@ while IFS=$'\t' read -r line span; do
 done <"$parts/spans"
 
 if [ "$faults" -ne 0 ]; then exit 1; fi
-echo "$document: $(wc -l <"$parts/blocks") blocks, of which $(awk -F '\t' '$3 == "skip"' "$parts/blocks" | wc -l) say why they are not run"
+echo "$document: $(wc -l <"$parts/blocks") blocks, of which $(awk -F '\t' '$3 == "skip"' "$parts/blocks" | wc -l) are not run"

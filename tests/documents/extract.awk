@@ -2,6 +2,7 @@
 #
 # Takes a Markdown document apart, for check.sh. Writes into the folder `out`:
 #   blocks          one line per fenced block: line of the fence, language, run|skip|from|output, argument (tab-separated)
+#   `console` blocks are commands to type: skip, without a reason
 #   <line>.code     the block; <line>.given what a hidden comment above it adds, its first line in <line>.given_line
 #   spans           inline code outside of blocks: line, text (tab-separated)
 # Hidden comments that stand right above a fence:
@@ -43,7 +44,7 @@ function directive(line, text,   key) {
 
 BEGIN {
   forget()
-  known = " cpp cmake sh python text csv "
+  known = " cpp cmake sh console python text csv "
   previous_blank = 1
 }
 
@@ -92,6 +93,7 @@ in_comment {
   in_fence = 1
   code = out "/" NR ".code"
   printf "" > code
+  if (language == "console") action = "skip"
   if (language == "") fault(NR, "a block without a language: cpp, cmake, sh, python, or text for what is no code")
   else if (index(known, " " language " ") == 0 && action != "skip")
     fault(NR, "language '" language "' is not tested: say why, <!-- not run: ... -->")

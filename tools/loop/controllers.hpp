@@ -9,6 +9,7 @@
 
 #include "flight/loop_trajectories.hpp"
 #include "loop/any_policy.hpp"
+#include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/simulation/switched_quadrotor.hpp"
 

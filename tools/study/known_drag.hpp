@@ -30,11 +30,7 @@ class KnownDrag<FeedForward, Quadrotor<Scalar, Effects...>> {
   /// The other's own answer to a motion that was flown (NetworkInverse::observed()).
   Status observed(const State<Scalar>& state, const Accelerations<Scalar>& flown, std::uint64_t time_us,
                   Commands<Scalar>& commands) noexcept {
-    if constexpr (is_detected<pinnquad::detail::ObservedCall, FeedForward, Scalar>) {
-      return inverse_.observed(state, flown, time_us, commands);
-    } else {
-      return inverse_(state, flown, time_us, commands);
-    }
+    return observed_by(inverse_, state, flown, time_us, commands);
   }
   Vector3<Scalar> across_m_s2(const State<Scalar>& state) const noexcept {
     const Surroundings<Scalar> air = vehicle_.surroundings(state, Scalar(0));

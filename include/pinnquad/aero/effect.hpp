@@ -11,6 +11,7 @@
 // Optional:
 //   static constexpr VariesWith varies_with    less than place_and_time lets an inverse go without them
 //   static constexpr bool is_battery = true    of one that reads and sets Surroundings::battery
+//   static constexpr bool comes_last = true    of one that scales the forces of all others: a vehicle names it last
 //   auto bound(const Airframe<Scalar>&)        the effect that a vehicle keeps in its place, of the airframe: it alone
 //                                              may have the functions above
 //   Status status(const Airframe<Scalar>&)     whether its values make sense and its model holds for the airframe: a
@@ -35,7 +36,7 @@
 namespace pinnquad {
 
 /// Sea-level density of the standard atmosphere, p / (R T) = 101325 / (287.053 * 288.15), kg/m^3: the rho_0 by which
-/// rotor thrust scales.
+/// rotor thrust scales. rated_air_density_kg_m3, of which the numbers of an airframe are, is this rounded to 1.225.
 template <class Scalar>
 inline constexpr Scalar standard_air_density_kg_m3 = Scalar(101325.0 / (287.053 * 288.15));
 
@@ -214,6 +215,21 @@ using NoStatus = decltype(&WithNames<Effect>::status);
 namespace detail {
 template <class Effect>
 using IsBattery = std::enable_if_t<Effect::is_battery>;
+template <class Effect>
+using ComesLast = std::enable_if_t<Effect::comes_last>;
+template <class... Effects>
+constexpr bool require_last_ones_last() noexcept {
+  constexpr bool comes_last[] = {is_detected<ComesLast, UnswitchedEffect<Effects>>..., false};
+  constexpr auto followed = [](const bool* last) constexpr {
+    for (std::size_t i = 0; i + 1 < sizeof...(Effects); ++i)
+      if (last[i]) return true;
+    return false;
+  };
+  static_assert(!followed(comes_last),
+                "pinnquad: an effect that comes last, such as Payload, scales the forces of those before it: no other "
+                "effect may follow it (aero/effect.hpp)");
+  return true;
+}
 }  // namespace detail
 /// True for an effect that reads and sets Surroundings::battery.
 template <class Effect>

@@ -7,11 +7,12 @@
 namespace pinnquad {
 
 /// F = -m_p / (m + m_p) (F_rotors + F_before), from a time on: with it m a = m g + sum of forces has the solution of
-/// (m + m_p) a = (m + m_p) g + forces, exactly. It must be the last effect, as it scales those before it alone.
+/// (m + m_p) a = (m + m_p) g + forces, exactly. It is the last effect, as it scales those before it alone.
 /// A point mass fixed at the centre of gravity: inertia and torques stay. It is taken up at the vehicle's velocity,
 /// without a jolt. A load that hangs, lies off the centre or has an inertia is another airframe: fly one Simulator to
 /// the time, then another from its last state.
 struct Payload {
+  static constexpr bool comes_last = true;
   double mass_kg{0};
   double from_s{0};
 

@@ -17,57 +17,6 @@
 namespace pinnquad {
 
 namespace detail {
-template <class Policy, class Scalar>
-using ObservedCall = decltype(std::declval<Policy&>().observed(std::declval<const State<Scalar>&>(),
-                                                               std::declval<const Accelerations<Scalar>&>(),
-                                                               std::uint64_t{}, std::declval<Commands<Scalar>&>()));
-template <class Policy, class Scalar>
-using LearnCall = decltype(std::declval<Policy&>().learn(std::uint64_t{}, bool{}, std::declval<const State<Scalar>&>(),
-                                                         std::declval<const Commands<Scalar>&>()));
-template <class Policy, class Scalar>
-using AcrossCall = decltype(std::declval<const Policy&>().across_m_s2(std::declval<const State<Scalar>&>()));
-}  // namespace detail
-
-/// True for a feed-forward policy that learns from what was flown. `known`: these commands drove the motors.
-///   void learn(std::uint64_t now_us, bool known, const State<S>&, const Commands<S>&) noexcept
-template <class Policy, class Scalar>
-inline constexpr bool learns_in_flight = is_detected<detail::LearnCall, Policy, Scalar>;
-
-/// True for one that knows of an acceleration across the thrust, which no rotor makes: NED, to be taken from what is
-/// asked for.
-///   Vector3<S> across_m_s2(const State<S>&) const noexcept
-template <class Policy, class Scalar>
-inline constexpr bool knows_across = is_detected<detail::AcrossCall, Policy, Scalar>;
-
-namespace detail {
-template <class Policy>
-using AcrossVaries = decltype(Policy::across_varies);
-template <class Policy, class Scalar>
-constexpr bool varying_across() noexcept {
-  if constexpr (is_detected<AcrossVaries, Policy>) {
-    return Policy::across_varies;
-  } else {
-    return knows_across<Policy, Scalar>;
-  }
-}
-}  // namespace detail
-
-/// True where it depends on the state: so unless the policy says `static constexpr bool across_varies = false`.
-template <class Policy, class Scalar>
-inline constexpr bool across_varies = detail::varying_across<Policy, Scalar>();
-
-/// The acceleration that the policy knows of; zero of one that knows of none.
-template <class Scalar, class Policy>
-Vector3<Scalar> across_of(const Policy& policy, const State<Scalar>& state) noexcept {
-  if constexpr (knows_across<Policy, Scalar>) {
-    return policy.across_m_s2(state);
-  } else {
-    static_cast<void>(policy), static_cast<void>(state);
-    return Vector3<Scalar>::Zero();
-  }
-}
-
-namespace detail {
 struct NoReserve {};
 }  // namespace detail
 
@@ -82,6 +31,7 @@ class AdaptiveInverse {
   static_assert(!is_feed_forward<FeedForward, Scalar> || is_detected<detail::NoexceptFeedForward, FeedForward, Scalar>,
                 "pinnquad: the inverse of an AdaptiveInverse flies: its operator() must be noexcept "
                 "(control/feed_forward.hpp)");
+  static_assert(detail::require_whole_policy<FeedForward, Scalar>());
 
  public:
   using Learner = BiasLearner<Scalar, reserves ? 2 : 1, Motion>;
@@ -127,7 +77,7 @@ class AdaptiveInverse {
         inverse.learn(now_us, known, state, commands);
       }
       return [&](const MotionInputs<Scalar>& motion, Commands<Scalar>& said, Vector3<Scalar>& across) noexcept {
-        return observed(inverse, now_us, state.position_m, motion, said, across);
+        return answer_to(inverse, now_us, state.position_m, motion, said, across);
       };
     };
     if constexpr (reserves) {
@@ -137,6 +87,11 @@ class AdaptiveInverse {
     }
   }
 
+  /// The feedback of the tick, for an inverse that integrates it.
+  void integrate([[maybe_unused]] const Accelerations<Scalar>& feedback) noexcept {
+    if constexpr (integrates_feedback<FeedForward, Scalar>) inverse_.integrate(feedback);
+    if constexpr (integrates_feedback<Reserve, Scalar>) reserve_.integrate(feedback);
+  }
   /// d, beside what the inverse knows of.
   Vector3<Scalar> across_m_s2(const State<Scalar>& state) const noexcept {
     return learner_.across_m_s2() + across_of(inverse_, state);
@@ -147,8 +102,8 @@ class AdaptiveInverse {
  private:
   /// An inverse's own answer to a motion that was flown.
   template <class Inverse>
-  Status observed(Inverse& inverse, std::uint64_t now_us, const Vector3<Scalar>& position_m,
-                  const MotionInputs<Scalar>& motion, Commands<Scalar>& said, Vector3<Scalar>& across) noexcept {
+  Status answer_to(Inverse& inverse, std::uint64_t now_us, const Vector3<Scalar>& position_m,
+                   const MotionInputs<Scalar>& motion, Commands<Scalar>& said, Vector3<Scalar>& across) noexcept {
     State<Scalar> state;
     state.position_m = position_m;
     state.attitude = motion.attitude;
@@ -156,11 +111,7 @@ class AdaptiveInverse {
     state.body_rates_rad_s = motion.body_rates_rad_s;
     const Accelerations<Scalar> flown{motion.linear_acceleration_m_s2, motion.angular_acceleration_rad_s2};
     across = across_of(inverse, state);
-    if constexpr (is_detected<detail::ObservedCall, Inverse, Scalar>) {
-      return inverse.observed(state, flown, now_us, said);
-    } else {
-      return inverse(state, flown, now_us, said);
-    }
+    return observed_by(inverse, state, flown, now_us, said);
   }
 
   FeedForward inverse_;

@@ -3,6 +3,19 @@
 // Contract: `Status operator()(const State<S>&, const Accelerations<S>& desired, std::uint64_t time_us, Commands<S>&)
 // noexcept`; the commands are untouched unless has_output(status). One is AnalyticInverse
 // (inference/analytic_inverse.hpp).
+// Optional, each noexcept; a policy around another one passes each on, and one that has another signature does not
+// compile:
+//   void learn(std::uint64_t now_us, bool known, const State<S>&, const Commands<S>&)
+//       each tick, before the policy is asked: the state, and the commands in force since the tick before; `known`:
+//       they drove the motors
+//   void integrate(const Accelerations<S>& feedback)
+//       the controller's feedback of this tick
+//   Vector3<S> across_m_s2(const State<S>&) const
+//       an acceleration across the thrust, which no rotor makes: NED, m/s^2; it is taken from what is asked for.
+//       `static constexpr bool across_varies = false`: it is the same in every state
+//   Status observed(const State<S>&, const Accelerations<S>& flown, std::uint64_t time_us, Commands<S>&)
+//       the answer to a motion that was flown, without guard and integral
+//   FallbackCount count() const
 // Time is a count of microseconds from any start: seconds in float are 4 ms apart after ten hours.
 #pragma once
 
@@ -34,11 +47,121 @@ using NoexceptMeasurement = std::enable_if_t<noexcept(std::declval<Measured&>()(
 struct MotionAlone {};
 template <class Policy>
 using FallbackCountOf = decltype(std::declval<const Policy&>().count());
+template <class Policy, class Scalar>
+using LearnCall = decltype(std::declval<Policy&>().learn({std::declval<std::uint64_t>()}, bool{},
+                                                         std::declval<const State<Scalar>&>(),
+                                                         std::declval<const Commands<Scalar>&>()));
+template <class Policy, class Scalar>
+using IntegrateCall = decltype(std::declval<Policy&>().integrate(std::declval<const Accelerations<Scalar>&>()));
+template <class Policy, class Scalar>
+using AcrossCall = decltype(std::declval<const Policy&>().across_m_s2(std::declval<const State<Scalar>&>()));
+template <class Policy>
+using AcrossVaries = decltype(Policy::across_varies);
+template <class Policy, class Scalar>
+using ObservedCall = decltype(std::declval<Policy&>().observed(
+    std::declval<const State<Scalar>&>(), std::declval<const Accelerations<Scalar>&>(), {std::declval<std::uint64_t>()},
+    std::declval<Commands<Scalar>&>()));
+
+/// Finds a policy's member by name, whatever its type: `&WithPolicyNames<Policy>::name` is ambiguous, and no type,
+/// where the policy has one.
+struct PolicyNames {
+  void learn();
+  void integrate();
+  void across_m_s2();
+  void observed();
+  void count();
+};
+template <class Policy>
+struct WithPolicyNames : Policy, PolicyNames {};
+template <class Policy>
+using NoLearn = decltype(&WithPolicyNames<Policy>::learn);
+template <class Policy>
+using NoIntegrate = decltype(&WithPolicyNames<Policy>::integrate);
+template <class Policy>
+using NoAcross = decltype(&WithPolicyNames<Policy>::across_m_s2);
+template <class Policy>
+using NoObserved = decltype(&WithPolicyNames<Policy>::observed);
+template <class Policy>
+using NoCount = decltype(&WithPolicyNames<Policy>::count);
+/// False where a member has an optional name of the contract and can't be called as it says.
+template <class Policy, class Scalar>
+constexpr bool is_whole_policy() noexcept {
+  if constexpr (std::is_class_v<Policy> && !std::is_final_v<Policy>) {
+    return (is_detected<LearnCall, Policy, Scalar> || is_detected<NoLearn, Policy>)&&(
+        is_detected<IntegrateCall, Policy, Scalar> ||
+        is_detected<NoIntegrate, Policy>)&&(is_detected<AcrossCall, Policy, Scalar> ||
+                                            is_detected<NoAcross,
+                                                        Policy>)&&(is_detected<ObservedCall, Policy, Scalar> ||
+                                                                   is_detected<NoObserved,
+                                                                               Policy>)&&(is_detected<FallbackCountOf,
+                                                                                                      Policy> ||
+                                                                                          is_detected<NoCount, Policy>);
+  } else {
+    return true;
+  }
+}
+template <class Policy, class Scalar>
+constexpr bool require_whole_policy() noexcept {
+  static_assert(
+      is_whole_policy<Policy, Scalar>(),
+      "pinnquad: a policy's learn(), integrate(), across_m_s2(), observed() or count() can't be called as the "
+      "contract says: it would be passed over (control/feed_forward.hpp)");
+  return true;
+}
 }  // namespace detail
 
 /// True for a type that fulfils the contract at the head of this file, but for `noexcept`.
 template <class Policy, class Scalar>
 inline constexpr bool is_feed_forward = is_detected<detail::FeedForward, Policy, Scalar>;
+
+/// True for a policy that has learn().
+template <class Policy, class Scalar>
+inline constexpr bool learns_in_flight = is_detected<detail::LearnCall, Policy, Scalar>;
+
+/// True for one that has integrate().
+template <class Policy, class Scalar>
+inline constexpr bool integrates_feedback = is_detected<detail::IntegrateCall, Policy, Scalar>;
+
+/// True for one that has across_m_s2().
+template <class Policy, class Scalar>
+inline constexpr bool knows_across = is_detected<detail::AcrossCall, Policy, Scalar>;
+
+namespace detail {
+template <class Policy, class Scalar>
+constexpr bool varying_across() noexcept {
+  if constexpr (is_detected<AcrossVaries, Policy>) {
+    return Policy::across_varies;
+  } else {
+    return knows_across<Policy, Scalar>;
+  }
+}
+}  // namespace detail
+
+/// True where it depends on the state.
+template <class Policy, class Scalar>
+inline constexpr bool across_varies = detail::varying_across<Policy, Scalar>();
+
+/// The acceleration that the policy knows of; zero of one that knows of none.
+template <class Scalar, class Policy>
+Vector3<Scalar> across_of(const Policy& policy, const State<Scalar>& state) noexcept {
+  if constexpr (knows_across<Policy, Scalar>) {
+    return policy.across_m_s2(state);
+  } else {
+    static_cast<void>(policy), static_cast<void>(state);
+    return Vector3<Scalar>::Zero();
+  }
+}
+
+/// The policy's observed(); the policy itself where it has none.
+template <class Scalar, class Policy>
+Status observed_by(Policy& policy, const State<Scalar>& state, const Accelerations<Scalar>& flown,
+                   std::uint64_t time_us, Commands<Scalar>& commands) noexcept {
+  if constexpr (is_detected<detail::ObservedCall, Policy, Scalar>) {
+    return policy.observed(state, flown, time_us, commands);
+  } else {
+    return policy(state, flown, time_us, commands);
+  }
+}
 
 /// Commands of a vehicle that stands still at a place, in calm or in the wind of its effects at time 0.
 /// `no_solution` (vehicle/inverse.hpp) or `not_finite`; `commands` are untouched unless the Status is ok.

@@ -6,20 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/control/desaturate.hpp"
+#include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 
 namespace pinnquad {
-
-namespace detail {
-template <class Policy, class Scalar>
-using IntegrateCall = decltype(std::declval<Policy&>().integrate(std::declval<const Accelerations<Scalar>&>()));
-}  // namespace detail
-
-/// True for a policy that is shown the feedback of each tick: `void integrate(const Accelerations<S>&) noexcept`.
-template <class Policy, class Scalar>
-inline constexpr bool integrates_feedback = is_detected<detail::IntegrateCall, Policy, Scalar>;
 
 /// Settings of an IntegralInverse.
 template <class Scalar>
@@ -34,6 +25,8 @@ struct IntegralSettings {
 /// integral stands still while a command is at its end.
 template <class Scalar, class FeedForward>
 class IntegralInverse {
+  static_assert(detail::require_whole_policy<FeedForward, Scalar>());
+
  public:
   explicit IntegralInverse(const FeedForward& inverse, const IntegralSettings<Scalar>& settings = {}) noexcept
       : inverse_(inverse), settings_(settings) {}
@@ -44,6 +37,7 @@ class IntegralInverse {
     step_s_ = follows ? Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_) : Scalar(0);
     before_us_ = now_us;
     attitude_ = state.attitude;
+    if constexpr (learns_in_flight<FeedForward, Scalar>) inverse_.learn(now_us, known, state, commands);
   }
   void integrate(const Accelerations<Scalar>& feedback) noexcept {
     const Vector3<Scalar> linear = body_to_world<Scalar>(attitude_, feedback.linear_m_s2);
@@ -51,6 +45,7 @@ class IntegralInverse {
       add(settings_.linear_1_s * linear[i], settings_.most_m_s2, linear_[i]);
       add(settings_.angular_1_s * feedback.angular_rad_s2[i], settings_.most_rad_s2, angular_[i]);
     }
+    if constexpr (integrates_feedback<FeedForward, Scalar>) inverse_.integrate(feedback);
   }
   /// The integral, which a motion that is asked for gets added.
   Vector3<Scalar> across_m_s2(const State<Scalar>& state) const noexcept {
@@ -60,6 +55,11 @@ class IntegralInverse {
   Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& wanted, std::uint64_t time_us,
                     Commands<Scalar>& commands) noexcept {
     return inverse_(state, {wanted.linear_m_s2, wanted.angular_rad_s2 + angular_}, time_us, commands);
+  }
+  /// The other policy's.
+  Status observed(const State<Scalar>& state, const Accelerations<Scalar>& flown, std::uint64_t time_us,
+                  Commands<Scalar>& commands) noexcept {
+    return observed_by(inverse_, state, flown, time_us, commands);
   }
   FallbackCount count() const noexcept { return fallback_count(inverse_); }
 

@@ -4,11 +4,9 @@
 // where the policy declines too.
 #pragma once
 
-#include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
-#include "pinnquad/control/integral_inverse.hpp"
 #include "pinnquad/control/leaning.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
@@ -24,6 +22,7 @@ class TrackingController {
                 "(control/feed_forward.hpp)");
   static_assert(!is_feed_forward<FeedForward, Scalar> || is_detected<detail::NoexceptFeedForward, FeedForward, Scalar>,
                 "pinnquad: a feed-forward policy flies: its operator() must be noexcept (control/feed_forward.hpp)");
+  static_assert(detail::require_whole_policy<FeedForward, Scalar>());
 
  public:
   /// `rotor_scale` of the place, rho / rho_0 times the battery's thrust scale (Quadrotor::rotor_scale).
@@ -37,7 +36,7 @@ class TrackingController {
 
   /// u = desaturate(policy(state, demand)). Where the policy declines, the rigid body of the airframe answers, without
   /// air.
-  /// A policy that learns (control/adaptive_inverse.hpp) is shown the state and the commands of the tick before first,
+  /// A policy that learns (control/feed_forward.hpp) is shown the state and the commands of the tick before first,
   /// and what it finds across the thrust is taken from the motion that is asked for, with its rate of change along the
   /// trajectory.
   /// `ok`. `limited`: the policy limited, or its commands were desaturated. `fell_back`: the policy fell back, or

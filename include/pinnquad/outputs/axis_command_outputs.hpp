@@ -81,7 +81,8 @@ struct AxisCommandOutputs {
 template <class BaseType>
 struct SignedSumsOn {
   static_assert(is_base<BaseType>,
-                "pinnquad: a base says which features it reads, by name: `reads` (outputs/base.hpp)");
+                "pinnquad: a base has `reads`, prepare(), commands() and slopes(), static and noexcept "
+                "(outputs/base.hpp)");
   static_assert(!detail::reads_angular_acceleration<BaseType>(),
                 "pinnquad: SignedSumsOn needs a base that is not shown the angular acceleration: its slope is "
                 "replaced, not added to (outputs/rigid_body_base.hpp)");

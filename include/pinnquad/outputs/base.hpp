@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A base: an analytic inverse that a model's outputs are added to, so that the network learns what it leaves.
 // Contract, all static and noexcept, Scalar deduced, x: features in physical units:
-//   reads                                constexpr array of ReadFeature; a feature set without them does not compile
+//   reads                                constexpr array of ReadFeature; a feature set that lacks one does not compile
 //   prepare(airframe)                    constexpr: all that needs the airframe alone
 //   commands(x, prepared, u)             the commands of the rotors
 //   slopes<FeatureCount>(x, prepared, by_x)  du/dx, rotor_count x FeatureCount, row-major, into zeros
@@ -11,8 +11,11 @@
 
 #include <array>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "pinnquad/core/detected.hpp"
+#include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/features/shown_acceleration.hpp"
 
 namespace pinnquad {
@@ -28,6 +31,14 @@ namespace detail {
 
 template <class T>
 using ReadsOf = decltype(T::reads);
+template <class T>
+using BasePrepared = decltype(T::prepare(std::declval<const Airframe<double>&>()));
+template <class T>
+using BaseCalls = std::enable_if_t<noexcept(
+    T::prepare(std::declval<const Airframe<double>&>()),
+    T::commands(std::declval<const double*>(), std::declval<const BasePrepared<T>&>(), std::declval<double*>()),
+    T::template slopes<16>(std::declval<const double*>(), std::declval<const BasePrepared<T>&>(),
+                           std::declval<double*>()))>;
 template <class Outputs>
 using BaseInside = typename Outputs::Base;
 
@@ -59,9 +70,9 @@ constexpr bool reads_angular_acceleration() noexcept {
 
 }  // namespace detail
 
-/// True for a type that says which features it reads; the compiler finds the rest of the contract where it is called.
+/// True for a type that fulfils the contract at the head of this file.
 template <class T>
-inline constexpr bool is_base = is_detected<detail::ReadsOf, T>;
+inline constexpr bool is_base = is_detected<detail::ReadsOf, T>&& is_detected<detail::BaseCalls, T>;
 
 /// True where the base of an output schema finds each feature that it reads at its place, by name and unit.
 template <class Features, class Outputs>

@@ -41,7 +41,8 @@ struct LinearizedBase {
 template <class BaseType>
 struct ResidualOutputs {
   static_assert(is_base<BaseType>,
-                "pinnquad: a base says which features it reads, by name: `reads` (outputs/base.hpp)");
+                "pinnquad: a base has `reads`, prepare(), commands() and slopes(), static and noexcept "
+                "(outputs/base.hpp)");
   using Base = BaseType;  ///< named by its description in headers and blocks
   static constexpr int size = rotor_count;
   static constexpr std::array<const char*, size> names = {"du1", "du2", "du3", "du4"};

@@ -22,9 +22,8 @@ namespace pinnquad {
 /// Eqs. (1) and (2) with effects, in their order (aero/effect.hpp). World NED, body FRD, SI units.
 template <class Scalar, class... Effects>
 class Quadrotor {
-  static_assert(
-      (is_effect<Effects> && ...),
-      "pinnquad: this type is not an aerodynamic effect; it needs surroundings() or wrench() (aero/effect.hpp)");
+  static_assert((is_effect<Effects> && ...),
+                "pinnquad: this type is not an aerodynamic effect: it needs wrench() or more (aero/effect.hpp)");
   static_assert((is_whole_effect<detail::UnswitchedEffect<Effects>, Scalar>() && ...),
                 "pinnquad: an effect's surroundings(), wrench(), wrench_on(), bound() or status() can't be called as "
                 "the contract says, or returns something else: it would be passed over (aero/effect.hpp)");
@@ -35,6 +34,7 @@ class Quadrotor {
       (detail::flies<detail::BoundEffect<Effects, Scalar>, Scalar> && ...),
       "pinnquad: what an effect's bound() returns flies in its place: it must be an effect whose functions are "
       "as the contract says and noexcept (aero/effect.hpp)");
+  static_assert(detail::require_last_ones_last<Effects...>());
 
  public:
   /// One evaluation of the dynamics, taken apart.
