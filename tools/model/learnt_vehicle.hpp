@@ -24,7 +24,7 @@
 
 namespace programs {
 
-/// What a learner was, from tick to tick.
+/// A learner as it was from tick to tick.
 template <class Scalar>
 class LearntVehicle {
   using Learner = pinnquad::OnboardInverse<Scalar>;
@@ -67,7 +67,7 @@ class LearntVehicle {
     write_svg(folder + "/slopes.svg", picture());
   }
 
-  /// What flies at the end, and each swap.
+  /// The sums that fly at the end, and each swap.
   nlohmann::json certificate(const Learner& learner) const {
     nlohmann::json json = {
         {"rows", learner.rows()},
