@@ -23,7 +23,8 @@ inline constexpr ParameterRange parameter_ranges[] = {
     {"PQ_BIAS_T", 0.0f, 5.0f, true},      {"PQ_BIAS_T_ROT", 0.0f, 5.0f, true}, {"PQ_BIAS_MAX", 0.0f, 2.4f, true},
     {"PQ_BIAS_ACC", 0.0f, 5.0f, true},    {"PQ_BIAS_DELAY", 0.0f, 0.1f, true}, {"PQ_RECORD", 0.0f, 1.0f, false},
     {"PQ_STK_XY", 0.5f, 12.0f, false},    {"PQ_STK_Z", 0.2f, 5.0f, false},     {"PQ_STK_YAW", 0.1f, 3.0f, false},
-    {"PQ_AIR_RHO", 0.7f, 1.6f, true},     {"PQ_THR_CURVE", -1.0f, 1.0f, true}, {"PQ_BAT_SCALE", 0.0f, 1.0f, false}};
+    {"PQ_AIR_RHO", 0.7f, 1.6f, true},     {"PQ_THR_CURVE", -1.0f, 1.0f, true}, {"PQ_BAT_SCALE", 0.0f, 1.0f, false},
+    {"PQ_ONBOARD", 0.0f, 3.0f, false}};
 
 struct OutOfRange {
   const ParameterRange* range{nullptr};

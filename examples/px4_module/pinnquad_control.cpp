@@ -156,7 +156,8 @@ void PinnquadControl::Run() {
   if (!_selected && now_us - _ran_us < warm_us) return;
   _ran_us = now_us;
   take_samples();
-  _core.situation({flies(), _landed});
+  const auto learning = static_cast<uint32_t>(_param_onboard.get());
+  _core.situation({flies(), _landed, pinnquad::autopilot::learning_of(learning)});
   pinnquad_px4::ActuatorMotors motors;
   pinnquad_px4::PinnquadStatus status;
   _has_commands = _core.run(motors, status);  // selected or not: the status says whether it could fly

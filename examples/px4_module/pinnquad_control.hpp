@@ -85,8 +85,8 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
 
  private:
   using Model = TrainedQuadModel;
-  using Controller = pinnquad::autopilot::Recorded<
-      pinnquad::autopilot::NeuralController<Model, pinnquad::ModelView<Model>, FlownVehicle, FlownLimits>>;
+  using Controller = pinnquad::autopilot::Recorded<pinnquad::autopilot::NeuralController<
+      Model, pinnquad::ModelView<Model>, FlownVehicle, FlownLimits, pinnquad::OnboardInverse<float>>>;
   using Core = pinnquad_px4::NeuralControl<Model, Controller>;
 
   /// Room for one block of this model with the eight golden vectors that `pinnquad train` writes.
@@ -180,7 +180,7 @@ class PinnquadControl : public pinnquad_px4::ShellModule<PinnquadControl>,
       (ParamFloat<px4::params::PQ_BIAS_T_ROT>)_param_bias_rotation,
       (ParamFloat<px4::params::PQ_BIAS_MAX>)_param_bias_most, (ParamFloat<px4::params::PQ_BIAS_ACC>)_param_bias_across,
       (ParamFloat<px4::params::PQ_BIAS_DELAY>)_param_bias_delay, (ParamInt<px4::params::PQ_RECORD>)_param_record,
-      (ParamFloat<px4::params::PQ_STK_XY>)_param_stick_horizontal,
+      (ParamInt<px4::params::PQ_ONBOARD>)_param_onboard, (ParamFloat<px4::params::PQ_STK_XY>)_param_stick_horizontal,
       (ParamFloat<px4::params::PQ_STK_Z>)_param_stick_vertical, (ParamFloat<px4::params::PQ_STK_YAW>)_param_stick_yaw,
       (ParamFloat<px4::params::PQ_AIR_RHO>)_param_air_density, (ParamFloat<px4::params::PQ_THR_CURVE>)_param_curve,
       (ParamInt<px4::params::PQ_BAT_SCALE>)_param_battery_scale)

@@ -60,6 +60,8 @@ void copy_record(const pinnquad::autopilot::CoreRecord& from, Message& to) {
   to.trusted = from.trusted;
   to.bias_status = from.bias_status;
   to.analytic_bias_status = from.analytic_bias_status;
+  to.learning = from.learning;
+  to.learnt = from.learnt;
 }
 
 /// `Message`: pinnquad_settings_s.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The whole inner loop: samples -> accelerations that are wanted (FlightController) -> guarded network with its bias,
 // learnt of the flown motion -> desaturated commands. The flight stacks' controller, whose model is a block; or, with
-// LIBRARY_LOOP, the library's own parts around an exported header. MODEL_HEADER and MODEL name the model.
+// LIBRARY_LOOP, the library's own parts around an exported header; or, with ONBOARD, the core as it learns its vehicle.
+// MODEL_HEADER and MODEL name the model.
 #include "inner_loop.hpp"
 
 #include <new>
@@ -41,8 +42,14 @@ Loop made() noexcept {
                           pinnquad::FlownMotion<float>({25'000, airframe.rotor_time_constant_s, 0.0F}));
   return Loop(airframe, pinnquad::FlightController<float>({}, pinnquad::flight_limits(airframe, 1.0F)), adaptive);
 }
+#elif defined(ONBOARD)
+using Loop = pinnquad::autopilot::NeuralController<MODEL, pinnquad::ModelView<MODEL>,
+                                                   pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>, void,
+                                                   pinnquad::OnboardInverse<float>>;
+constexpr auto learning = pinnquad::autopilot::Learning::excites;
 #else
 using Loop = pinnquad::autopilot::NeuralController<MODEL>;
+constexpr auto learning = pinnquad::autopilot::Learning::off;
 #endif
 
 alignas(Loop) unsigned char memory[sizeof(Loop)];
@@ -76,7 +83,7 @@ unsigned char pinnquad_loop_bias(float* sums) {
 
 unsigned char pinnquad_loop_start(const void* block, std::size_t length) {
   loop = new (static_cast<void*>(memory)) Loop;
-  loop->situation({true, false});
+  loop->situation({true, false, learning});
   return static_cast<unsigned char>(loop->offer_model(block, length));
 }
 

@@ -36,6 +36,10 @@ function(_pinnquad_add_stack_test stack optimisation limits)
     set(folder "${ARGV3}")
   endif()
   set(name "flight_stacks.stack.${folder}.cortex_m${optimisation}")
+  set(defined "")
+  if(folder MATCHES "_onboard$")
+    set(defined "-DPINNQUAD_ONBOARD") # a vehicle that is learnt in flight
+  endif()
   if(PINNQUAD_ARM_CXX AND Python3_Interpreter_FOUND)
     set(depths "")
     while(limits)
@@ -44,7 +48,7 @@ function(_pinnquad_add_stack_test stack optimisation limits)
     endwhile()
     add_test(NAME "${name}" COMMAND bash -c "set -e; \"$0\" -std=c++17 ${optimisation} ${${stack}_flags} ${${stack}_machine} \
 -fno-exceptions -fno-rtti -fcallgraph-info=su -I\"$2/include\" -I\"$2/examples\" -I\"$2/examples/crazyflie_app/src\" \
--I\"$2/tests/flight_stacks/${folder}\" -isystem \"$3\" -c \"$4\" -o ${name}.o${depths}"
+-I\"$2/tests/flight_stacks/${folder}\" ${defined} -isystem \"$3\" -c \"$4\" -o ${name}.o${depths}"
       "${PINNQUAD_ARM_CXX}" "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}" "${eigen_include}" "${${stack}_source}")
     set_tests_properties("${name}" PROPERTIES LABELS flight_stacks)
   else()
@@ -85,12 +89,13 @@ set_tests_properties(flight_stacks.px4_build.nuttx PROPERTIES LABELS flight_stac
 find_package(Python3 COMPONENTS Interpreter)
 _pinnquad_add_stack_test(crazyflie -Os "pinnquad_flight_step;${crazyflie_step}") # as the firmware is built
 _pinnquad_add_stack_test(crazyflie -Os "pinnquad_flight_step;${crazyflie_step}" crazyflie_trusting)
+_pinnquad_add_stack_test(crazyflie -Os "pinnquad_flight_step;${crazyflie_step}" crazyflie_onboard)
 # a window of nine instants; what a block is tested on is what the core asks of the app's task, less what that task takes
 _pinnquad_add_stack_test(crazyflie -Os
   "pinnquad_flight_step;${crazyflie_step};pinnquad_flight_offer_model;${crazyflie_start}" crazyflie_past)
 foreach(folder IN ITEMS px4 px4_past)
   _pinnquad_add_stack_test(px4 -Os
-    "pinnquad_flight_px4_run_recorded;${px4_step};pinnquad_flight_px4_offer_model;${px4_start}" "${folder}")
+    "pinnquad_flight_px4_run_recorded;${px4_step};pinnquad_flight_px4_run_learning;${px4_step};pinnquad_flight_px4_offer_model;${px4_start}" "${folder}")
 endforeach()
 _pinnquad_add_stack_gate(flight_stacks.gate.crazyflie_past.host-O2 "${crazyflie_source}" "${CMAKE_CXX_COMPILER}" "${CMAKE_NM}"
   "-O2 ${crazyflie_flags} -I${CMAKE_CURRENT_SOURCE_DIR}/crazyflie_past")

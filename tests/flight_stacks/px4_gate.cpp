@@ -17,6 +17,11 @@ using Core = pinnquad_px4::NeuralControl<TrainedQuadModel>;
 using RecordedCore =
     pinnquad_px4::NeuralControl<TrainedQuadModel,
                                 pinnquad::autopilot::Recorded<pinnquad::autopilot::NeuralController<TrainedQuadModel>>>;
+using LearningController =
+    pinnquad::autopilot::NeuralController<TrainedQuadModel, pinnquad::ModelView<TrainedQuadModel>,
+                                          pinnquad::Quadrotor<float, pinnquad::QuadraticDrag>, void,
+                                          pinnquad::OnboardInverse<float>>;
+using LearningCore = pinnquad_px4::NeuralControl<TrainedQuadModel, pinnquad::autopilot::Recorded<LearningController>>;
 }  // namespace
 
 extern "C" {
@@ -56,6 +61,13 @@ bool pinnquad_flight_px4_run_recorded(RecordedCore* core, const pinnquad_px4::Ve
   const bool has_commands = core->run(*motors, *status);
   *record = core->controller().record();
   return has_commands;
+}
+
+/// A module that learns its vehicle.
+bool pinnquad_flight_px4_run_learning(LearningCore* core, const pinnquad::autopilot::Situation* situation,
+                                      pinnquad_px4::ActuatorMotors* motors, pinnquad_px4::PinnquadStatus* status) {
+  core->situation(*situation);
+  return core->run(*motors, *status);
 }
 
 }  // extern "C"

@@ -762,6 +762,30 @@ TEST_CASE("each step's record is published, and the settings once a second: what
   CHECK((record.stale_inputs & 2) != 0);
 }
 
+TEST_CASE("the vehicle is learnt where the parameter asks for it, from one step to the next") {
+  Px4World world;
+  world.start_and_fly();
+  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
+  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
+  pinnquad_record_s record{};
+  const auto asked_for = [&](double value) {
+    px4::parameter_values()["PQ_ONBOARD"] = value;
+    update_pub.publish(parameter_update_s{});
+    world.run(1);
+    REQUIRE(record_sub.update(&record));
+    return record.learning;
+  };
+  world.run(1);
+  REQUIRE(record_sub.update(&record));
+  CHECK(record.learning == 0);
+  CHECK(asked_for(1) == 1);
+  CHECK((record.learnt & pinnquad::autopilot::CoreRecord::seen_flight) != 0);
+  CHECK(asked_for(2) == 2);
+  CHECK(asked_for(3) == 3);
+  CHECK(asked_for(4) == 3);  // beyond its range: what was stays
+  CHECK(asked_for(0) == 0);
+}
+
 TEST_CASE("told not to, it publishes no record") {
   Px4World world;
   px4::parameter_values()["PQ_RECORD"] = 0;

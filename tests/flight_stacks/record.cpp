@@ -3,6 +3,7 @@
 // flew, for `pinnquad replay`.
 //   flight_stacks_record px4|crazyflie|structured|payload hover|eight|random_places FOLDER
 //   flight_stacks_record jumps eight FOLDER  a weak motor, jumping and silent set points at 8 m/s
+//   flight_stacks_record onboard px4|crazyflie FOLDER  a vehicle that nobody knows, which is learnt (docs/onboard.md)
 // `structured`: PX4's core with a structured model, other effects in the analytic inverse and limits of trust, in a
 // flight with a payload. `payload`: a model that needs much of its bias without one, without limits of trust.
 #include <cstdio>
@@ -10,6 +11,7 @@
 
 #include "flight.hpp"
 #include "flight_paths.hpp"
+#include "onboard_stacks.hpp"
 #include "record_csv.hpp"
 #include "trusting_stacks.hpp"
 
@@ -72,6 +74,55 @@ int record(const std::string& path, const std::string& folder, double half_lengt
   return record<Stack>(folder, RandomPlaces(half_box_m), faults);
 }
 
+/// A vehicle that is learnt, with a payload that comes and goes and a rotor that weakens; and what flew at the end.
+template <class Stack>
+int record_learning(const std::string& folder) {
+  const Block block = sound_block<typename Stack::Model>();
+  write(folder + "/sound.block", block);
+  Stack stack;
+  if (stack.offer(block.data(), block.size()) != pinnquad::Status::ok) return 1;
+  std::ofstream settings = record_file<CoreSettings>(folder, "flight");
+  settings << csv_row(stack.settings());
+  settings.close();
+  std::ofstream ticks = record_file<CoreRecord>(folder, "flight");
+  StrangeVehicle<Stack> vehicle;
+  pinnquad::Commands<double> commands{};
+  for (long tick = 0; tick * Stack::period_ms < 40'000; ++tick) {
+    const double time_s = static_cast<double>(tick) * StrangeVehicle<Stack>::tick_s;
+    const std::uint64_t now_us = StrangeVehicle<Stack>::time_us(tick);
+    if (tick * Stack::period_ms == 24'000) vehicle.weigh(1.2);
+    if (tick * Stack::period_ms == 32'000) vehicle.weigh(1);
+    vehicle.rotor_0 = time_s < 34 ? 1 : 0.95;
+    vehicle.feed(stack, tick, now_us, strange_course(time_s));
+    // on the ground for a second, off for a while, with sines, and frozen at the end
+    using pinnquad::autopilot::Learning;
+    const Learning learning = time_s < 2    ? Learning::off
+                              : time_s < 14 ? Learning::excites
+                              : time_s < 29 ? Learning::learns
+                              : time_s < 30 ? Learning::off
+                              : time_s < 37 ? Learning::learns
+                                            : Learning::frozen;
+    stack.situation({time_s >= 1, false, learning});
+    const Answer answer = stack.run(now_us);
+    ticks << csv_row(stack.record());
+    if (answer.has_commands) commands = answer.commands;
+    vehicle.held = time_s < 1;
+    if (!vehicle.fly(commands)) return 1;
+  }
+  ticks.close();
+  std::ofstream learnt(folder + "/flown.csv");
+  for (const auto& sum : stack.controller().onboard().certificate()) {
+    std::string line;
+    add_cell(line, sum.proven ? 1 : 0);
+    add_cell(line, sum.proven_row);
+    add_cell(line, sum.half_width);
+    for (const float term : sum.forward.theta) add_cell(line, term);
+    learnt << line << "\n";
+  }
+  learnt.close();
+  return ticks && learnt ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -81,6 +132,10 @@ int main(int count, char** arguments) {
   }
   if (std::strcmp(arguments[1], "payload") == 0) {
     return record<Px4Stack>(arguments[2], arguments[3], 4, 9, 1.5, {payload.begin(), payload.end()});
+  }
+  if (std::strcmp(arguments[1], "onboard") == 0) {
+    return std::strcmp(arguments[2], "px4") == 0 ? record_learning<OnboardPx4Stack>(arguments[3])
+                                                 : record_learning<OnboardCrazyflieStack>(arguments[3]);
   }
   if (std::strcmp(arguments[1], "jumps") == 0) {
     return record<Px4Stack>(arguments[3], FastEight{}, jumps_with_a_weak_motor(true, 2, true));

@@ -9,7 +9,7 @@ add_library(flight_stacks_crazyflie_core OBJECT "${PROJECT_SOURCE_DIR}/examples/
 target_link_libraries(flight_stacks_crazyflie_core PRIVATE pinnquad::pinnquad pinnquad_development)
 
 find_package(Threads REQUIRED) # one test has two
-add_executable(test_flight_stacks answers_test.cpp bias_test.cpp cores_test.cpp flights_test.cpp past_test.cpp record_test.cpp steps_test.cpp trust_test.cpp
+add_executable(test_flight_stacks answers_test.cpp bias_test.cpp cores_test.cpp flights_test.cpp onboard_test.cpp past_test.cpp record_test.cpp steps_test.cpp trust_test.cpp
   px4_module_test.cpp takeover_test.cpp "${PROJECT_SOURCE_DIR}/examples/px4_module/pinnquad_control.cpp"
   crazyflie_firmware_test.cpp
   $<TARGET_OBJECTS:flight_stacks_crazyflie_glue> $<TARGET_OBJECTS:flight_stacks_crazyflie_core> $<TARGET_OBJECTS:test_main>)
@@ -90,6 +90,11 @@ foreach(missing IN ITEMS "WITHOUT_KALMAN:needs the Kalman estimator" "MINIMAL_ST
     "-I${crazyflie_headers}" "-I${stand_in}/crazyflie" "-I${PROJECT_SOURCE_DIR}/examples/crazyflie_app/src" "${crazyflie_glue}")
   set_tests_properties("${name}" PROPERTIES LABELS flight_stacks PASS_REGULAR_EXPRESSION "${CMAKE_MATCH_2}")
 endforeach()
+
+# The glue of an app that learns its vehicle; its core is compiled by flight_stacks.stack.crazyflie_onboard.
+add_test(NAME flight_stacks.crazyflie_glue.onboard COMMAND "${CMAKE_C_COMPILER}" -fsyntax-only -std=gnu11 -Wall -Wextra -Werror
+  -DPINNQUAD_ONBOARD "-I${crazyflie_headers}" "-I${stand_in}/crazyflie" "-I${PROJECT_SOURCE_DIR}/examples/crazyflie_app/src" "${crazyflie_glue}")
+set_tests_properties(flight_stacks.crazyflie_glue.onboard PROPERTIES LABELS flight_stacks)
 
 # ROS 2's package: its core alone, and its component against a stand-in of rclcpp.
 add_executable(test_flight_stacks_ros2 ros2/core_test.cpp ros2/node_test.cpp

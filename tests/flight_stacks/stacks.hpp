@@ -55,6 +55,7 @@ class Px4StackOf {
   pinnquad::Status offer(const void* block, std::size_t length) { return core_.offer_model(block, length); }
   bool ready() const { return core_.ready(); }
   const CoreRecord& record() const { return core_.controller().record(); }
+  const auto& controller() const { return core_.controller(); }
   CoreSettings settings() const { return core_.controller().settings(); }
 
   void rates(std::uint64_t time_us, const pinnquad::Vector3<double>& w) {
@@ -142,6 +143,7 @@ class CrazyflieStackOf {
   pinnquad::Status offer(const void* block, std::size_t length) { return core_.offer_model(block, length); }
   bool ready() const { return core_.ready(); }
   const CoreRecord& record() const { return core_.controller().record(); }
+  const auto& controller() const { return core_.controller(); }
   CoreSettings settings() const { return core_.controller().settings(); }
 
   void rates(std::uint64_t time_us, const pinnquad::Vector3<double>& w) {
@@ -196,6 +198,7 @@ class CrazyflieStackOf {
   void situation(const Situation& now) {
     state_.drives_motors = now.drives_motors;
     state_.landed = now.landed;
+    state_.learning = static_cast<std::uint8_t>(now.learning);
   }
 
   Answer run(std::uint64_t now_us) {

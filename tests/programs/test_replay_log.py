@@ -303,6 +303,63 @@ def test_jumps(core, same):
     assert not [tick for tick in ticks if float(tick["reaction"]) > REACTIONS.index("holds position")]
 
 
+@pytest.mark.parametrize("stack", ["px4", "crazyflie"])
+def test_learnt(pinnquad, core, same, differs, stack):
+    """A vehicle that is learnt in flight: to the bit, and as a model on the ground what flew."""
+    folder = core("onboard", stack)
+    words = [*models(folder, "sound"), "--tolerance", "0"]
+    ticks = table(folder / RECORD)
+    part = Path("part")
+    part.mkdir()
+    (part / SETTINGS).symlink_to(folder / SETTINGS)
+
+    def learnt_of(log, into):
+        said = same(log, *words, "--learnt", into)
+        assert f"all {len(table(log / RECORD))} ticks compared" in said, said
+        assert listing(into) == ["airframe.toml", "learnt.json", "slopes.csv", "slopes.svg"]
+        return said, json.loads((Path(into) / "learnt.json").read_text())
+
+    said, learnt = learnt_of(folder, "all")
+    assert int(re.search(r"^learner +([0-9]+)", said, re.M)[1]) > 0.8 * len(ticks), said
+    single = lambda number: struct.pack("f", float(number))
+    proven = 0
+    for name, line in zip(("thrust", "roll", "pitch", "yaw"), (folder / "flown.csv").read_text().splitlines()):
+        flies, row, half_width, *terms = line.split(",")
+        is_ = learnt[name]
+        assert (is_["proven"], is_["proven_row"]) == (flies == "1", int(row)), (name, is_)
+        assert list(map(single, is_["terms"])) == list(map(single, terms)), (name, is_)
+        assert not is_["proven"] or single(is_["half_width"]) == single(half_width), (name, is_)
+        assert is_["swaps"] and is_["swaps"][-1]["slope"] == is_["slope"], (name, is_)
+        proven += is_["proven"]
+    assert proven >= 3
+    assert "kg" in pinnquad("airframe check all/airframe.toml").out
+    rows = table("all/slopes.csv")
+    assert len(rows) >= 37 and float(rows[-1]["roll_slope"]) == learnt["roll"]["slope"]
+    # a log that begins before the flight tells all of it; one that begins in flight, or has a gap there, does not
+    drop(folder / RECORD, part / RECORD, 1, 400)
+    assert learnt_of(part, "later")[1] == learnt
+    late = len(ticks) // 2
+    for first, last in (1, late), (late, late):
+        drop(folder / RECORD, part / RECORD, first, last)
+        left = len(table(part / RECORD))
+        said = same(part, *words)
+        assert re.search(f"all ([0-9]+) ticks compared", said) and int(
+            re.search("([0-9]+) ticks not compared", said)[1]) > 0.3 * left, said
+        pinnquad.refused("replay", part, *words, "--learnt", "none", keyword="flight that is not in this log")
+    plant(folder / RECORD, part / RECORD, late, "learnt", "1")
+    said = differs("learnt [0-9]+, logged 1", part, *words, "--learnt", "none")
+    assert "nothing is written" in said and not Path("none").exists()
+    plant(folder / RECORD, part / RECORD, late, "body_rates_rad_s[1]", lambda rate: rate + 0.3)
+    differs("u1", part, *words)
+
+
+def test_learnt_of_no_learner(pinnquad, eight, flown):
+    head(eight / RECORD, RECORD, 101)
+    pinnquad.refused("replay", RECORD, *models(eight), "--learnt", "none", keyword="in no tick of this log")
+    flight = flown("d1 --seed 3 --samples 1200")
+    pinnquad.refused("replay", flight, "--model", DEMO, "--learnt", "none", keyword="none of its records")
+
+
 def test_earlier_core(pinnquad, eight):
     """Ticks of a core whose bias was an acceleration."""
     head(eight / RECORD, "short.csv", 101)

@@ -24,6 +24,7 @@
 #include "command_line/progress_line.hpp"
 #include "model/flight_model.hpp"
 #include "model/given_model.hpp"
+#include "model/learnt_vehicle.hpp"
 #include "model/replay_core.hpp"
 #include "model/replay_input.hpp"
 #include "model/replay_summary.hpp"
@@ -42,6 +43,7 @@ struct ReplayOptions {
   std::vector<std::string> settings;
   double tolerance = 1e-5;
   std::string out;
+  std::string learnt;
   bool json = false;
 };
 
@@ -86,6 +88,9 @@ Replayed replay_flights(const ReplayOptions& options, const ReplayInput& input, 
   if (models.size() > 1) {
     throw std::invalid_argument(
         "--model: a log of flights takes one model; several are for a log of a core, which names them");
+  }
+  if (!options.learnt.empty()) {
+    throw std::invalid_argument("--learnt: a flight stack's core learns, and the log has none of its records");
   }
   if (!options.settings.empty()) {
     throw std::invalid_argument(
@@ -154,6 +159,39 @@ void compare_trust(const BlockModel& model, const pinnquad::autopilot::CoreSetti
   }
 }
 
+/// The vehicle that a core learnt, for --learnt: noted tick by tick, written where all of it is known.
+class Learnt {
+ public:
+  explicit Learnt(const Airframe<float>& start) : vehicle_(start) {}
+
+  void note(const pinnquad::autopilot::CoreRecord& tick, const OnboardInverse<float>* learner) {
+    if (tick.learning == 0) return;
+    const double time_s = 1e-6 * static_cast<double>(tick.timestamp);
+    if (!(from_s_ >= 0)) from_s_ = time_s;
+    if (learner == nullptr) {
+      if (!(unknown_s_ >= 0)) unknown_s_ = time_s;
+      return;
+    }
+    vehicle_.note(time_s - from_s_, *learner);
+  }
+  /// Throws std::invalid_argument where the log does not have all that was learnt from.
+  void write(const std::string& folder, const std::string& name, const OnboardInverse<float>* learner) const {
+    if (!(from_s_ >= 0)) throw std::invalid_argument("--learnt: in no tick of this log a vehicle is learnt");
+    if (unknown_s_ >= 0 || learner == nullptr) {
+      throw std::invalid_argument(programs::in_words(
+          "--learnt: at %.3f s the learner had seen flight that is not in this log: only a log of all "
+          "ticks of its flights tells what was learnt",
+          unknown_s_ >= 0 ? unknown_s_ : from_s_));
+    }
+    programs::make_folders(folder);
+    vehicle_.write(folder, name, *learner);
+  }
+
+ private:
+  programs::LearntVehicle<float> vehicle_;
+  double from_s_ = -1, unknown_s_ = -1;
+};
+
 Replayed replay_core(const ReplayOptions& options, const ReplayInput& input, const std::vector<BlockModel>& models) {
   Replayed replayed;
   replayed.of_core = true;
@@ -175,11 +213,22 @@ Replayed replay_core(const ReplayOptions& options, const ReplayInput& input, con
   }
   const std::unique_ptr<programs::CoreReplay> core = programs::core_replay(models, airframe, of_core);
   FlownModels flown(models);
+  std::optional<Learnt> learnt;
+  if (!options.learnt.empty()) learnt.emplace(airframe);
   programs::ProgressLine progress("replaying " + std::to_string(input.ticks.size()) + " ticks");
   replayed.rows.reserve(input.ticks.size());
   for (const pinnquad::autopilot::CoreRecord& tick : input.ticks) {
     replayed.rows.push_back(core->run(tick, flown.of(tick, replayed), replayed));
+    if (learnt) learnt->note(tick, core->learner());
     progress.update(static_cast<double>(replayed.rows.size()) / static_cast<double>(input.ticks.size()));
+  }
+  if (learnt) {
+    const auto differs = [](const programs::ReplayedRow& row) { return !row.differs.empty(); };
+    if (std::any_of(replayed.rows.begin(), replayed.rows.end(), differs)) {
+      replayed.notes.push_back("--learnt: nothing is written, as the core answers otherwise than was logged");
+    } else {
+      learnt->write(options.learnt, models.front().airframe_name(), core->learner());
+    }
   }
   return replayed;
 }
@@ -202,6 +251,7 @@ int replay(const ReplayOptions& options) {
   roles.reads("LOG", options.log);
   for (const std::string& model : options.models) roles.reads("--model", model);
   roles.writes("--out", options.out);
+  roles.writes("--learnt", options.learnt);
   std::vector<BlockModel> models;
   for (const std::string& path : options.models) models.push_back(programs::read_model(path));
   const ReplayInput input = programs::read_replay_input(options.log);
@@ -266,6 +316,8 @@ Command replay_command(CLI::App& program) {
   add_number(*line, "--tolerance", options->tolerance, 0.0, 1.0,
              "largest difference of a command from the core's log that counts as the same");
   add_path(*line, "--out", options->out, "FILE.csv", "every row: status, who answered, commands, the reason in words");
+  add_path(*line, "--learnt", options->learnt, "FOLDER",
+           "the vehicle that a core learnt in this flight: airframe.toml, learnt.json, slopes.csv, slopes.svg");
   line->add_flag("--json", options->json, "the summary as JSON");
   line->footer(
       "Examples:\n"
@@ -273,6 +325,7 @@ Command replay_command(CLI::App& program) {
       "  pinnquad replay flight.csv --model my_model/model.block --out rows.csv\n"
       "  pinnquad replay flight.ulg --model model.block        the core, tick by tick\n"
       "  pinnquad replay flight.ulg --model model.block --set attitude_us=30000\n"
+      "  pinnquad replay flight.ulg --model model.block --learnt my_vehicle\n"
       "Exit codes: 0; 1 the core answers otherwise than was logged, nothing of its log can be compared, or the model\n"
       "answers no row; 2 bad input or a file that can't be read or written; 130 interrupted.\n"
       "docs/replay_log.md says what a core logs. A flight as a page in 3D: pinnquad fly --watch.");

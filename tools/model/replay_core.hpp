@@ -16,6 +16,7 @@
 #include "model/flight_stack.hpp"
 #include "model/recorded_effects.hpp"
 #include "model/replay_reason.hpp"
+#include "pinnquad/control/onboard/onboard_inverse.hpp"
 
 namespace programs {
 
@@ -36,6 +37,8 @@ class CoreReplay {
   /// One tick. `model`: which of the models flew, or none.
   virtual ReplayedRow run(const pinnquad::autopilot::CoreRecord& record, std::optional<std::size_t> model,
                           Replayed& replayed) = 0;
+  /// The vehicle as it is learnt, after the tick; null where its past is not in the log.
+  virtual const pinnquad::OnboardInverse<float>* learner() const = 0;
 };
 
 /// `models` must stay where they are. Throws std::invalid_argument for a model that no flight stack flies, for some of
@@ -51,7 +54,8 @@ class CoreReplayOf : public CoreReplay {
   using Shape = RunTimeShape<FeatureSet, float>;
   using View = RunTimeView<FeatureSet, float>;
   using Vehicle = pinnquad::Quadrotor<float, RecordedEffects>;
-  using Controller = pinnquad::autopilot::NeuralController<Shape, View, Vehicle, Trust>;
+  using Controller =
+      pinnquad::autopilot::NeuralController<Shape, View, Vehicle, Trust, pinnquad::OnboardInverse<float>>;
   using Record = pinnquad::autopilot::CoreRecord;
   using Features = typename Shape::Features;
   static constexpr bool trusts = !std::is_void_v<Trust>;
@@ -90,7 +94,9 @@ class CoreReplayOf : public CoreReplay {
     take_inputs(record, record.came);
     pinnquad::autopilot::StepReport report;
     pinnquad::Commands<float> commands{};
-    controller_->situation({record.drives_motors != 0, record.landed != 0});
+    if ((record.learnt & Record::seen_flight) == 0) learner_unknown_ = false;  // there is nothing to know
+    const auto learning = pinnquad::autopilot::learning_of(record.learning);
+    controller_->situation({record.drives_motors != 0, record.landed != 0, learning});
     if (record.asked != 0) {
       controller_->step(record.timestamp, commands, report);
     } else {
@@ -104,11 +110,15 @@ class CoreReplayOf : public CoreReplay {
       compare(record, report, row, replayed);
     }
     if (!report.stale(pinnquad::autopilot::set_point_bit)) holding_unknown_ = false;
-    if (row.answerer == Answerer::model || row.answerer == Answerer::analytic_inverse) answer_unknown_ = false;
+    if (report.reaction <= pinnquad::autopilot::Reaction::levels) answer_unknown_ = false;
     // each tick is judged by itself: the next one starts from what this one logged
     controller_->resume(record);
     last_tick_ = record.tick;
     return row;
+  }
+
+  const pinnquad::OnboardInverse<float>* learner() const override {
+    return learner_unknown_ ? nullptr : &controller_->onboard();
   }
 
  private:
@@ -136,7 +146,7 @@ class CoreReplayOf : public CoreReplay {
     refused_base_known_ = true;
     unknown_inputs_ = 0;
     bias_known_us_ = 0;
-    holding_unknown_ = answer_unknown_ = past_unknown_ = false;
+    holding_unknown_ = answer_unknown_ = past_unknown_ = learner_unknown_ = false;
   }
 
   /// Ticks that are missing: the controller is put together again from what the record says came last.
@@ -145,7 +155,7 @@ class CoreReplayOf : public CoreReplay {
     const bool from_the_start = record.tick == 1;
     restart();
     if (from_the_start) return;
-    holding_unknown_ = answer_unknown_ = true;
+    holding_unknown_ = answer_unknown_ = learner_unknown_ = true;
     past_unknown_ = has_past_;
     const typename Controller::Learner& learner = controller_->learner();
     bias_known_us_ = record.timestamp + learner.motion().settles_us();
@@ -227,8 +237,11 @@ class CoreReplayOf : public CoreReplay {
     }
     for (std::size_t i = 0; i < 4; ++i) row.logged[i] = static_cast<double>(record.commands[i]);
     const bool asked_network = report.reaction <= Reaction::levels;
+    const bool learns = controller_->learning() != pinnquad::autopilot::Learning::off;
     if (asked_network) {
-      row.answerer = report.status == pinnquad::Status::fell_back ? Answerer::analytic_inverse : Answerer::model;
+      row.answerer = report.status == pinnquad::Status::fell_back ? Answerer::analytic_inverse
+                     : learns                                     ? Answerer::learner
+                                                                  : Answerer::model;
     }
     if (record.asked == 0) {
       row.answerer = Answerer::not_asked;
@@ -238,8 +251,9 @@ class CoreReplayOf : public CoreReplay {
     }
     row.state = row.reaction;
     if (asked_network) {
-      row.state += row.answerer == Answerer::model
-                       ? ", model"
+      row.state += row.answerer == Answerer::model ? ", model"
+                   : row.answerer == Answerer::learner
+                       ? ", learner"
                        : std::string(", analytic inverse (") + to_string(report.cause) + ")";
     }
     if (model && models_.size() > 1) {
@@ -291,6 +305,7 @@ class CoreReplayOf : public CoreReplay {
     using pinnquad::autopilot::Reaction;
     if (record.asked == 0) return true;
     if (unknown_inputs_ != 0 || past_unknown_) return false;
+    if (learner_unknown_ && record.learning != 0) return false;
     const auto logged = static_cast<Reaction>(record.reaction);
     const bool distrusts = report.cause == pinnquad::Status::distrusted;
     const bool distrusted = record.cause == static_cast<std::uint8_t>(pinnquad::Status::distrusted);
@@ -327,6 +342,9 @@ class CoreReplayOf : public CoreReplay {
       refused_base_ = record.refused_samples - refused;
     }
     compare_biases(record, say);
+    if (!learner_unknown_ && controller_->learnt() != record.learnt) {
+      say(in_words("learnt %u, logged %u", unsigned{controller_->learnt()}, unsigned{record.learnt}));
+    }
     if (has_trust_ && record.timestamp >= window_known_us_) compare_trust(record, say);
     for (std::size_t i = 0; i < 4; ++i) {
       const double mine = row.commands[i], theirs = row.logged[i];
@@ -399,6 +417,7 @@ class CoreReplayOf : public CoreReplay {
   bool refused_base_known_ = true;
   std::uint8_t unknown_inputs_ = 0;  ///< behind a gap: bits of inputs of which the last good sample is not known
   bool holding_unknown_ = false, answer_unknown_ = false;
+  bool learner_unknown_ = false;  ///< behind a gap: what was learnt before it
   bool past_unknown_ = false;  ///< behind a gap: which motions the window is made of, until the core has forgotten them
 };
 

@@ -87,7 +87,7 @@ inline ReplaySummary summary_of(const Replayed& replayed) {
       ++count.rows;
       count.largest_excess = std::max(count.largest_excess, row.excess);
     }
-    if (row.answerer == Answerer::model || row.answerer == Answerer::not_asked) {
+    if (row.answerer == Answerer::model || row.answerer == Answerer::learner || row.answerer == Answerer::not_asked) {
       end_stretch(row.time_s);
     } else if (current.rows++ == 0) {
       current.first = &row;
@@ -151,12 +151,13 @@ inline void print_summary(const Replayed& replayed, const ReplaySummary& summary
               replayed.rows.back().time_s);
   if (replayed.of_core) std::printf("reactions   %s\n", detail::counts_in_words(summary.reactions).c_str());
   const std::pair<Answerer, const char*> lines[] = {{Answerer::model, "model"},
+                                                    {Answerer::learner, "learner"},
                                                     {Answerer::analytic_inverse, "fell back"},
                                                     {Answerer::nobody, "no answer"},
                                                     {Answerer::not_asked, "not asked"}};
   for (const auto& [answerer, name] : lines) {
     const std::size_t count = detail::count_of(summary.answerers, to_string(answerer));
-    if (count == 0 && answerer == Answerer::not_asked) continue;
+    if (count == 0 && (answerer == Answerer::not_asked || answerer == Answerer::learner)) continue;
     std::printf("%-11s %zu (%.1f %%)\n", name, count, 100.0 * static_cast<double>(count) / static_cast<double>(rows));
   }
   const std::string causes = detail::counts_in_words(summary.causes, "ok");
@@ -230,7 +231,8 @@ inline nlohmann::json as_json(const Replayed& replayed, const ReplaySummary& sum
     json["outside_envelope"][feature] = {{"rows", count.rows},
                                          {"largest_excess", finite_or_null(count.largest_excess)}};
   }
-  for (const Answerer answerer : {Answerer::model, Answerer::analytic_inverse, Answerer::nobody, Answerer::not_asked}) {
+  for (const Answerer answerer :
+       {Answerer::model, Answerer::learner, Answerer::analytic_inverse, Answerer::nobody, Answerer::not_asked}) {
     json["answered_by"][to_string(answerer)] = detail::count_of(summary.answerers, to_string(answerer));
   }
   for (std::size_t i = 0; i < std::min(summary.events.size(), events_shown); ++i) {

@@ -17,6 +17,7 @@ namespace programs {
 /// The source of the commands.
 enum class Answerer {
   model,
+  learner,  ///< the vehicle as a core learnt it
   analytic_inverse,
   nobody,
   not_asked,  ///< a core that its stack asked nothing: off, or flown by hand
@@ -25,6 +26,7 @@ enum class Answerer {
 constexpr const char* to_string(Answerer answerer) noexcept {
   switch (answerer) {
     case Answerer::model: return "model";
+    case Answerer::learner: return "learner";
     case Answerer::analytic_inverse: return "analytic_inverse";
     case Answerer::nobody: return "nobody";
     case Answerer::not_asked: return "not_asked";

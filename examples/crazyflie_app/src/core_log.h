@@ -54,7 +54,9 @@
   ONE(uint8, stale_inputs)                    \
   ONE(uint8, trusted)                         \
   ONE(uint8, bias_status)                     \
-  ONE(uint8, analytic_bias_status)
+  ONE(uint8, analytic_bias_status)            \
+  ONE(uint8, learning)                        \
+  ONE(uint8, learnt)
 
 #define PINNQUAD_SETTINGS_LIST(ONE, MANY, TIME) \
   TIME(timestamp, timestamp_ms)                 \

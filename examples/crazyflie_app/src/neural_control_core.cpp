@@ -29,6 +29,13 @@ using FlownLimits = TrainedQuadModelTrust;
 using FlownLimits = void;  // without limits of trust
 #endif
 
+// The vehicle is learnt in flight where the app is built for it (docs/onboard.md): CFLAGS += -DPINNQUAD_ONBOARD.
+#ifdef PINNQUAD_ONBOARD
+using FlownOnboard = pinnquad::OnboardInverse<float>;
+#else
+using FlownOnboard = void;
+#endif
+
 // A block is opened and tested on the app's task.
 #if __has_include("autoconf.h")
 #include "autoconf.h"
@@ -42,8 +49,9 @@ static_assert(
 
 namespace {
 
-using Controller = pinnquad::autopilot::Recorded<
-    pinnquad::autopilot::NeuralController<FlownModel, pinnquad::ModelView<FlownModel>, FlownVehicle, FlownLimits>>;
+using Controller =
+    pinnquad::autopilot::Recorded<pinnquad::autopilot::NeuralController<FlownModel, pinnquad::ModelView<FlownModel>,
+                                                                        FlownVehicle, FlownLimits, FlownOnboard>>;
 using Control = pinnquad_crazyflie::NeuralControl<FlownModel, Controller>;
 
 alignas(Control) unsigned char memory[sizeof(Control)];

@@ -25,6 +25,7 @@ struct CrazyflieState {
   float battery_voltage; /* V, of this tick, for a model that asks for it */
   bool drives_motors;    /* the forces of the last step reached the motors */
   bool landed;
+  uint8_t learning; /* pinnquad::autopilot::Learning, of an app that is built with PINNQUAD_ONBOARD */
 };
 
 enum CrazyflieMode { crazyflie_mode_disable = 0, crazyflie_mode_abs = 1, crazyflie_mode_velocity = 2 };

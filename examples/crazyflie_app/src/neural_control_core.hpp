@@ -36,14 +36,15 @@ class NeuralControl {
                                    float* forces, CrazyflieReport& report) noexcept {
     why_ = {};
     bool has_commands = false;
+    const pinnquad::autopilot::Learning learning = pinnquad::autopilot::learning_of(state.learning);
     if (asks_for_a_place(setpoint)) {
-      controller_.situation({state.drives_motors, state.landed});
+      controller_.situation({state.drives_motors, state.landed, learning});
       take(state);
       static_cast<void>(controller_.battery_voltage(in_us(now_ms), state.battery_voltage));
       take(setpoint);
       has_commands = controller_.step(in_us(now_ms), commands_, why_) != pinnquad::autopilot::Reaction::gives_up;
     } else {
-      controller_.situation({false, state.landed});
+      controller_.situation({false, state.landed, learning});
       controller_.skip(in_us(now_ms));
     }
     controller_.describe(why_, report);

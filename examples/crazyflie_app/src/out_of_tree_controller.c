@@ -55,6 +55,9 @@ static uint8_t pid_flies = 1;      /* no model, given up, off or by hand */
 static uint8_t stands;             /* on the ground, its motors not above their idling since */
 static uint16_t step_us;           /* inference time: outer loop and inverse */
 static float force_scale;          /* greatest thrust of the model's rotor over the platform's THRUST_MAX */
+#ifdef PINNQUAD_ONBOARD
+static uint8_t learning; /* 0 off, 1 learns, 2 excites, 3 frozen */
+#endif
 
 /* Not on the stabilizer's stack. */
 static struct CrazyflieState at;
@@ -150,6 +153,9 @@ static void copy_state(const sensorData_t* sensors, const state_t* state) {
   at.position_timestamp = crazyflie_sample_time(&position_clock, state->position.timestamp, now, local, 6);
   at.battery_voltage = pmGetBatteryVoltage();
   at.drives_motors = !pid_flies && supervisorAreMotorsAllowedToRun();
+#ifdef PINNQUAD_ONBOARD
+  at.learning = learning;
+#endif
 }
 
 static void copy_setpoint(const setpoint_t* setpoint) {
@@ -221,6 +227,9 @@ void controllerOutOfTree(control_t* control, const setpoint_t* setpoint, const s
 PARAM_GROUP_START(pinnquad)
 PARAM_ADD(PARAM_FLOAT, forceScale, &force_scale)
 PARAM_ADD(PARAM_UINT8, recordEvery, &record_every)
+#ifdef PINNQUAD_ONBOARD
+PARAM_ADD(PARAM_UINT8, learning, &learning)
+#endif
 PARAM_GROUP_STOP(pinnquad)
 
 LOG_GROUP_START(pinnquad)

@@ -7,6 +7,7 @@
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/flight_controller.hpp"
+#include "pinnquad/control/leaning.hpp"
 #include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/dynamics/rotor.hpp"
 
@@ -43,13 +44,12 @@ class TrackingController {
   /// commands are untouched.
   Status operator()(const State<Scalar>& state, const TrajectoryPoint<Scalar>& point, std::uint64_t time_us,
                     Commands<Scalar>& commands) noexcept {
-    TrajectoryPoint<Scalar> asked = point;
     if constexpr (learns_in_flight<FeedForward, Scalar>) {
       feed_forward_.learn(time_us, flew_, state, last_);
       flew_ = false;
     }
-    lean(state, asked);
     Accelerations<Scalar> demand, feedback;
+    const TrajectoryPoint<Scalar> asked = leaning(feed_forward_, state, point, controller_.gravity_m_s2());
     const Status demanded = controller_(state, asked, demand, feedback);
     if (demanded != Status::ok) return demanded;
     if constexpr (integrates_feedback<FeedForward, Scalar>) feed_forward_.integrate(feedback);
@@ -85,51 +85,6 @@ class TrackingController {
   Status feed_forward_status() const noexcept { return feed_forward_status_; }
 
  private:
-  /// The acceleration across the thrust that the policy knows of is taken from the one asked for; its change along the
-  /// trajectory, from jerk and snap: differences over 20 ms before and after, of the motion that the point says.
-  void lean(const State<Scalar>& state, TrajectoryPoint<Scalar>& asked) const noexcept {
-    if constexpr (knows_across<FeedForward, Scalar>) {
-      TrajectoryPoint<Scalar> leaning = asked;
-      leaning.acceleration_m_s2 -= across_of(feed_forward_, state);
-      if constexpr (across_varies<FeedForward, Scalar>) follow_across(state, asked, leaning);
-      asked = leaning;
-    } else {
-      static_cast<void>(state), static_cast<void>(asked);
-    }
-  }
-  void follow_across(const State<Scalar>& state, const TrajectoryPoint<Scalar>& asked,
-                     TrajectoryPoint<Scalar>& leaning) const noexcept {
-    constexpr Scalar h = Scalar(0.02);
-    FlatMotion<Scalar> flat;
-    if (flat_motion(leaning, controller_.gravity_m_s2(), flat) != Status::ok) return;
-    const Vector3<Scalar> before = across_at(state, leaning, flat, asked, -h);
-    const Vector3<Scalar> now = across_at(state, leaning, flat, asked, Scalar(0));
-    const Vector3<Scalar> after = across_at(state, leaning, flat, asked, h);
-    leaning.jerk_m_s3 -= (after - before) / (Scalar(2) * h);
-    leaning.snap_m_s4 -= (after - Scalar(2) * now + before) / (h * h);
-  }
-  /// Across the thrust, a time after the point, on the trajectory: velocity of the point, attitude and body rates of
-  /// one that leans.
-  Vector3<Scalar> across_at(const State<Scalar>& state, const TrajectoryPoint<Scalar>& leaning,
-                            const FlatMotion<Scalar>& flat, const TrajectoryPoint<Scalar>& point,
-                            Scalar time_s) const noexcept {
-    using std::cos;
-    using std::sin;
-    const Scalar half_square = Scalar(0.5) * time_s * time_s;
-    State<Scalar> there = state;
-    there.velocity_m_s = point.velocity_m_s + time_s * point.acceleration_m_s2 + half_square * point.jerk_m_s3;
-    Vector3<Scalar> force = leaning.acceleration_m_s2 + time_s * leaning.jerk_m_s3 + half_square * leaning.snap_m_s4;
-    force[2] -= controller_.gravity_m_s2();
-    const Scalar yaw = point.yaw_rad + time_s * point.yaw_rate_rad_s;
-    Matrix<Scalar, 3, 3> axes;
-    there.attitude = flat.attitude;
-    if (body_axes(force, Heading<Scalar>{sin(yaw), cos(yaw)}, axes) == Status::ok) {
-      there.attitude = from_rotation_matrix(axes);
-    }
-    there.body_rates_rad_s = flat.body_rates_rad_s + time_s * flat.angular_acceleration_rad_s2;
-    return across_of(feed_forward_, there);
-  }
-
   Airframe<Scalar> airframe_;
   Rotors<Scalar> rotors_;
   FlightController<Scalar> controller_;

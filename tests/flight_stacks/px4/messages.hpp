@@ -179,7 +179,7 @@ struct pinnquad_record_s {
   uint8_t cause;
   uint8_t stale_inputs;
   uint8_t trusted;
-  uint8_t bias_status, analytic_bias_status;
+  uint8_t bias_status, analytic_bias_status, learning, learnt;
 };
 struct pinnquad_settings_s {
   uint64_t timestamp;

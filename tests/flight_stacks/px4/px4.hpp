@@ -189,10 +189,10 @@ using ParamInt = Parameter<Name, int32_t>;
 #define PINNQUAD_TEST_EACH21(m, a, b, c, d, e, f, g, h, i, j, k, l, n, ...) \
   m(a) m(b) m(c) m(d) m(e) m(f) m(g) m(h) m(i) m(j) m(k) m(l) m(n) PINNQUAD_TEST_EACH8(m, __VA_ARGS__)
 #define PINNQUAD_TEST_EACH24(m, a, b, o, ...) m(a) m(b) m(o) PINNQUAD_TEST_EACH21(m, __VA_ARGS__)
-#define PINNQUAD_TEST_EACH27(m, a, b, o, ...) m(a) m(b) m(o) PINNQUAD_TEST_EACH24(m, __VA_ARGS__)
+#define PINNQUAD_TEST_EACH28(m, a, b, c, o, ...) m(a) m(b) m(c) m(o) PINNQUAD_TEST_EACH24(m, __VA_ARGS__)
 #define DEFINE_PARAMETERS(...)                            \
-  PINNQUAD_TEST_EACH27(PINNQUAD_TEST_MEMBER, __VA_ARGS__) \
-  void updateParamsImpl() final { PINNQUAD_TEST_EACH27(PINNQUAD_TEST_UPDATE, __VA_ARGS__) }
+  PINNQUAD_TEST_EACH28(PINNQUAD_TEST_MEMBER, __VA_ARGS__) \
+  void updateParamsImpl() final { PINNQUAD_TEST_EACH28(PINNQUAD_TEST_UPDATE, __VA_ARGS__) }
 
 PINNQUAD_TEST_NAME(PQ_OUT_MIN)
 PINNQUAD_TEST_NAME(PQ_AGE_RATES)
@@ -215,6 +215,7 @@ PINNQUAD_TEST_NAME(PQ_BIAS_MAX)
 PINNQUAD_TEST_NAME(PQ_BIAS_ACC)
 PINNQUAD_TEST_NAME(PQ_BIAS_DELAY)
 PINNQUAD_TEST_NAME(PQ_RECORD)
+PINNQUAD_TEST_NAME(PQ_ONBOARD)
 PINNQUAD_TEST_NAME(PQ_STK_XY)
 PINNQUAD_TEST_NAME(PQ_STK_Z)
 PINNQUAD_TEST_NAME(PQ_STK_YAW)

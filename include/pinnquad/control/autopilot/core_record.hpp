@@ -18,9 +18,16 @@ namespace pinnquad::autopilot {
 struct CoreRecord {
   static constexpr const char* topic = "pinnquad_record";
   /// Fields that earlier logs lack.
-  static constexpr std::array<const char*, 6> added = {
-      "voltage_us",          "battery_voltage",        "bias_noise",
-      "analytic_bias_noise", "bias_across_noise_m_s2", "bias_across_rate_m_s3"};
+  static constexpr std::array<const char*, 8> added = {"voltage_us",
+                                                       "battery_voltage",
+                                                       "bias_noise",
+                                                       "analytic_bias_noise",
+                                                       "bias_across_noise_m_s2",
+                                                       "bias_across_rate_m_s3",
+                                                       "learning",
+                                                       "learnt"};
+  /// Bits of `learnt`: a sum that was learnt flies (its number from 0), and the learner has seen flight.
+  static constexpr std::uint8_t learnt_sums = 15, seen_flight = 16;
   /// A field of the cores before, whose bias was an acceleration: this one does not answer as they did.
   static constexpr const char* removed = "bias_m_s2";
 
@@ -44,7 +51,8 @@ struct CoreRecord {
   float wanted_yaw_rad{0};
   float wanted_yaw_rate_rad_s{0};
   float battery_voltage{0};          ///< V; of a model that asks for it
-  float bias_sums[4]{};              ///< of the network: MotionBias::sums(), as the tick reckoned with, as all of these
+  float bias_sums[4]{};              ///< of the network (while it answers, of the learner): MotionBias::sums(), as the
+                                     ///< tick reckoned with, as all of these
   float analytic_bias_sums[4]{};     ///< of the analytic inverse
   float bias_across_m_s2[3]{};       ///< NED, of both
   float bias_across_rate_m_s3[2]{};  ///< its trend, north and east
@@ -73,6 +81,8 @@ struct CoreRecord {
   std::uint8_t trusted{1};        ///< by the command residual
   std::uint8_t bias_status{static_cast<std::uint8_t>(Status::warming_up)};           ///< MotionBias::status()
   std::uint8_t analytic_bias_status{static_cast<std::uint8_t>(Status::warming_up)};  ///< the same
+  std::uint8_t learning{0};                                                          ///< Learning
+  std::uint8_t learnt{0};                                                            ///< as bits
 
   /// Calls `visit(name, unit, number or array)` for each, in order. It may throw what `visit` throws.
   template <class Self, class Visit>
@@ -126,6 +136,8 @@ struct CoreRecord {
     visit("trusted", "1", self.trusted);
     visit("bias_status", "1", self.bias_status);
     visit("analytic_bias_status", "1", self.analytic_bias_status);
+    visit("learning", "1", self.learning);
+    visit("learnt", "bits", self.learnt);
   }
 };
 

@@ -8,6 +8,7 @@
 
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/autopilot/core_record.hpp"
+#include "pinnquad/control/onboard/onboard_inverse.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace pinnquad::autopilot::detail {
@@ -70,6 +71,22 @@ CoreSettings with_effects(CoreSettings settings, const Quadrotor<float, Effects.
   static_cast<void>(add);
   std::apply([&add](const auto&... effect) noexcept { (add(effect), ...); }, vehicle.effects());
   return settings;
+}
+
+/// In place of a learner, where there is none.
+struct NoOnboard {};
+
+/// The learner of a vehicle, from what is guessed of it.
+template <class Onboard>
+auto onboard_of(const Airframe<float>& start, const CoreSettings& settings) noexcept {
+  if constexpr (std::is_void_v<Onboard>) {
+    static_cast<void>(start), static_cast<void>(settings);
+    return NoOnboard{};
+  } else {
+    OnboardSettings<float> onboard;
+    if (settings.state_delay_s > 0) onboard.delay_s = settings.state_delay_s;
+    return Onboard(start, onboard);
+  }
 }
 
 /// Commands that neither rotor nor sound network asks for: the analytic inverse is asked instead.

@@ -53,10 +53,24 @@ struct StepReport {
   constexpr bool stale(std::uint8_t bits) const noexcept { return (stale_inputs & bits) != 0; }
 };
 
-/// The stack's own state.
+/// Use of a vehicle that is learnt in flight (docs/onboard.md), by a controller that has such a learner.
+enum class Learning : std::uint8_t {
+  off = 0,      ///< the model answers, and nothing is learnt
+  learns = 1,   ///< the learner answers, with faint sines while a sum is unknown
+  excites = 2,  ///< and with gentle sines for the next ten seconds of flight
+  frozen = 3,   ///< the learner answers, and swaps no sum any more
+};
+
+/// A stack's number; off for one that is none.
+constexpr Learning learning_of(std::uint32_t number) noexcept {
+  return number <= static_cast<std::uint32_t>(Learning::frozen) ? static_cast<Learning>(number) : Learning::off;
+}
+
+/// The stack's own state, and what it asks of the learner.
 struct Situation {
   bool drives_motors{false};  ///< this controller's commands reach them
   bool landed{false};
+  Learning learning{Learning::off};
 
   /// The bias is estimated in flight alone.
   bool in_flight() const noexcept { return drives_motors && !landed; }

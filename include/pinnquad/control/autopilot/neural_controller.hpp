@@ -14,6 +14,8 @@
 #include "pinnquad/control/bias_learner.hpp"
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
+#include "pinnquad/control/leaning.hpp"
+#include "pinnquad/control/onboard/onboard_inverse.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/guard.hpp"
 
@@ -22,11 +24,13 @@ namespace pinnquad::autopilot {
 /// `Shape`: an exported header, whose blocks it flies. `View` opens a block; on the ground its network may be known at
 /// run time alone (tools/model/replay_core.hpp). `VehicleType`: a Quadrotor, airframe and effects of the analytic
 /// inverse. `Trust`: the struct of trust.hpp beside the model (docs/trust.md), beyond whose limits the analytic inverse
-/// flies; void: neither distance nor command residual is measured.
+/// flies; void: neither distance nor command residual is measured. `Onboard`: OnboardInverse<float>, which answers in
+/// the model's place while the stack asks it to learn (docs/onboard.md); void: a controller that pays nothing for it.
 template <class Shape, class View = ModelView<Shape>, class VehicleType = Quadrotor<float, QuadraticDrag>,
-          class Trust = void>
+          class Trust = void, class Onboard = void>
 class NeuralController {
   static constexpr bool trusts = pinnquad::detail::FlownTrust<Trust>::known;
+  static constexpr bool has_onboard = !std::is_void_v<Onboard>;
   using ModelInputs = detail::ModelInputs<typename Shape::Features>;
 
  public:
@@ -57,7 +61,8 @@ class NeuralController {
         learner_(vehicle_.airframe(), detail::bias_settings(settings),
                  FlownMotion<float>({FlownMotionSettings<float>{}.period_us,
                                      vehicle_.airframe().rise_time_constant_s(0), settings.state_delay_s})),
-        take_off_(settings.take_off_s) {
+        take_off_(settings.take_off_s),
+        onboard_(detail::onboard_of<Onboard>(vehicle_.airframe(), settings)) {
     settings_.distance_limit = settings_.innovation_limit = 0;
     if constexpr (trusts) {
       settings_.distance_limit = static_cast<float>(NetworkGuard::Distribution::squared_distance_limit);
@@ -124,10 +129,29 @@ class NeuralController {
     held_yaw_rad_ += yaw_rad;
     learner_.motion().interrupt();
     model_inputs_.clear();
+    jumped_ = true;
   }
 
-  /// Of the network's commands. What its network does not answer for it does not learn.
-  const MotionBias<float>& bias() const noexcept { return learner_.own(); }
+  /// Of the network's commands. What its network does not answer for it does not learn. Of the learner's, where it
+  /// answers.
+  const MotionBias<float>& bias() const noexcept {
+    if constexpr (has_onboard) {
+      if (learns()) return onboard_.bias();
+    }
+    return learner_.own();
+  }
+  /// The vehicle as it is learnt: its certificate, candidate, rows.
+  const auto& onboard() const noexcept { return onboard_; }
+  /// The use of the learner that the last situation asked for; off without one.
+  Learning learning() const noexcept { return has_onboard ? situation_.learning : Learning::off; }
+  /// CoreRecord::learnt.
+  std::uint8_t learnt() const noexcept {
+    unsigned bits = seen_flight_ ? CoreRecord::seen_flight : 0u;
+    if constexpr (has_onboard) {
+      for (std::size_t k = 0; k < 4; ++k) bits |= onboard_.certificate()[k].proven ? 1u << k : 0u;
+    }
+    return static_cast<std::uint8_t>(bits);
+  }
   /// Of the analytic inverse's commands; and the acceleration across the thrust, whoever answers.
   const MotionBias<float>& analytic_bias() const noexcept { return learner_.last(); }
   /// Share of the thrust that it uses, 0 to 1: below 1 at take-off and landing.
@@ -167,10 +191,12 @@ class NeuralController {
     if (checksum_ != models_.checksum(inverse)) take_model(*inverse);
     Reaction reaction = inverse == nullptr ? Reaction::gives_up : judge_ages(now_us, report);
     take_off_.update(now_us, situation_, vertical_motion(reaction));
+    limit_demand();
     learn(now_us, reaction, inverse);
     if (reaction <= Reaction::levels) {
       Commands<float> answer{};
-      report.status = ask(*inverse, reaction, answer, report);
+      report.status =
+          learns() ? ask_onboard(now_us, reaction, answer, report) : ask(*inverse, reaction, answer, report);
       if (has_output(report.status)) {
         last_commands_ = desaturate(vehicle_.rotors(), answer, range());
         const float lift = take_off_.lift();
@@ -261,11 +287,53 @@ class NeuralController {
     const auto sums = [](const float(&b)[4]) noexcept { return SignedSums<float>{b[0], b[1], b[2], b[3]}; };
     const Vector3<float> across(logged.bias_across_m_s2);
     const Vector3<float> rate(logged.bias_across_rate_m_s3[0], logged.bias_across_rate_m_s3[1], 0);
-    learner_.own().resume(sums(logged.bias_sums), across, rate, {logged.bias_noise, logged.bias_across_noise_m_s2},
-                          logged.bias_waited_s, static_cast<Status>(logged.bias_status));
+    if (logged.learning != 0) {  // it is the learner's that was logged
+      learner_.own().reset();
+    } else {
+      learner_.own().resume(sums(logged.bias_sums), across, rate, {logged.bias_noise, logged.bias_across_noise_m_s2},
+                            logged.bias_waited_s, static_cast<Status>(logged.bias_status));
+    }
     learner_.last().resume(sums(logged.analytic_bias_sums), across, rate,
                            {logged.analytic_bias_noise, logged.bias_across_noise_m_s2}, logged.analytic_bias_waited_s,
                            static_cast<Status>(logged.analytic_bias_status));
+  }
+
+  bool learns() const noexcept { return learning() != Learning::off; }
+
+  /// A tick of the vehicle that is learnt, and of the demand's limits, which are those of what flies.
+  PINNQUAD_NOINLINE void learn_vehicle(const typename Learner::Tick& tick) noexcept {
+    if constexpr (has_onboard) {
+      constexpr std::uint64_t longest_us = 100'000;
+      const std::uint64_t step_us = tick.now_us - learnt_us_;
+      learnt_us_ = tick.now_us;
+      if (learnt_before_ && !learns()) learner_.another_model();  // the network's again
+      learnt_before_ = learns();
+      if (!learns()) return;
+      learner_.own().reset();  // the network is not asked
+      const bool known = tick.known && !tick.freezes && !jumped_;
+      if (situation_.learning != Learning::excites) {
+        excited_us_ = 0;
+      } else if (known) {
+        excited_us_ += step_us < longest_us ? step_us : longest_us;
+      }
+      onboard_.excite(situation_.learning == Learning::excites && excited_us_ < excited_for_us);
+      onboard_.freeze(situation_.learning == Learning::frozen);
+      onboard_.learn(tick.now_us, known, state(), last_commands_);
+      seen_flight_ = seen_flight_ || known;
+    } else {
+      static_cast<void>(tick);
+    }
+  }
+  /// The demand's limits are those of the vehicle as it flies, after the rows until the tick before. Out of line, and
+  /// not below learn(): it takes more stack than a tick of the learner.
+  PINNQUAD_NOINLINE void limit_demand() noexcept {
+    if constexpr (has_onboard) {
+      const std::uint32_t rows = learns() ? onboard_.rows() + 1 : 0;
+      if (rows == limits_rows_) return;
+      limits_rows_ = rows;
+      outer_loop_ = detail::outer_loop(settings_, learns() ? onboard_.airframe() : vehicle_.airframe(),
+                                       vehicle_.site().gravity_m_s2);
+    }
   }
 
   State<float> state() const noexcept {
@@ -282,11 +350,13 @@ class NeuralController {
     tick.on_ground = !(take_off_.lift() > 0);
     const auto network = [this, inverse](const MotionInputs<float>& motion, Commands<float>& said,
                                          Vector3<float>&) noexcept {
-      return inverse->observed(model_inputs_.lasting(motion), said);
+      return learns() ? Status::distrusted : inverse->observed(model_inputs_.lasting(motion), said);
     };
     const auto analytic = [this](const MotionInputs<float>& motion, Commands<float>& said, Vector3<float>&) noexcept {
       return analytic_(motion, said);
     };
+    learn_vehicle(tick);
+    jumped_ = false;
     learner_.learn(tick, state(), last_commands_, network, analytic);
   }
 
@@ -347,6 +417,28 @@ class NeuralController {
     return status;
   }
 
+  /// The vehicle that is learnt, and the analytic inverse where it declines.
+  PINNQUAD_NOINLINE Status ask_onboard([[maybe_unused]] std::uint64_t now_us, [[maybe_unused]] Reaction reaction,
+                                       [[maybe_unused]] Commands<float>& commands,
+                                       [[maybe_unused]] StepReport& report) noexcept {
+    if constexpr (has_onboard) {
+      const State<float> now = state();
+      Accelerations<float> wanted;
+      const Status outer = want_leaning(reaction, now, wanted);
+      if (outer != Status::ok) return outer;
+      report.cause = onboard_(now, wanted, now_us, commands);
+      count_.add(report.cause);
+      if (has_output(report.cause)) return report.cause;
+      Commands<float> said{};
+      if (!has_output(analytic_(motion_inputs(now, wanted), said))) return report.cause;
+      learner_.last().add_to(said);
+      commands = said;
+      return Status::fell_back;
+    } else {
+      return Status::out_of_range;
+    }
+  }
+
   PINNQUAD_NOINLINE static Status ask_network(const Inverse& inverse, const typename Inverse::Inputs& inputs,
                                               Commands<float>& commands, StepReport& report) noexcept {
     typename Inverse::Report why;
@@ -361,15 +453,29 @@ class NeuralController {
   /// inverse, where the stack is deepest.
   PINNQUAD_NOINLINE Status want(Reaction reaction, MotionInputs<float>& motion) noexcept {
     const State<float> now = state();
-    Accelerations<float> wanted, feedback;
+    Accelerations<float> wanted;
     TrajectoryPoint<float> point = target(reaction, now);
     // a vehicle that levels: thrust alone, so that level stays level
     if (reaction != Reaction::levels) point.acceleration_m_s2 -= learner_.across_m_s2();
+    const Status outer = demand(now, point, wanted);
+    if (outer == Status::ok) motion = motion_inputs(now, wanted);
+    return outer;
+  }
+  /// That of a vehicle that is learnt, which knows its drag.
+  PINNQUAD_NOINLINE Status want_leaning(Reaction reaction, const State<float>& now,
+                                        Accelerations<float>& wanted) noexcept {
+    TrajectoryPoint<float> point = target(reaction, now);
+    if constexpr (has_onboard) {
+      if (reaction != Reaction::levels) point = leaning(onboard_, now, point, vehicle_.site().gravity_m_s2);
+    }
+    return demand(now, point, wanted);
+  }
+  PINNQUAD_ALWAYS_INLINE Status demand(const State<float>& now, const TrajectoryPoint<float>& point,
+                                       Accelerations<float>& wanted) noexcept {
+    Accelerations<float> feedback;
     const Status outer = outer_loop_(now, point, wanted, feedback);
-    if (outer != Status::ok) return outer;
-    expected_m_s2_ = world_acceleration<float>(now, wanted.linear_m_s2);
-    motion = motion_inputs(now, wanted);
-    return Status::ok;
+    if (outer == Status::ok) expected_m_s2_ = world_acceleration<float>(now, wanted.linear_m_s2);
+    return outer;
   }
 
   CoreSettings settings_;
@@ -392,9 +498,15 @@ class NeuralController {
   std::uint64_t answered_us_ = 0;
   bool answered_ = false;
   bool ready_ = false;
+  bool jumped_ = false;
   ModelInputs model_inputs_;
   std::uint32_t checksum_ = 0;
   FallbackCount count_{};
+  static constexpr std::uint64_t excited_for_us = 10'000'000;
+  std::conditional_t<has_onboard, Onboard, detail::NoOnboard> onboard_;
+  std::uint64_t learnt_us_ = 0, excited_us_ = 0;
+  std::uint32_t limits_rows_ = 0;  ///< the limits are those after one row less; 0: of the airframe
+  bool learnt_before_ = false, seen_flight_ = false;
 };
 
 }  // namespace pinnquad::autopilot

@@ -113,6 +113,8 @@ class Recorded : public Controller {
     record_.asked = asked;
     record_.drives_motors = Controller::situation().drives_motors ? 1 : 0;
     record_.landed = Controller::situation().landed ? 1 : 0;
+    record_.learning = static_cast<std::uint8_t>(Controller::learning());
+    record_.learnt = Controller::learnt();
     record_.lift = Controller::lift();
     const MotionBias<float>&own = Controller::bias(), &analytic = Controller::analytic_bias();
     for (std::size_t k = 0; k < own.sums().size(); ++k) {

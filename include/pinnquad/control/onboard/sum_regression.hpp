@@ -60,7 +60,7 @@ class SumRegression {
   /// A row: the motion, the thrusts that the rotors of each lag would have followed, and the specific force, FRD.
   void teach(std::uint64_t now_us, const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank,
              const Vector3<Scalar>& force_m_s2) noexcept {
-    if (now_us - row_us_ > period_us_) {  // rows of one mean follow each other
+    if (now_us / period_us_ - row_us_ / period_us_ > 1) {  // rows of one mean follow each other
       yaw_rows_ = 0;
       yaw_means_ = {};
     }
