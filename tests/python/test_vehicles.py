@@ -345,8 +345,8 @@ def test_what_ends_begins_anew():
     for _ in range(4):
         assert environment.step(actions)[4] == {}
     seen, rewards, terminated, truncated, info = environment.step(actions)
-    assert truncated.all() and info["_final_obs"].all() and info["final_obs"].shape == (50, 17)
-    assert (environment.vehicles.time_s == 0).all() and not np.array_equal(seen, info["final_obs"])
+    assert truncated.all() and info["_final_obs"].all() and np.stack(info["final_obs"]).shape == (50, 17)
+    assert (environment.vehicles.time_s == 0).all() and not np.array_equal(seen, np.stack(info["final_obs"]))
     with pytest.raises(ValueError, match=r"\(50, 4\)"):
         environment.step(actions[:10])
     assert environment.action_space.shape == (50, 4)
@@ -359,8 +359,9 @@ def test_each_episode_has_an_airframe_of_its_own():
     assert len(set(masses)) == 20
     actions = environment.vehicles.hover_commands()
     environment.vehicles.position_m[3] = (0, 0, 100)  # this one ends first
-    ended = environment.step(actions)[4]["_final_obs"]
-    assert ended[3] and ended.sum() == 1
+    info = environment.step(actions)[4]
+    ended = info["_final_obs"]
+    assert ended[3] and ended.sum() == 1 and info["final_obs"][3].shape == (17,) and info["final_obs"][4] is None
     after = [one.mass_kg for one in environment.vehicles.airframe]
     assert after[3] != masses[3] and after[:3] + after[4:] == masses[:3] + masses[4:]
     np.testing.assert_array_equal(environment.vehicles.rotor_commands[3], environment.vehicles.hover_commands()[3])

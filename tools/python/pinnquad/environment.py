@@ -143,7 +143,7 @@ class HoverEnv(Env):
 
 class VectorHoverEnv(VectorEnv):
     """Many HoverEnvs stepped by one call. An episode that ends begins anew in the same step (gymnasium's
-    AutoresetMode.SAME_STEP): where `info["_final_obs"]` is true, `info["final_obs"]` has its last observation."""
+    AutoresetMode.SAME_STEP): where `info["_final_obs"]` is true, `info["final_obs"]` has its last observation, else None."""
 
     metadata = {"render_modes": [], "autoreset_mode": SAME_STEP}
 
@@ -175,7 +175,10 @@ class VectorHoverEnv(VectorEnv):
         seen, info = self._task.observe(), {}
         ended = terminated | truncated
         if ended.any():
-            info = {"final_obs": seen, "_final_obs": ended}
+            last = np.full(self.num_envs, None, object)
+            for one in np.flatnonzero(ended):
+                last[one] = seen[one]
+            info = {"final_obs": last, "_final_obs": ended}
             self._task.reset(ended, self.np_random)
             seen = self._task.observe()
         return seen, reward, terminated, truncated, info
