@@ -61,6 +61,7 @@ def test_holm_corrects_for_as_many(flown, tmp_path):
 
 
 def test_files(run):
+    pytest.importorskip("matplotlib")
     table, latex, svg, pdf = run.save()
     with open(table, newline="") as file:
         rows = list(csv.DictReader(file))
