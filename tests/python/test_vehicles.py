@@ -410,6 +410,12 @@ def test_tasks_of_ones_own():
         HoverEnv(target_m=lambda time_s: np.zeros(3))
 
 
+def test_a_masked_choice_is_refused():
+    vehicles = Vehicles(2)
+    with pytest.raises(ValueError, match="which: expected numbers without a mask, found 1 masked"):
+        vehicles.reset(np.ma.array([True, True], mask=[False, True]))
+
+
 def test_a_masked_action_is_refused():
     environment = HoverEnv()
     environment.reset(seed=1)

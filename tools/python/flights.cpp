@@ -271,7 +271,7 @@ void bind_flights(py::module_& module) {
       .def_readonly("notes", &ImportedDataset::notes, "How what the logs lack was computed.")
       .def_property_readonly(
           "rows", [](const ImportedDataset& self) { return self.flights.rows(); }, "Of all flights.")
-      .def("__getitem__", &flight_at, py::arg("index"))
+      .def("__getitem__", &flight_at, py::arg("index").noconvert())
       .def("__len__", [](const ImportedDataset& self) { return self.flights.size(); })
       .def("__repr__", [](const ImportedDataset& self) {
         return "<pinnquad.Dataset: " + std::to_string(self.flights.size()) + " flights, " +

@@ -267,7 +267,8 @@ class Vehicles {
       for (std::size_t i = 0; i < size(); ++i) vehicles.push_back(i);
       return vehicles;
     }
-    const auto mask = py::array_t<bool, py::array::c_style>::ensure(which);
+    const py::object plain = py::module_::import("pinnquad.arrays").attr("unmasked")("which", which);
+    const auto mask = py::array_t<bool, py::array::c_style>::ensure(plain);
     if (!mask || mask.ndim() != 1 || static_cast<std::size_t>(mask.size()) != size()) {
       PyErr_Clear();
       throw py::value_error("which must be " + std::to_string(size()) + " truth values, one per vehicle");

@@ -100,7 +100,7 @@ def _own_columns(frame, name):
     for key in (frame.columns if is_frame(frame) else frame):
         values = frame[key]
         if str(key) not in Flight.column_names and np.asarray(values).dtype.kind in "fiu":
-            extra.append((str(key), "", np.asarray(values, float).tolist()))
+            extra.append((str(key), "", np.ma.filled(np.ma.asarray(values, float), np.nan).tolist()))
     return Dataset(Flight(rows, name, columns=extra))
 
 
