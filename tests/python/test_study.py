@@ -104,6 +104,14 @@ def test_a_stopped_run_goes_on(flown, tmp_path):
         study.run({"own": contender}, pinnquad.fly(rows=2400, seed=9), tmp_path / "study", seeds=1)
 
 
+def test_a_backend_of_joblib_is_used(flown, tmp_path):
+    import joblib
+    with joblib.parallel_backend("threading", n_jobs=3):
+        result = study.run({"own": noisy(0.01)}, flown, tmp_path / "study", seeds=6)
+    assert [row["seed"] for row in result.rows] == [1, 2, 3, 4, 5, 6]
+    assert not list((tmp_path / "study").glob("**/*.part"))
+
+
 def test_models_of_the_library_and_of_blocks(flown, structured, tmp_path):
     names = {"structured": "structured", "paper": "paper_vanilla", "block": lambda parts, seed: structured}
     result = study.run(names, flown, tmp_path / "study", seeds=2, epochs=2)

@@ -15,6 +15,7 @@ import hashlib
 import inspect
 import json
 import os
+import socket
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -201,9 +202,13 @@ def _fit(folder, name, contender, seed, flights, airframe, epochs):
             commands = commands.predict(commands.features(parts.test.flights))
     figures = _figures(name, np.asarray(commands, float), parts.test.commands)
     row = {"contender": name, "seed": seed, **figures, "seconds": time.perf_counter() - begun, "source": _source(contender)}
-    path = _path(folder, name, seed)
-    part = path.with_suffix(f".{os.getpid()}.part")
-    part.write_text(json.dumps(row), encoding="utf-8")
+    _write(_path(folder, name, seed), row)
+
+
+def _write(path, content):
+    """JSON, whole or not at all, whoever else writes it."""
+    part = path.with_suffix(f".{socket.gethostname()}.{os.getpid()}.part")
+    part.write_text(json.dumps(content), encoding="utf-8")
     os.replace(part, path)
 
 
@@ -253,9 +258,10 @@ def _require_the_same_flights(folder, flights):
     for flight in flights:
         digest.update(np.ascontiguousarray(flight.rows).tobytes())
     path, own = folder / "study.json", {"flights": digest.hexdigest()}
-    if path.exists() and json.loads(path.read_text()) != own:
+    if not path.exists():
+        _write(path, own)
+    elif json.loads(path.read_text(encoding="utf-8")) != own:
         raise ValueError(f"{folder}: expected an empty folder or a study of these flights, found one of others")
-    path.write_text(json.dumps(own))
 
 
 def _deviation(values):
