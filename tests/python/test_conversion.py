@@ -65,7 +65,7 @@ def test_scikit_learn():
     neural = pytest.importorskip("sklearn.neural_network")
     rng = np.random.default_rng(3)
     x = rng.normal(size=(200, 5))
-    network = neural.MLPRegressor((12,), activation="logistic", max_iter=30, random_state=1).fit(x, x[:, :4] ** 2)
+    network = neural.MLPRegressor(hidden_layer_sizes=(12,), activation="logistic", max_iter=30, random_state=1).fit(x, x[:, :4] ** 2)
     agrees(pinnquad.convert(network, "features.toml", "my_model"), network.predict)
 
 

@@ -358,3 +358,53 @@ def test_a_simulator_in_flight_refuses_a_second_thread():
         time.sleep(0.001)
     thread.join()
     assert refused > 0 and simulator.time_s == 1500.0
+
+
+# pilots of Python
+
+
+def circle(time_s, position_m, velocity_m_s):
+    """Three metres around the start, a turn in 12 s, pulled back to the path."""
+    angle = 2 * np.pi * time_s / 12
+    place = np.array([3 * np.sin(angle), 3 - 3 * np.cos(angle), -35.0])
+    along = 2 * np.pi / 12 * np.array([3 * np.cos(angle), 3 * np.sin(angle), 0.0])
+    return along + 1.0 * (place - position_m)
+
+
+def test_a_trajectory_of_ones_own_is_flown():
+    simulator = Simulator(pilot=circle)
+    simulator.fly(12.0)
+    rows = simulator.recording()
+    for time_s in (3.0, 6.0, 9.0):
+        at = np.searchsorted(rows.time_s, time_s - 1e-6)
+        assert rows.altitude_m[at] == pytest.approx(35.877, abs=0.2)
+    angle = 2 * np.pi * simulator.time_s / 12
+    np.testing.assert_allclose(simulator.state["position_m"], [3 * np.sin(angle), 3 - 3 * np.cos(angle), -35.0], atol=0.5)
+    speed = np.linalg.norm(rows.velocity_m_s, axis=1)[100:]
+    assert abs(speed.mean() - 2 * np.pi * 3 / 12) < 0.15
+    again = pickle.loads(pickle.dumps(simulator))
+    again.fly(1.0), simulator.fly(1.0)
+    np.testing.assert_array_equal(again.recording().rows, simulator.recording().rows)
+
+
+def test_a_yaw_rate_and_a_velocity():
+    simulator = Simulator(pilot=lambda *_: ((0, 0, 0), 0.5))
+    simulator.fly(2.0)
+    assert simulator.state["body_rates_rad_s"][2] == pytest.approx(0.5, abs=0.05)
+    seen = []
+    Simulator(pilot=lambda time_s, position_m, velocity_m_s: seen.append((time_s, position_m, velocity_m_s)) or (1, 0, 0)).fly(0.01)
+    assert [round(one[0], 6) for one in seen] == [0.0, 0.002, 0.004, 0.006, 0.008] and seen[0][1].tolist() == [0, 0, -35]
+
+
+@pytest.mark.parametrize("pilot, error, words", [
+    (lambda *_: 3, TypeError, "pilot: expected a velocity .*, found 3"), (lambda *_: (1, 2), TypeError, "found"),
+    (lambda *_: None, TypeError, "found None"), (lambda *_: (1, np.nan, 0), ValueError, "pilot: its velocity"),
+    (lambda *_: ((1, 0, 0), np.inf), ValueError, "pilot: its yaw rate"), (lambda *_: 1 / 0, ZeroDivisionError, "division"),
+    (3, TypeError, "pilot must be a name or a callable")])
+def test_pilots_that_are_none(pilot, error, words):
+    with pytest.raises(error, match=words):
+        simulator = Simulator(pilot=pilot)
+        try:
+            simulator.fly(1.0)
+        finally:
+            assert simulator.time_s == 0.0 and simulator.flying

@@ -9,9 +9,9 @@ from pinnquad import Flight
 
 def test_the_model_is_proven_and_good(trained, flight):
     assert trained.kind == "structured" and trained.r2 > 0.98
-    assert pinnquad.certify(trained.model)["verdict"] == "proven"
+    assert pinnquad.certify(trained.model).proven
     judged = pinnquad.evaluate(trained.model, flight, "test")
-    assert judged["r2"] == pytest.approx(trained.r2, abs=1e-9)
+    assert judged.r2 == pytest.approx(trained.r2, abs=1e-9)
     figures = trained.figures["structured"]
     assert figures["r2"]["mean"] == trained.r2 and figures["wrong_derivative_share"]["roll"]["mean"] == 0
     assert "structured" in trained.figures
@@ -62,12 +62,27 @@ def test_whole_flights_are_held_out_by_name():
 
 @pytest.mark.parametrize("arguments, words", [
     ({"models": ["paper_magic"]}, "no model of that name; nearest: paper_"),
-    ({"seeds": 0}, "seeds must be"), ({"epochs": -1}, "epochs must be"), ({"threads": 5000}, "threads must be"),
+    ({"seeds": 0}, "seeds must be"), ({"epochs": 0}, "epochs must be"), ({"threads": 5000}, "threads must be"),
     ({"slopes": "steep"}, "no slopes named"), ({"lag_s": float("nan")}, "lag_s"), ({"airframe": "kite"}, "kite")])
 def test_choices_that_make_no_sense(flight, arguments, words):
     with pytest.raises(ValueError, match=words) as caught:
         pinnquad.train(flight, **arguments)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["seeds", "epochs", "seed", "threads"])
+def test_numbers_that_are_not_whole(flight, name):
+    for wrong in (2.7, np.float32(2.7), np.float64(2), "2"):
+        with pytest.raises(TypeError):
+            pinnquad.train(flight, models=["structured"], **{name: wrong})
+
+
+def test_parts_are_those_of_train(flight):
+    parts = pinnquad.split(flight)
+    np.testing.assert_array_equal(np.concatenate([part[0].rows for part in parts]), flight.rows)
+    assert [part.rows for part in parts] == [1440, 480, 480]
+    flights = [Flight(pinnquad.fly(seed=seed, rows=100).rows, f"flight {seed}") for seed in range(1, 6)]
+    assert [[one.name for one in part] for part in pinnquad.split(flights)][2] == ["flight 5"]
 
 
 def test_flights_that_nobody_should_train_on(flight):

@@ -182,11 +182,73 @@ def test_what_is_refused_stays_where_it_was():
 
 
 @pytest.mark.parametrize("commands, words", [
-    (np.zeros((3, 4)), r"shape \(4, 4\)"), (np.zeros(4), "shape"), (np.zeros((4, 4), np.float32), "float64"),
-    (np.zeros((8, 4))[::2], "C-contiguous"), (np.zeros((4, 4), int), "float64"), (np.zeros((4, 4)).T[:, :3], "shape")])
+    (np.zeros((3, 4)), r"shape \(4, 4\)"), (np.zeros(4), "shape"), (np.zeros((4, 4)).T[:, :3], "shape"),
+    (np.zeros((4, 4), complex), "found complex128"), (np.zeros((4, 4), "m8[us]"), "found timedelta64"),
+    (np.ma.masked_equal(np.zeros((4, 4)), 0), "without a mask, found 16 masked")])
 def test_commands_that_are_none(commands, words):
-    with pytest.raises(ValueError, match=words):
+    with pytest.raises((TypeError, ValueError), match=words):
         Vehicles(4).step(commands)
+
+
+def test_commands_of_any_memory():
+    commands = np.random.default_rng(1).uniform(0.4, 0.6, (8, 4)).astype(np.float32).astype(float)
+    expected = Vehicles(8)
+    expected.step(commands, 0.1)
+    for given in (commands.astype(np.float32), np.asfortranarray(commands), np.repeat(commands, 2, axis=1)[:, ::2],
+                  np.ma.array(commands), commands.tolist()):
+        vehicles = Vehicles(8)
+        vehicles.step(given, 0.1)
+        np.testing.assert_array_equal(vehicles.state, expected.state)
+    one, other = Simulator(), Simulator()
+    one.step(commands[0].astype(np.float32), 0.1), other.step(commands[0], 0.1)
+    np.testing.assert_array_equal(one.state["position_m"], other.state["position_m"])
+    with pytest.raises(ValueError, match="without a mask"):
+        one.step(np.ma.masked_greater(commands[0], 0))
+
+
+def test_an_own_force_moves_by_newtons_law():
+    """Of a hover without drag: x = F t^2 / 2 m, and a torque about the yaw axis turns by N t / J."""
+    vehicles = Vehicles(3, effects=Effects(drag=False, standard_atmosphere=False))
+    airframe, commands = vehicles.airframe, np.tile(vehicles.hover_commands(), (3, 1))
+    forces = np.array([[1.5, 0, 0], [0, -3, 0], [0, 0, 0]])
+    for _ in range(100):
+        assert (vehicles.step(commands, 0.01, force_N=forces, torque_N_m=[0, 0, 1e-3]) == 0).all()
+    still = Vehicles(3, effects=vehicles.effects)
+    still.step(commands, 1.0)
+    np.testing.assert_allclose(vehicles.position_m - still.position_m, forces / airframe.mass_kg / 2, atol=1e-9)
+    np.testing.assert_allclose(vehicles.body_rates_rad_s[:, 2], 1e-3 / airframe.inertia_kg_m2[2], rtol=1e-9)
+    heavy = Vehicles(1, effects=Effects(drag=False, payload_kg=airframe.mass_kg))
+    heavy.step(heavy.hover_commands()[None], 0.1, force_N=[2, 0, 0])
+    assert heavy.velocity_m_s[0, 0] == pytest.approx(0.1 / airframe.mass_kg, rel=1e-9)
+
+
+def test_an_own_drag_is_of_second_order():
+    """Linear drag of Python's beside the library's: half the step, a quarter of the difference."""
+    def off(step_s):
+        own, ours = (Vehicles(1, effects=Effects(drag=False, linear_drag_N_s_m=drag)) for drag in (0.0, 0.5))
+        commands = ours.hover_commands()[None]
+        for vehicles in (own, ours):
+            vehicles.velocity_m_s[:] = (4, 2, 0)
+        for _ in range(int(round(1 / step_s))):
+            middle = own.velocity_m_s * np.exp(-0.5 / own.airframe.mass_kg * step_s / 2)
+            own.step(commands, step_s, force_N=-0.5 * middle)
+        ours.step(commands, 1.0)
+        return np.abs(own.velocity_m_s - ours.velocity_m_s).max()
+
+    assert off(0.1) < 0.02 and off(0.05) < 0.3 * off(0.1)
+
+
+def test_an_own_force_of_a_refused_step_changes_nothing():
+    vehicles = Vehicles(2)
+    commands = np.tile(vehicles.hover_commands(), (2, 1))
+    commands[1, 2] = np.nan
+    before = vehicles.state.copy()
+    assert [Status(s) for s in vehicles.step(commands, 0.01, force_N=[1, 0, 0])] == [Status.ok, Status.not_finite]
+    np.testing.assert_array_equal(vehicles.state[1], before[1])
+    assert vehicles.velocity_m_s[0, 0] > 0
+    for wrong, words in ((np.zeros((3, 3)), r"\(2, 3\)"), ([1, np.nan, 0], "finite"), (np.zeros(4), "shape|must be")):
+        with pytest.raises(ValueError, match=words):
+            vehicles.step(commands, 0.01, force_N=wrong)
 
 
 def test_arguments_that_make_no_sense():
@@ -283,8 +345,8 @@ def test_what_ends_begins_anew():
     for _ in range(4):
         assert environment.step(actions)[4] == {}
     seen, rewards, terminated, truncated, info = environment.step(actions)
-    assert truncated.all() and info["ended"].all() and info["final_observation"].shape == (50, 17)
-    assert (environment.vehicles.time_s == 0).all() and not np.array_equal(seen, info["final_observation"])
+    assert truncated.all() and info["_final_obs"].all() and np.stack(info["final_obs"]).shape == (50, 17)
+    assert (environment.vehicles.time_s == 0).all() and not np.array_equal(seen, np.stack(info["final_obs"]))
     with pytest.raises(ValueError, match=r"\(50, 4\)"):
         environment.step(actions[:10])
     assert environment.action_space.shape == (50, 4)
@@ -297,8 +359,9 @@ def test_each_episode_has_an_airframe_of_its_own():
     assert len(set(masses)) == 20
     actions = environment.vehicles.hover_commands()
     environment.vehicles.position_m[3] = (0, 0, 100)  # this one ends first
-    ended = environment.step(actions)[4]["ended"]
-    assert ended[3] and ended.sum() == 1
+    info = environment.step(actions)[4]
+    ended = info["_final_obs"]
+    assert ended[3] and ended.sum() == 1 and info["final_obs"][3].shape == (17,) and info["final_obs"][4] is None
     after = [one.mass_kg for one in environment.vehicles.airframe]
     assert after[3] != masses[3] and after[:3] + after[4:] == masses[:3] + masses[4:]
     np.testing.assert_array_equal(environment.vehicles.rotor_commands[3], environment.vehicles.hover_commands()[3])
@@ -312,3 +375,72 @@ def test_each_episode_has_an_airframe_of_its_own():
     assert [each.mass_kg for each in again.vehicles.airframe] == masses
     with pytest.raises(ValueError, match="no spread named"):
         VectorHoverEnv(2, randomise={"weight": 0.1})
+
+
+def test_tasks_of_ones_own():
+    """A reward, a path and an effect of Python's."""
+    def circle(time_s):
+        return np.stack([2 * np.cos(time_s), 2 * np.sin(time_s), np.full(len(time_s), -20.0)], axis=1)
+
+    asked = []
+
+    def reward(state, actions, target_m):
+        asked.append((state.shape, actions.shape))
+        return -np.linalg.norm(state[:, :3] - target_m, axis=1)
+
+    environment = VectorHoverEnv(5, target_m=circle, reward=reward, spread_m=0, step_s=0.02,
+                                 disturbance=lambda state: (-0.3 * state[:, 3:6], None))
+    seen, _ = environment.reset(seed=1)
+    np.testing.assert_allclose(seen[:, :3], 0, atol=1e-6)
+    still = VectorHoverEnv(5, target_m=circle, spread_m=0, step_s=0.02)
+    still.reset(seed=1)
+    actions = np.tile(environment.vehicles.hover_commands((0, 0, -20)), (5, 1))
+    for step in range(1, 11):
+        seen, rewards, *_ = environment.step(actions)
+        still.step(actions)
+        off_m = environment.vehicles.position_m - circle(np.full(5, 0.02 * step))
+        np.testing.assert_allclose(seen[:, :3], off_m, atol=1e-5)
+        np.testing.assert_allclose(rewards, -np.linalg.norm(off_m, axis=1), rtol=1e-12)
+    assert asked == [((5, 19), (5, 4))] * 10
+    assert np.linalg.norm(environment.vehicles.velocity_m_s) < np.linalg.norm(still.vehicles.velocity_m_s)
+    with pytest.raises(ValueError, match=r"reward must return shape \(2,\), found \(\)"):
+        wrong = VectorHoverEnv(2, reward=lambda *_: 0.0)
+        wrong.reset(seed=1), wrong.step(actions[:2])
+    with pytest.raises(ValueError, match=r"target_m\(time_s\) must be finite numbers of shape \(1, 3\)"):
+        HoverEnv(target_m=lambda time_s: np.zeros(3))
+
+
+def test_a_masked_choice_is_refused():
+    vehicles = Vehicles(2)
+    with pytest.raises(ValueError, match="which: expected numbers without a mask, found 1 masked"):
+        vehicles.reset(np.ma.array([True, True], mask=[False, True]))
+
+
+def test_a_masked_action_is_refused():
+    environment = HoverEnv()
+    environment.reset(seed=1)
+    with pytest.raises(ValueError, match="action: expected numbers without a mask"):
+        environment.step(np.ma.masked_greater(np.full(4, 0.5), 0))
+
+
+def test_gymnasium():
+    """Where it is installed: its own checker, its registry and its vector environments."""
+    gymnasium = pytest.importorskip("gymnasium", minversion="1.1")
+    from gymnasium.utils.env_checker import check_env
+
+    environment = gymnasium.make("pinnquad/Hover-v0", episode_s=0.5)
+    check_env(environment.unwrapped)
+    assert isinstance(environment.unwrapped, HoverEnv)
+    environment.reset(seed=1)
+    assert any(environment.step(environment.action_space.sample())[3] for _ in range(50))
+    many = gymnasium.make_vec("pinnquad/Hover-v0", num_envs=7, vectorization_mode="vector_entry_point", episode_s=0.05)
+    assert isinstance(many.unwrapped, VectorHoverEnv) and isinstance(many, gymnasium.vector.VectorEnv)
+    assert many.metadata["autoreset_mode"] == gymnasium.vector.AutoresetMode.SAME_STEP
+    counted = gymnasium.wrappers.vector.RecordEpisodeStatistics(many)
+    counted.reset(seed=2)
+    for _ in range(5):
+        *_, info = counted.step(np.full((7, 4), 0.5, np.float32))
+    assert info["_episode"].all() and (info["episode"]["l"] == 5).all()
+    apart = gymnasium.make_vec("pinnquad/Hover-v0", num_envs=2, vectorization_mode="sync",
+                               vector_kwargs={"autoreset_mode": gymnasium.vector.AutoresetMode.SAME_STEP})
+    np.testing.assert_array_equal(apart.reset(seed=[3, 4])[0][0], HoverEnv().reset(seed=3)[0])

@@ -237,7 +237,7 @@ void bind_airframes(py::module_& module) {
           "Thrust of all rotors at command 1 over the weight, at sea level.")
       .def("check", py::overload_cast<const NamedAirframe&>(&check),
            "Raises pinnquad.Error for values that no quadrotor has that can hover.")
-      .def("randomised", &randomised, py::arg("count"), py::arg("spreads"), py::arg("seed") = 1,
+      .def("randomised", &randomised, py::arg("count").noconvert(), py::arg("spreads"), py::arg("seed").noconvert() = 1,
            "A list of `count` airframes around this one: each number that `spreads` names, {\"mass_kg\": 0.2,\n"
            "\"thrust_scale\": 0.05}, times a factor drawn for it, uniform between 1 - spread and 1 + spread; of the\n"
            "airframe's attributes or its rotors'. What can't hover is drawn again. The same seed gives the same bits.")

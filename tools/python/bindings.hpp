@@ -66,7 +66,16 @@ NamedAirframe airframe_of(py::handle given);
 /// A Dataset, a Flight, or a sequence of flights. A dataset is not copied.
 std::shared_ptr<const pinnquad::Dataset> dataset_of(py::handle given);
 
+/// Numbers as a C-contiguous array of float32 or float64: `given` itself where it is one, else a copy, with the columns
+/// `names` of a DataFrame or a structured array. Throws TypeError and ValueError, one line.
+py::array plain_array(const char* what, const py::object& given, const std::vector<std::string>& names = {});
+/// The same in float64.
+py::array_t<double> doubles(const char* what, const py::object& given, const std::vector<std::string>& names = {});
+
 inline Triple triple(const pinnquad::Vector3<double>& v) { return {v[0], v[1], v[2]}; }
+
+/// Rewrites what pybind11 documents of every function, so that inspect.signature() and help() show its arguments.
+void give_text_signatures(const py::module_& module);
 
 /// Makes `Type.__new__(Type)` a TypeError, and a pickle of a type that says no other: Python's own way to one would end
 /// the interpreter. `Type(...)` is as before.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pinnquad/data/csv.hpp"
+#include "pinnquad/data/split.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
 #include "pinnquad/logs/read_dataset.hpp"
 #include "python/bindings.hpp"
@@ -65,8 +66,13 @@ py::array column_of(const py::object& self, const std::string& name) {
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Columns = std::vector<std::tuple<std::string, std::string, std::vector<double>>>;
 
-std::shared_ptr<Flight> made(const Numbers& rows, const std::string& name, const std::string& trajectory, double weight,
-                             const Columns& columns) {
+std::vector<std::string> names_of_columns() {
+  return {std::begin(pinnquad::sample_field_names), std::end(pinnquad::sample_field_names)};
+}
+
+std::shared_ptr<Flight> made(const py::object& given, const std::string& name, const std::string& trajectory,
+                             double weight, const Columns& columns) {
+  const Numbers rows = doubles("rows", given, names_of_columns());
   if (rows.ndim() != 2 || static_cast<std::size_t>(rows.shape(1)) != pinnquad::sample_value_count) {
     throw py::value_error("rows must be an array of 21 columns, those of column_names");
   }
@@ -107,14 +113,15 @@ std::shared_ptr<Flight> read_flight(const std::filesystem::path& path) {
   return flight;
 }
 
-std::shared_ptr<ImportedDataset> read(const std::vector<std::filesystem::path>& paths, const std::string& mapping,
-                                      const std::string& airframe, const std::optional<double>& lag_s,
-                                      bool keep_saturated) {
+std::shared_ptr<ImportedDataset> read(const std::vector<std::filesystem::path>& paths,
+                                      const std::optional<std::filesystem::path>& mapping,
+                                      const std::optional<std::filesystem::path>& airframe,
+                                      const std::optional<double>& lag_s, bool keep_saturated) {
   std::vector<std::string> texts;
   for (const std::filesystem::path& path : paths) texts.push_back(path.string());
   pinnquad::logs::LogSettings settings;
-  settings.mapping = mapping;
-  settings.airframe = airframe;
+  settings.mapping = mapping.value_or("").string();
+  settings.airframe = airframe.value_or("").string();
   settings.lag_s = lag_s;
   settings.keep_saturated = keep_saturated;
   SignalWatch watch;
@@ -133,6 +140,23 @@ py::object flight_at(const py::object& self, py::ssize_t index) {
   auto shared = self.cast<std::shared_ptr<ImportedDataset>>();
   const Flight& flight = flights[static_cast<std::size_t>(index)];
   return py::cast(std::shared_ptr<Flight>(shared, const_cast<Flight*>(&flight)));
+}
+
+/// Rows of other flights as flights of their own.
+std::shared_ptr<ImportedDataset> dataset_of_rows(const pinnquad::RowSet& rows) {
+  auto own = std::make_shared<ImportedDataset>();
+  for (const pinnquad::FlightRows& piece : rows.pieces()) {
+    Flight flight = *piece.flight;
+    flight.keep_rows([&piece](std::size_t row) { return row >= piece.rows.begin && row < piece.rows.end; });
+    own->flights.add(std::move(flight));
+  }
+  return own;
+}
+
+py::tuple split(const py::object& flights) {
+  const std::shared_ptr<const Dataset> dataset = dataset_of(flights);
+  const auto parts = pinnquad::split_for_training(*dataset);
+  return py::make_tuple(dataset_of_rows(parts.train), dataset_of_rows(parts.validation), dataset_of_rows(parts.test));
 }
 
 }  // namespace
@@ -169,8 +193,8 @@ void bind_flights(py::module_& module) {
   flight
       .def(py::init(&made), py::arg("rows"), py::arg("name") = "", py::arg("trajectory") = "", py::arg("weight") = 1.0,
            py::arg("columns") = Columns{},
-           "Of an array of N x 21 numbers in the order of column_names, SI units, and extra columns (name, unit, "
-           "values).")
+           "N x 21 numbers, SI units: an array in the order of column_names, or a DataFrame or a structured array by\n"
+           "these names; and extra columns (name, unit, values).")
       .def_static("read", &read_flight, py::arg("path"),
                   "A CSV file (docs/train.md), with its extra columns. pinnquad.Error says file, line and column.")
       .def_readonly("name", &Flight::name)
@@ -203,8 +227,8 @@ void bind_flights(py::module_& module) {
         return py::make_tuple(rows_of(self), own.name, own.trajectory, own.weight, columns_of(own));
       },
       [](const py::tuple& state) {
-        return made(state[0].cast<Numbers>(), state[1].cast<std::string>(), state[2].cast<std::string>(),
-                    state[3].cast<double>(), state[4].cast<Columns>());
+        return made(state[0], state[1].cast<std::string>(), state[2].cast<std::string>(), state[3].cast<double>(),
+                    state[4].cast<Columns>());
       });
   py::tuple names(pinnquad::sample_value_count);
   for (std::size_t i = 0; i < pinnquad::sample_value_count; ++i) {
@@ -226,10 +250,12 @@ void bind_flights(py::module_& module) {
            }),
            py::arg("flights"), "Of flights, which are copied.")
       .def_static(
-          "read", &read, py::arg("paths"), py::kw_only(), py::arg("mapping") = "", py::arg("airframe") = "",
-          py::arg("lag_s") = py::none(), py::arg("keep_saturated") = false,
+          "read", &read, py::arg("paths"), py::kw_only(), py::arg("mapping") = py::none(),
+          py::arg("airframe") = py::none(), py::arg("lag_s") = py::none(), py::arg("keep_saturated") = false,
           "Flights as CSV, a dataset that `pinnquad import` wrote, or logs (ULog, CSV, Crazyflie), whose "
-          "columns get their meaning from a mapping:\na name (px4, betaflight, crazyflie ...) or a TOML file. Of logs: "
+          "columns get their meaning from a mapping:\na name (px4, betaflight, crazyflie ...) or a TOML file; flights "
+          "and "
+          "datasets need None. Of logs: "
           "`lag_s`, from command to motion, is removed (None: estimated),\nand rows with a command at its limit "
           "are left out unless `keep_saturated`.")
       .def(
@@ -245,13 +271,17 @@ void bind_flights(py::module_& module) {
       .def_readonly("notes", &ImportedDataset::notes, "How what the logs lack was computed.")
       .def_property_readonly(
           "rows", [](const ImportedDataset& self) { return self.flights.rows(); }, "Of all flights.")
-      .def("__getitem__", &flight_at, py::arg("index"))
+      .def("__getitem__", &flight_at, py::arg("index").noconvert())
       .def("__len__", [](const ImportedDataset& self) { return self.flights.size(); })
       .def("__repr__", [](const ImportedDataset& self) {
         return "<pinnquad.Dataset: " + std::to_string(self.flights.size()) + " flights, " +
                std::to_string(self.flights.rows()) + " rows>";
       });
   refuse_new(dataset);
+  module.def(
+      "split", &split, py::arg("flights"),
+      "(train, validation, test), three Datasets: the rows that train() parts these flights into. One flight is cut\n"
+      "in time, 60, 20 and 20 %; of three or more the last are held out whole.");
 }
 
 }  // namespace python

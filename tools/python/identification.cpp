@@ -72,10 +72,9 @@ void bind_identification(py::module_& module) {
   py::class_<Identification> identification(module, "Identification", "A vehicle as its flights tell it.");
   identification
       .def_property_readonly(
-          "numbers", [](const Identification& self) { return to_python(programs::numbers_json(self.vehicle.numbers)); },
-          "By name, such as 'thrust_m_s2' and 'roll_effectiveness_rad_s2' (docs/identify.md): a dict of 'value',\n"
-          "'low' and 'high' of the 95 % interval (None: no end), 'unit', and 'excitation': 'good', 'fair', 'weak' or\n"
-          "'not told'; what is not told has a flight to 'fly'.")
+          "_numbers",
+          [](const Identification& self) { return to_python(programs::numbers_json(self.vehicle.numbers)); },
+          "Of numbers.")
       .def_property_readonly("airframe", &Identification::airframe,
                              "An Airframe for simulators, train() and every command; a new one each time.")
       .def_property_readonly(

@@ -23,33 +23,23 @@ std::shared_ptr<BlockModel> load(const std::filesystem::path& path) {
   return std::make_shared<BlockModel>(path.string());
 }
 
-/// Features as they are given: float32 or float64, one motion or a row for each, contiguous. Throws TypeError and
-/// ValueError, one line.
+/// Features as they are given: one motion or a row for each. Throws TypeError and ValueError, one line.
 struct GivenFeatures {
-  GivenFeatures(const BlockModel& model, const py::object& given) : features(model.features().size()) {
-    array = py::array::ensure(given);
-    if (!array) {
-      PyErr_Clear();
-      throw py::type_error("predict: expected an array of numbers");
-    }
-    is_double = py::isinstance<py::array_t<double>>(array);
-    if (!is_double && !py::isinstance<py::array_t<float>>(array)) {
-      throw py::type_error("predict: expected float32 or float64, found " + py::str(array.dtype()).cast<std::string>());
-    }
+  GivenFeatures(const BlockModel& model, const py::object& given)
+      : array(plain_array("predict", given, model.feature_names())),
+        features(model.features().size()),
+        is_double(py::isinstance<py::array_t<double>>(array)) {
     const py::ssize_t dimensions = array.ndim();
     if (dimensions < 1 || dimensions > 2 || array.shape(dimensions - 1) != features) {
       throw py::value_error("predict: expected shape (" + std::to_string(features) + ",) or (rows, " +
                             std::to_string(features) + "), found " + py::str(array.attr("shape")).cast<std::string>());
-    }
-    if ((array.flags() & py::array::c_style) == 0) {
-      throw py::value_error("predict: expected a C-contiguous array; numpy.ascontiguousarray() makes one");
     }
     rows = dimensions == 2 ? static_cast<std::size_t>(array.shape(0)) : 1;
   }
 
   py::array array;
   py::ssize_t features;
-  bool is_double = false;
+  bool is_double;
   std::size_t rows = 0;
 };
 
@@ -111,6 +101,12 @@ void require_finite(const GivenFeatures& given) {
                         ": expected a finite number, found " + std::to_string(x[at]));
 }
 
+/// Commands as a DataFrame where the features are one.
+py::object named_as(const py::object& features, py::object commands) {
+  if (py::isinstance<py::array>(features) || !py::hasattr(features, "columns")) return commands;
+  return py::module_::import("pinnquad.arrays").attr("commands_like")(features, commands);
+}
+
 py::object predict(const BlockModel& model, const py::object& features, bool guarded) {
   const GivenFeatures given(model, features);
   if (!guarded) given.is_double ? require_finite<double>(given) : require_finite<float>(given);
@@ -129,8 +125,8 @@ py::object predict(const BlockModel& model, const py::object& features, bool gua
       given.is_double ? answer(own, static_cast<const double*>(x), given.rows, u, said, watch)
                       : answer(own, static_cast<const float*>(x), given.rows, u, said, watch);
     }
-    if (!guarded) return std::move(commands);
-    return py::make_tuple(commands,
+    if (!guarded) return named_as(features, std::move(commands));
+    return py::make_tuple(named_as(features, commands),
                           one ? py::module_::import("pinnquad").attr("Status")(said[0]) : py::object(statuses));
   });
 }
@@ -199,8 +195,11 @@ void bind_models(py::module_& module) {
           "predict", [](const BlockModel& self, const py::object& x) { return predict(self, x, false); },
           py::arg("features"),
           "Commands, 0 to 1, of features in physical units: (features,) gives (4,), (rows, features) gives (rows, 4).\n"
-          "float32 or float64, C-contiguous; answers are of the block's own scalar. A number that is not finite is a\n"
-          "ValueError with its row. The envelope is not looked at: predict_guarded() does.")
+          "A DataFrame or a structured array is read by feature_names; of a DataFrame the answer is one. Answers are "
+          "of\n"
+          "the block's own scalar. A number that is not finite is a ValueError with its row. The envelope is not "
+          "looked\n"
+          "at: predict_guarded() does.")
       .def(
           "predict_guarded", [](const BlockModel& self, const py::object& x) { return predict(self, x, true); },
           py::arg("features"),
@@ -234,15 +233,9 @@ void bind_models(py::module_& module) {
       [](const py::bytes& bytes) {
         return std::make_shared<BlockModel>("a pickled block", static_cast<std::string>(bytes));
       });
-  module.def(
-      "evaluate", &evaluate, py::arg("model"), py::arg("flights"), py::arg("rows") = "all",
-      "Judges a model on a Flight or a Dataset: the dict that `pinnquad evaluate --json` prints. rows 'test': those\n"
-      "that train() holds out of these flights.");
-  module.def(
-      "certify", &certify, py::arg("model"), py::arg("seconds") = 5.0, py::arg("seed") = 1,
-      "What is proven of the signs of a model's slopes, or two motions that refute it: the dict that\n"
-      "`pinnquad certify --json` prints; 'verdict' is 'proven', 'counterexample' or 'neither'. `seconds` of the\n"
-      "processor are spent on the search where nothing is proven.");
+  module.def("_evaluate", &evaluate, py::arg("model"), py::arg("flights"), py::arg("rows"), "Of pinnquad.evaluate().");
+  module.def("_certify", &certify, py::arg("model"), py::arg("seconds"), py::arg("seed").noconvert(),
+             "Of pinnquad.certify().");
 }
 
 }  // namespace python

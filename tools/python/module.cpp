@@ -57,6 +57,19 @@ void refuse_new(py::handle type) {
   PyType_Modified(bound);
 }
 
+py::array plain_array(const char* what, const py::object& given, const std::vector<std::string>& names) {
+  if (Py_TYPE(given.ptr()) == py::detail::npy_api::get().PyArray_Type_) {
+    const auto array = py::reinterpret_borrow<py::array>(given);
+    const bool plain = py::isinstance<py::array_t<double>>(array) || py::isinstance<py::array_t<float>>(array);
+    if (plain && (array.flags() & py::array::c_style) != 0) return array;
+  }
+  return py::module_::import("pinnquad.arrays").attr("plain")(what, given, names).cast<py::array>();
+}
+
+py::array_t<double> doubles(const char* what, const py::object& given, const std::vector<std::string>& names) {
+  return py::array_t<double, py::array::c_style | py::array::forcecast>(plain_array(what, given, names));
+}
+
 py::array view_of(const double* numbers, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
                   py::handle owner) {
   py::array array(py::dtype::of<double>(), std::move(shape), std::move(strides), numbers, owner);
@@ -115,4 +128,5 @@ PYBIND11_MODULE(_core, module) {
   python::bind_training(module);
   python::bind_conversion(module);
   python::bind_identification(module);
+  python::give_text_signatures(module);
 }

@@ -23,9 +23,32 @@ namespace {
 using namespace pinnquad;
 using Engine = std::mt19937_64;
 
-/// One of the pilots that Python can name.
+/// A callable of Python: pilot(time_s, position_m, velocity_m_s) gives the velocity wanted (NED), or it and a yaw rate.
+struct CalledPilot {
+  py::object pilot;
+
+  SetPoint<double> operator()(const State<double>& state, double time_s) const {
+    const py::gil_scoped_acquire with_gil;
+    const py::object wanted = pilot(time_s, array_of(state.position_m), array_of(state.velocity_m_s));
+    SetPoint<double> result;
+    try {
+      const bool with_yaw = py::isinstance<py::tuple>(wanted) && py::len(wanted) == 2;
+      const auto velocity = (with_yaw ? py::object(wanted[py::int_(0)]) : wanted).cast<Triple>();
+      if (with_yaw) result.yaw_rate_rad_s = wanted[py::int_(1)].cast<double>();
+      result.velocity_m_s = Vector3<double>(velocity[0], velocity[1], velocity[2]);
+      checked("pilot: its velocity", velocity);
+      checked("pilot: its yaw rate", std::abs(result.yaw_rate_rad_s), 0);
+    } catch (const py::cast_error&) {
+      throw py::type_error("pilot: expected a velocity (three numbers, NED, m/s) or (velocity, yaw rate), found " +
+                           py::repr(wanted).cast<std::string>());
+    }
+    return result;
+  }
+};
+
+/// One of the pilots that Python can name, or a callable.
 struct ChosenPilot {
-  std::variant<RandomPilot<Engine>, NearGroundPilot<Engine>, SteadyPilot> pilot;
+  std::variant<RandomPilot<Engine>, NearGroundPilot<Engine>, SteadyPilot, CalledPilot> pilot;
 
   SetPoint<double> operator()(const State<double>& state, double time_s) {
     return std::visit([&](auto& chosen) -> SetPoint<double> { return chosen(state, time_s); }, pilot);
@@ -41,7 +64,7 @@ struct Choices {
   std::uint64_t seed;
   SwitchedEffects effects;
   py::object effects_of_python;
-  std::string pilot;
+  py::object pilot;  ///< its name, or a callable
   Triple start_m;
   double max_speed_m_s;
   RecorderErrors errors;
@@ -59,17 +82,22 @@ FlightPlan plan_of(const Choices& choices) {
 
 ChosenPilot pilot_of(const Choices& choices, const SwitchedQuadrotor& vehicle) {
   checked("max_speed_m_s", choices.max_speed_m_s, 0.5);
-  if (choices.pilot == "hover") return {SteadyPilot{}};
+  if (!py::isinstance<py::str>(choices.pilot)) {
+    if (PyCallable_Check(choices.pilot.ptr()) == 0) throw py::type_error("pilot must be a name or a callable");
+    return {CalledPilot{choices.pilot}};
+  }
+  const auto name = choices.pilot.cast<std::string>();
+  if (name == "hover") return {SteadyPilot{}};
   const Vector3<double> start = plan_of(choices).start_m;
   const double ground_z_m = vehicle.site().ground_z_m;
-  if (choices.pilot == "random") {
+  if (name == "random") {
     return {RandomPilot<Engine>(Engine(choices.seed), pilot_style(vehicle, start, choices.max_speed_m_s), ground_z_m)};
   }
-  if (choices.pilot == "near_ground") {
+  if (name == "near_ground") {
     return {NearGroundPilot<Engine>(Engine(choices.seed), near_ground_style(vehicle, start, choices.max_speed_m_s),
                                     ground_z_m)};
   }
-  refuse_name("pilot", choices.pilot, pilots);
+  refuse_name("pilot", name, pilots);
 }
 
 /// The noise has an engine of its own: with and without noise the same seed flies the same flight.
@@ -95,7 +123,8 @@ class PythonSimulator {
     run(seconds, {}, [this] { return running_.tick(); });
   }
 
-  void step(const py::array_t<double, py::array::c_style | py::array::forcecast>& commands, double seconds) {
+  void step(const py::object& given, double seconds) {
+    const py::array_t<double> commands = doubles("commands", given);
     Commands<double> u{};
     if (commands.ndim() != 1 || static_cast<std::size_t>(commands.size()) != u.size()) {
       throw py::value_error("commands must be four numbers, one per rotor");
@@ -176,7 +205,7 @@ class PythonSimulator {
     errors.command_latency_s = state[8].cast<double>();
     errors.command_jitter_s = state[9].cast<double>();
     PythonSimulator simulator({state[0].cast<NamedAirframe>(), state[1].cast<std::uint64_t>(), effects_of(state[2]),
-                               state[2].cast<py::object>(), state[3].cast<std::string>(), state[4].cast<Triple>(),
+                               state[2].cast<py::object>(), state[3].cast<py::object>(), state[4].cast<Triple>(),
                                state[5].cast<double>(), errors});
     for (const py::handle done : state[10]) {
       const auto deed = done.cast<std::tuple<std::uint64_t, std::optional<Commands<double>>, py::object>>();
@@ -303,6 +332,13 @@ void take(py::handle effects, const char* name, Value& value) {
   }
 }
 
+/// The same of a whole number: pybind11 would take 2.7 of NumPy as 2.
+template <class Value>
+void take_whole(py::handle effects, const char* name, Value& value) {
+  py::module_::import("pinnquad.arrays").attr("whole")(std::string("effects: ") + name, effects.attr(name));
+  take(effects, name, value);
+}
+
 }  // namespace
 
 SwitchedEffects effects_of(py::handle given) {
@@ -334,7 +370,7 @@ SwitchedEffects effects_of(py::handle given) {
   for (std::size_t i = 0; i < 3 && gusty; ++i) gust.direction[i] = gust_m_s[i] / gust.amplitude_m_s;
   const double turbulence_m_s = number("turbulence_m_s", 0), height_m = number("turbulence_height_m", 0);
   std::uint64_t seed = 1;
-  take(given, "turbulence_seed", seed);
+  take_whole(given, "turbulence_seed", seed);
   std::string ground_effect;
   take(given, "ground_effect", ground_effect);
   if (std::find(ground_effects.begin(), ground_effects.end(), ground_effect) == ground_effects.end()) {
@@ -347,7 +383,7 @@ SwitchedEffects effects_of(py::handle given) {
   battery.start_charge = number("battery_charge", 0);
   battery.cell_resistance_ohm_Ah = number("battery_resistance_ohm_Ah", 0);
   RotorFault fault;
-  take(given, "fault_rotor", fault.rotor);
+  take_whole(given, "fault_rotor", fault.rotor);
   fault.share = number("fault_share", 0);
   fault.from_s = number("fault_from_s", 0);
   const Payload payload{number("payload_kg", 0), number("payload_from_s", 0)};
@@ -399,7 +435,7 @@ void bind_simulators(py::module_& module) {
       "units. The same seed gives the same bits.");
   simulator
       .def(py::init([](const py::object& airframe, std::uint64_t seed, const py::object& effects,
-                       const std::string& pilot, const Triple& start_m, double max_speed_m_s, double gyro_noise_rad_s,
+                       const py::object& pilot, const Triple& start_m, double max_speed_m_s, double gyro_noise_rad_s,
                        double derivative_interval_s, double command_latency_s, double command_jitter_s) {
              const py::object chosen =
                  effects.is_none() ? py::module_::import("pinnquad.effects").attr("Effects")() : effects;
@@ -411,7 +447,7 @@ void bind_simulators(py::module_& module) {
              return new PythonSimulator(
                  {airframe_of(airframe), seed, effects_of(chosen), chosen, pilot, start_m, max_speed_m_s, errors});
            }),
-           py::arg("airframe") = PaperQuadrotor::name, py::arg("seed") = 1, py::kw_only(),
+           py::arg("airframe") = PaperQuadrotor::name, py::arg("seed").noconvert() = 1, py::kw_only(),
            py::arg("effects") = py::none(), py::arg("pilot") = "random", py::arg("start_m") = triple(plan.start_m),
            py::arg("max_speed_m_s") = PilotStyle{}.max_speed_m_s,
            py::arg("gyro_noise_rad_s") = no_errors.gyro_noise_rad_s,
@@ -421,7 +457,10 @@ void bind_simulators(py::module_& module) {
            "airframe        an Airframe, one of airframe_names(), or a TOML file\n"
            "seed            of the pilot and, apart from it, of the recorder's noise\n"
            "effects         Effects; set_effects() changes them in flight\n"
-           "pilot           'random': agile, 10 to 60 m above ground; 'near_ground': 0.1 to 2 m; 'hover'\n"
+           "pilot           'random': agile, 10 to 60 m above ground; 'near_ground': 0.1 to 2 m; 'hover'; or a "
+           "callable,\n"
+           "                asked every 2 ms: pilot(time_s, position_m, velocity_m_s) gives the velocity wanted (NED,\n"
+           "                m/s), or (velocity, yaw rate in rad/s): a trajectory of one's own\n"
            "start_m         NED, m; the ground is at z = 0.877 m\n"
            "max_speed_m_s   that the pilot asks for\n"
            "gyro_noise_rad_s, derivative_interval_s, command_latency_s, command_jitter_s\n"

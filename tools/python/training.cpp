@@ -222,24 +222,31 @@ void bind_training(py::module_& module) {
   module.def(
       "train",
       [](const py::object& flights, const py::object& airframe, const std::vector<std::string>& models, int seeds,
-         int epochs, std::uint64_t seed, const std::vector<std::string>& hold_out, const std::optional<bool>& altitude,
-         const std::string& slopes, const std::optional<double>& lag_s, unsigned threads) {
+         const std::optional<int>& epochs, std::uint64_t seed, const std::vector<std::string>& hold_out,
+         const std::optional<bool>& altitude, const std::string& slopes, const std::optional<double>& lag_s,
+         const std::optional<int>& threads) {
         if (slopes != "learned" && slopes != "pinned") {
           refuse_name("slopes", slopes, std::array<const char*, 2>{"learned", "pinned"});
         }
         if (seeds < 1 || seeds > static_cast<int>(pinnquad::most_pairs)) {
           throw py::value_error("seeds must be 1 to " + std::to_string(pinnquad::most_pairs));
         }
-        if (epochs < 0 || epochs > 100000) throw py::value_error("epochs must be 0 (what suits) to 100000");
-        if (threads > 1024) throw py::value_error("threads must be 0 (all cores) to 1024");
+        if (epochs && (*epochs < 1 || *epochs > 100000)) {
+          throw py::value_error("epochs must be 1 to 100000, or None for what suits");
+        }
+        if (threads && (*threads < 1 || *threads > 1024)) {
+          throw py::value_error("threads must be 1 to 1024, or None for all cores");
+        }
         if (lag_s) checked("lag_s", std::abs(*lag_s), 0);
         return train(flights, airframe,
-                     {models, hold_out, seeds, epochs, seed, altitude, slopes == "pinned", lag_s, threads});
+                     {models, hold_out, seeds, epochs.value_or(0), seed, altitude, slopes == "pinned", lag_s,
+                      static_cast<unsigned>(threads.value_or(0))});
       },
       py::arg("flights"), py::arg("airframe") = pinnquad::PaperQuadrotor::name, py::kw_only(),
-      py::arg("models") = programs::flight_models, py::arg("seeds") = 5, py::arg("epochs") = 0, py::arg("seed") = 1,
+      py::arg("models") = programs::flight_models, py::arg("seeds").noconvert() = 5,
+      py::arg("epochs").noconvert() = py::none(), py::arg("seed").noconvert() = 1,
       py::arg("hold_out") = std::vector<std::string>{}, py::arg("altitude") = py::none(), py::arg("slopes") = "learned",
-      py::arg("lag_s") = py::none(), py::arg("threads") = 0,
+      py::arg("lag_s") = py::none(), py::arg("threads").noconvert() = py::none(),
       "As `pinnquad train FLIGHTS`, on flights in memory, and with its bytes.\n\n"
       "flights    a Dataset, a Flight or a list of them; one: its last fifth is held out, of three or more the last\n"
       "airframe   what flew: an Airframe, a name, or a TOML file\n"
@@ -247,7 +254,7 @@ void bind_training(py::module_& module) {
       "networks\n"
       "           'paper_vanilla' ...: paper, best or small before vanilla, physics_informed, constant_weight or "
       "pearson\n"
-      "seeds, epochs, seed, threads   fits per kind; 0 epochs: what suits; the first seed; 0: all cores\n"
+      "seeds, epochs, seed, threads   fits per kind; None: the epochs that suit; the first seed; None: all cores\n"
       "hold_out   names of flights or trajectories that judge, in place of the last\n"
       "altitude   is the structured model shown it? None: where the validation rows gain by it\n"
       "slopes     'learned', or 'pinned' to the airframe's in hover\n"

@@ -9,6 +9,7 @@
 
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
 #include "pinnquad/simulation/simulator.hpp"
 #include "python/effects.hpp"
 #include "python/vehicle_steps.hpp"
@@ -132,21 +133,22 @@ class Vehicles {
     }
   }
 
-  py::array_t<std::uint8_t> step(const py::array& commands, double seconds) {
+  /// Own forces are Strang's splitting: half of their change of velocity before the call's steps, half after them.
+  py::array_t<std::uint8_t> step(const py::object& given, double seconds, const py::object& force_N,
+                                 const py::object& torque_N_m) {
     require_idle();
-    if (!py::isinstance<py::array_t<double>>(commands) || commands.ndim() != 2 ||
-        static_cast<std::size_t>(commands.shape(0)) != size() || commands.shape(1) != 4) {
-      throw py::value_error("commands must be float64 of shape (" + std::to_string(size()) + ", 4), found " +
-                            py::str(commands.dtype()).cast<std::string>() + " of " +
+    const py::array_t<double> commands = doubles("commands", given);
+    if (commands.ndim() != 2 || static_cast<std::size_t>(commands.shape(0)) != size() || commands.shape(1) != 4) {
+      throw py::value_error("commands must be numbers of shape (" + std::to_string(size()) + ", 4), found " +
                             py::str(commands.attr("shape")).cast<std::string>());
-    }
-    if ((commands.flags() & py::array::c_style) == 0) {
-      throw py::value_error("commands must be C-contiguous; numpy.ascontiguousarray() makes them so");
     }
     const double steps = std::floor(checked("seconds", seconds, 0) / physics_step_s_ + 0.5);
     py::array_t<std::uint8_t> statuses(static_cast<py::ssize_t>(size()));
-    const auto* u = static_cast<const double*>(commands.data());
+    const double* const u = commands.data();
     std::uint8_t* const said = statuses.mutable_data();
+    const std::vector<Push> pushes = pushes_of(force_N, torque_N_m, steps * physics_step_s_ / 2);
+    const std::vector<OneState> before = pushes.empty() ? std::vector<OneState>{} : states_;
+    push(pushes);
     {
       const Busy busy(busy_);
       const py::gil_scoped_release without_gil;
@@ -156,6 +158,10 @@ class Vehicles {
       } else {
         run(u, steps, said, watch);
       }
+    }
+    push(pushes);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      if (said[i] != 0) states_[i] = before[i];
     }
     return statuses;
   }
@@ -186,6 +192,53 @@ class Vehicles {
   const py::object& effects() const { return effects_; }
 
  private:
+  /// Changes that a force and a torque make in half a call.
+  struct Push {
+    Vector3<double> velocity_m_s, body_rates_rad_s;
+  };
+
+  std::vector<Push> pushes_of(const py::object& force_N, const py::object& torque_N_m, double seconds) const {
+    if (force_N.is_none() && torque_N_m.is_none()) return {};
+    const std::vector<Vector3<double>> forces = vectors("force_N", force_N),
+                                       torques = vectors("torque_N_m", torque_N_m);
+    const auto payload_kg = effects_.attr("payload_kg").cast<double>();
+    const auto payload_from_s = effects_.attr("payload_from_s").cast<double>();
+    std::vector<Push> pushes(size());
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Airframe<double>& airframe = airframes_[airframes_.size() == 1 ? 0 : i].value;
+      const double mass_kg = airframe.mass_kg + (states_[i].time_s >= payload_from_s ? payload_kg : 0.0);
+      pushes[i] = {forces[i] * (seconds / mass_kg), inertia_solved<double>(airframe, torques[i] * seconds)};
+    }
+    return pushes;
+  }
+
+  void push(const std::vector<Push>& pushes) {
+    for (std::size_t i = 0; i < pushes.size(); ++i) {
+      states_[i].body.velocity_m_s += pushes[i].velocity_m_s;
+      states_[i].body.body_rates_rad_s += pushes[i].body_rates_rad_s;
+    }
+  }
+
+  /// A row for each vehicle, or one for all; zeros for None.
+  std::vector<Vector3<double>> vectors(const char* name, const py::object& given) const {
+    std::vector<Vector3<double>> result(size(), Vector3<double>::Zero());
+    if (given.is_none()) return result;
+    const py::array_t<double> rows = doubles(name, given);
+    const bool one = rows.ndim() == 1 && rows.shape(0) == 3;
+    if (!one && (rows.ndim() != 2 || static_cast<std::size_t>(rows.shape(0)) != size() || rows.shape(1) != 3)) {
+      throw py::value_error(std::string(name) + " must be (3,) or (" + std::to_string(size()) + ", 3), found " +
+                            py::str(rows.attr("shape")).cast<std::string>());
+    }
+    for (std::size_t i = 0; i < size(); ++i) {
+      const double* const v = rows.data() + (one ? 0 : 3 * i);
+      if (!is_finite(v[0]) || !is_finite(v[1]) || !is_finite(v[2])) {
+        throw py::value_error(std::string(name) + ", vehicle " + std::to_string(i) + ": expected finite numbers");
+      }
+      result[i] = Vector3<double>(v[0], v[1], v[2]);
+    }
+    return result;
+  }
+
   static constexpr auto no_vehicle = static_cast<std::size_t>(-1);
 
   /// The vehicle of another airframe.
@@ -214,7 +267,8 @@ class Vehicles {
       for (std::size_t i = 0; i < size(); ++i) vehicles.push_back(i);
       return vehicles;
     }
-    const auto mask = py::array_t<bool, py::array::c_style>::ensure(which);
+    const py::object plain = py::module_::import("pinnquad.arrays").attr("unmasked")("which", which);
+    const auto mask = py::array_t<bool, py::array::c_style>::ensure(plain);
     if (!mask || mask.ndim() != 1 || static_cast<std::size_t>(mask.size()) != size()) {
       PyErr_Clear();
       throw py::value_error("which must be " + std::to_string(size()) + " truth values, one per vehicle");
@@ -301,8 +355,8 @@ void bind_vehicles(py::module_& module) {
                 effects.is_none() ? py::module_::import("pinnquad.effects").attr("Effects")() : effects;
             return new Vehicles(count, airframes_of(airframe, count), chosen, physics_step_s);
           }),
-          py::arg("count"), py::arg("airframe") = PaperQuadrotor::name, py::kw_only(), py::arg("effects") = py::none(),
-          py::arg("physics_step_s") = FlightPlan{}.physics_step_s,
+          py::arg("count").noconvert(), py::arg("airframe") = PaperQuadrotor::name, py::kw_only(),
+          py::arg("effects") = py::none(), py::arg("physics_step_s") = FlightPlan{}.physics_step_s,
           "They begin in hover at (0, 0, -35) m, NED. The airframe is one for all, or a sequence of `count`, one each.")
       .def(
           "set_airframe", &Vehicles::set_airframe, py::arg("airframe"), py::arg("which") = py::none(),
@@ -312,9 +366,14 @@ void bind_vehicles(py::module_& module) {
            py::arg("position_m") = triple(FlightPlan{}.start_m),
            "Level, at rest, rotors in hover at a place, NED, m: all, or those where `which` (truth values) says so.")
       .def("step", &Vehicles::step, py::arg("commands"), py::arg("seconds") = FlightPlan{}.control_period_s(),
-           "Holds the commands (vehicles x 4, float64, C-contiguous) for so long, in RK4 steps of physics_step_s. A\n"
+           py::kw_only(), py::arg("force_N") = py::none(), py::arg("torque_N_m") = py::none(),
+           "Holds the commands (vehicles x 4) for so long, in RK4 steps of physics_step_s. A\n"
            "Status per vehicle: one that is not ok leaves its vehicle before the step that was refused. The ground\n"
-           "stops nobody: see Effects.ground_contact. Other threads run meanwhile.")
+           "stops nobody: see Effects.ground_contact. Other threads run meanwhile.\n"
+           "force_N (NED) and torque_N_m (FRD, about the centre of gravity): an effect of one's own, vehicles x 3 or\n"
+           "one for all, held over the call. Half of its change of velocity acts before the steps, half after them:\n"
+           "exact for a constant force, of second order in `seconds` where the force follows the state. With one, a\n"
+           "status that is not ok leaves its vehicle as it was before the call.")
       .def(
           "hover_commands",
           [](const Vehicles& self, const Triple& place_m) {

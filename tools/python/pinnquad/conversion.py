@@ -6,12 +6,12 @@ import os
 from . import _core, networks
 
 
-def convert(source, features, out, *, name="TrainedQuadModel", prefix="", output="", double=False):
+def convert(source, features, out, *, name="TrainedQuadModel", prefix=None, output=None, double=False):
     """Writes model.hpp and model.block into the folder `out`, and returns the Model.
 
     `source`: a torch.nn.Module, a state_dict or flax parameters, a fitted scikit-learn MLPRegressor, or the path of a
     network (.onnx, .safetensors). `features`: the path of features.toml, which says what its numbers mean. `prefix`: of
-    tensors by name those that begin with it. `output`: one of several outputs. `double`: numbers in double.
+    tensors by name those that begin with it; None: all. `output`: the name of one of several outputs. `double`: numbers in double.
     Raises pinnquad.Error, one line, for a network that the library has no layers for, or whose answers differ.
     """
     in_memory = not isinstance(source, (str, os.PathLike))
@@ -20,7 +20,7 @@ def convert(source, features, out, *, name="TrainedQuadModel", prefix="", output
     def answer(request):
         return json.dumps(networks.answer(json.loads(request), source if in_memory else None))
 
-    _core._convert(words, features, out, name, prefix, output, double, answer)
+    _core._convert(words, features, out, name, prefix or "", output or "", double, answer)
     return _core.Model.load(os.path.join(os.fspath(out), "model.block"))
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The flights of the paper, and a harder one, as `pinnquad fly` flies them: the same seed, the same bits."""
 from ._core import Simulator
+from .arrays import whole
 from .effects import Effects
 
 _NEAR_GROUND_M = (0.0, 0.0, 0.877 - 0.2)
@@ -26,5 +27,5 @@ def fly(flight="d1", *, airframe="paper_quadrotor", seed=1, rows=None, **simulat
     if start_m is not None:
         simulator.setdefault("start_m", start_m)
     running = Simulator(airframe, seed, effects=simulator.pop("effects", effects), pilot=pilot, **simulator)
-    running.fly((most if rows is None else rows) * 0.05)
+    running.fly((most if rows is None else whole("rows", rows)) * 0.05)
     return running.take_recording()

@@ -1,25 +1,47 @@
 # SPDX-License-Identifier: MIT
-"""Box of gymnasium, or, where gymnasium is not installed, one that has what a program asks of it."""
+"""Base classes and spaces of gymnasium, or, where it is not installed, ones that have what a program asks of them."""
 import numpy as np
 
 try:
-    from gymnasium import Env
+    from gymnasium import Env, register
     from gymnasium.spaces import Box
+    from gymnasium.vector import AutoresetMode, VectorEnv
     from gymnasium.vector.utils import batch_space
+
+    SAME_STEP = AutoresetMode.SAME_STEP
 except ImportError:
+    SAME_STEP = "SameStep"
+
+    def register(id, **entry_points):
+        """There is no registry."""
 
     class Env:
-        """Stands in for gymnasium.Env."""
+        """Replaces gymnasium.Env."""
 
         metadata = {"render_modes": []}
-        render_mode = None
+        render_mode = spec = _np_random = None
 
         @property
         def unwrapped(self):
             return self
 
+        @property
+        def np_random(self):
+            """The generator of every draw."""
+            if self._np_random is None:
+                self._np_random = np.random.default_rng()
+            return self._np_random
+
+        def reset(self, *, seed=None, options=None):
+            """A seed makes the draws of all that follow."""
+            if seed is not None:
+                self._np_random = np.random.default_rng(seed)
+
         def close(self):
             """Nothing is open."""
+
+    class VectorEnv(Env):
+        """Replaces gymnasium.vector.VectorEnv."""
 
     class Box:
         """Arrays between `low` and `high`, of one shape and dtype."""

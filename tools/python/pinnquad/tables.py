@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ._core import Dataset, Error, Flight
+from .arrays import by_name, is_frame
 
 _FRAMES = {"world": ("ned", "enu"), "body": ("frd", "flu")}
 _ORDERS = ("px4", "betaflight", "crazyflie")
@@ -54,19 +55,23 @@ def _imported(columns, mapping, name, **settings):
             raise type(error)(told) from None
 
 
-def from_dataframe(frame, mapping, *, name="table", airframe="", lag_s=None, keep_saturated=False):
+def from_dataframe(frame, mapping=None, *, name="table", airframe=None, lag_s=None, keep_saturated=False):
     """The Dataset of a table in memory: a pandas or polars DataFrame, or a dict of arrays, by column name.
 
-    mapping: what the columns mean, as of `pinnquad import`: a ready one's name, a TOML file, or the TOML text itself.
-    Missing cells are NaN or None. A frame that is a join of several (a row a message) is resampled column by column.
-    The index is no column: reset_index() makes it one. Raises pinnquad.Error, one line.
+    mapping: what the columns mean, as of `pinnquad import`: a ready one's name, a TOML file, or the TOML text itself;
+    None: the columns are Flight.column_names (and others, which are kept where they hold numbers), as of Flight.to_frame().
+    Missing cells are NaN, None or masked. A frame that is a join of several (a row a message) is resampled column by
+    column. The index is no column: reset_index() makes it one. Raises ValueError or pinnquad.Error, one line.
     """
+    if mapping is None:
+        return _own_columns(frame, name)
     names = list(frame.keys() if isinstance(frame, dict) else getattr(frame, "columns", ()))
     if not names:
         raise ValueError("expected a DataFrame or a dict of arrays with columns, found none")
     columns = {}
     for key in names:
-        values = np.asarray(frame[key])
+        values = frame[key]
+        values = values.astype(float).filled(np.nan) if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
         if str(key) in columns or values.ndim != 1:
             raise ValueError(f"column {key!r}: expected one column of that name, found several")
         if values.dtype.kind in "mM":
@@ -86,9 +91,22 @@ def from_dataframe(frame, mapping, *, name="table", airframe="", lag_s=None, kee
     return _imported(columns, os.fspath(mapping), name, airframe=airframe, lag_s=lag_s, keep_saturated=keep_saturated)
 
 
+def _own_columns(frame, name):
+    """The flight whose columns have the names of Flight.column_names."""
+    rows = by_name("the table", frame, Flight.column_names)
+    if rows is None:
+        raise ValueError("expected a DataFrame or a dict of arrays with columns, found none")
+    extra = []
+    for key in (frame.columns if is_frame(frame) else frame):
+        values = frame[key]
+        if str(key) not in Flight.column_names and np.asarray(values).dtype.kind in "fiu":
+            extra.append((str(key), "", np.ma.filled(np.ma.asarray(values, float), np.nan).tolist()))
+    return Dataset(Flight(rows, name, columns=extra))
+
+
 def from_arrays(time_s, *, world, body, body_rates_rad_s, commands, motor_order, euler_rad=None, quaternion=None,
                 quaternion_order=None, specific_force_m_s2=None, velocity_m_s=None, velocity_axes=None, position_m=None,
-                altitude_m=None, columns=(), name="flight", airframe="", lag_s=None, keep_saturated=False):
+                altitude_m=None, columns=(), name="flight", airframe=None, lag_s=None, keep_saturated=False):
     """The Flight of arrays of N rows, SI units, whose frames and orders are said.
 
     world: 'ned' or 'enu', of attitude, velocity and position; body: 'frd' or 'flu'. euler_rad: N x 3, roll, pitch, yaw;
