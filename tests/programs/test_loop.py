@@ -67,8 +67,8 @@ def test_model_of_a_users_own(pinnquad, own_here):
     assert model["declined"]["warming_up"] == 25
     # trained for 60 epochs, it answers the feedback by itself, and keeps the vehicle
     assert model["status"] == "ok" and model["largest_error_m"] < looped["half_length_m"], model
-    said = pinnquad(OWN).out
-    assert "battery_voltage 15.2 V" in said and re.search(r"stood in for the model: .*\b25 warming_up", said), said
+    said = pinnquad(OWN).flat
+    assert "battery_voltage 15.2 V" in said and re.search(r"flew in place of the model: .*\b25 warming_up", said), said
     # what is held matters; of a voltage lower than any that was trained the lowest is taken
     assert flown_by(pinnquad, "loop model.hpp --column battery_voltage=14.7")["model"]["rmse_m"] != model["rmse_m"]
     low, lower = (flown_by(pinnquad, f"loop model.hpp --column battery_voltage={volts}")["model"] for volts in (9, 3))
@@ -163,7 +163,7 @@ def test_a_bias_at_its_bound_is_said(pinnquad):
     """Adaptive, of a vehicle that hovers at 0.72 and is told so, in a payload of 20 %: more than 0.8 of the sum."""
     replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "heavy.toml", ("^mass_kg = .*", "mass_kg = 2.05"))
     words = (f"loop {MODELS}/structured_quadrotor.block --controllers=adaptive --conditions=payload",)
-    said = pinnquad(*words, "--airframe=heavy.toml").out
+    said = pinnquad(*words, "--airframe=heavy.toml").flat
     assert "warning: adaptive, payload: its bias stood at its bound" in said, said
     assert "warning" not in pinnquad(*words).out
 
