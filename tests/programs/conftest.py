@@ -20,7 +20,7 @@ import pytest
 SOURCE = Path(__file__).resolve().parents[2]
 PATIENCE_S = 300  # no program of a test works as long
 # as a run of several seconds prints them, a line each where nobody watches
-PROGRESS = re.compile(r"[^:]+: [ \d]{3} %(, \d+ s left)?")
+PROGRESS = re.compile(r"[^:]+: [ \d]{3} %(, \d+ (s|min) left)?")
 
 
 def pytest_addoption(parser):
@@ -55,6 +55,11 @@ class Done:
         assert shares == sorted(shares), f"progress runs backwards: {shares}"
         if self.err and not self.err.endswith("\n"):
             self.lines.append(self.err[self.err.rfind("\n") + 1 :])
+
+    @property
+    def flat(self):
+        """Standard output without the breaks of its lines."""
+        return " ".join(self.out.split())
 
     def __repr__(self):
         return f"{self.words}: exit code {self.code}; said: {self.out[-2000:]}{self.err[-2000:]}"

@@ -69,9 +69,9 @@ def test_worse_than_the_mean(pinnquad, good):
     assert not {"model.hpp", "model.block", "replay.txt"} & set(os.listdir("poor"))
     report = report_of("poor")
     assert report["verdict"]["worse_than_mean"] is True and report["exported"] is False
-    assert "\n  DO NOT FLY: structured is worse than the mean" in pinnquad(train.format("poor") + " --allow-poor").out
+    assert "verdict do not fly: structured is worse than the mean" in pinnquad(train.format("poor") + " --allow-poor").flat
     header = Path("poor/model.hpp").read_text()
-    assert re.search("^// DO NOT FLY: .*worse than the mean", "\n".join(header.split("\n")[:3]), re.M)
+    assert re.search("^// do not fly: .*worse than the mean", "\n".join(header.split("\n")[:3]), re.M)
     assert "bool worse_than_mean = true;" in header and report_of("poor")["exported"] is True
     # one that is refused where another was exported: what there is old is named
     shutil.copytree("poor", "stale")

@@ -58,7 +58,8 @@ def own_here(own, work):
 
 def test_model_of_a_users_own(pinnquad, own_here):
     rmse, largest, answered, asked = map(float, Program("./compiled")().out.split())
-    looped = flown_by(pinnquad, OWN)
+    looped = flown_by(pinnquad, OWN, code=1)  # further off than no model: not to be flown
+    assert looped["verdict"]["may_fly"] == "no" and "off the path" in looped["verdict"]["why"]
     model = looped["model"]
     assert looped["columns"] == {"battery_voltage": 15.2}
     assert abs(model["rmse_m"] - rmse) < 1e-5 and abs(model["largest_error_m"] - largest) < 1e-5, (rmse, largest)
@@ -67,14 +68,14 @@ def test_model_of_a_users_own(pinnquad, own_here):
     assert model["declined"]["warming_up"] == 25
     # trained for 60 epochs, it answers the feedback by itself, and keeps the vehicle
     assert model["status"] == "ok" and model["largest_error_m"] < looped["half_length_m"], model
-    said = pinnquad(OWN).out
-    assert "battery_voltage 15.2 V" in said and re.search(r"stood in for the model: .*\b25 warming_up", said), said
+    said = pinnquad(OWN, code=1).flat
+    assert "battery_voltage 15.2 V" in said and re.search(r"flew in place of the model: .*\b25 warming_up", said), said
     # what is held matters; of a voltage lower than any that was trained the lowest is taken
-    assert flown_by(pinnquad, "loop model.hpp --column battery_voltage=14.7")["model"]["rmse_m"] != model["rmse_m"]
-    low, lower = (flown_by(pinnquad, f"loop model.hpp --column battery_voltage={volts}")["model"] for volts in (9, 3))
+    assert flown_by(pinnquad, "loop model.hpp --column battery_voltage=14.7", code=(0, 1))["model"]["rmse_m"] != model["rmse_m"]
+    low, lower = (flown_by(pinnquad, f"loop model.hpp --column battery_voltage={volts}", code=(0, 1))["model"] for volts in (9, 3))
     assert low == lower and low["declined"] == model["declined"]
     # the vehicle's own battery in its place
-    on_battery = flown_by(pinnquad, "loop model.hpp --battery 4x5000 --battery-charge 80")
+    on_battery = flown_by(pinnquad, "loop model.hpp --battery 4x5000 --battery-charge 80", code=(0, 1))
     assert 14 < on_battery["columns"]["battery_voltage"] < 16 and on_battery["model"]["status"] == "ok", on_battery
 
 
@@ -163,7 +164,7 @@ def test_a_bias_at_its_bound_is_said(pinnquad):
     """Adaptive, of a vehicle that hovers at 0.72 and is told so, in a payload of 20 %: more than 0.8 of the sum."""
     replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "heavy.toml", ("^mass_kg = .*", "mass_kg = 2.05"))
     words = (f"loop {MODELS}/structured_quadrotor.block --controllers=adaptive --conditions=payload",)
-    said = pinnquad(*words, "--airframe=heavy.toml").out
+    said = pinnquad(*words, "--airframe=heavy.toml").flat
     assert "warning: adaptive, payload: its bias stood at its bound" in said, said
     assert "warning" not in pinnquad(*words).out
 

@@ -69,7 +69,7 @@ def test_an_asymmetric_vehicle_hovers_near_the_ground(pinnquad, asymmetric):
 
 def test_what_flies_worse_than_without_jerk_is_not_exported_without_a_word(pinnquad, asymmetric):
     """The one that errs least leaves the flight to its guard: the best that flies is exported, or header, report and
-    terminal say DO NOT FLY."""
+    terminal say do not fly."""
     pinnquad(f"fly d1 {asymmetric} --seed 11 --interval 20 --samples 9000 --out a.csv")
     words = f"train a.csv {asymmetric} --models physics,ridge,ridge_causal --seeds 1"
     done = pinnquad(f"{words} --export causal --out best")
@@ -78,8 +78,8 @@ def test_what_flies_worse_than_without_jerk_is_not_exported_without_a_word(pinnq
     loop = report["closed_loop"]
     assert report["exported_model"] != "ridge_causal" and loop["model"]["rmse_m"] < loop["without_jerk"]["rmse_m"], loop
     assert loop["formula"]["rmse_m"] < 0.5 * loop["without_jerk"]["rmse_m"]
-    assert "not fit to fly; the next best is tried" in done.err and "DO NOT FLY" not in done.err
-    assert "DO NOT FLY" not in Path("best/model.hpp").read_text()
+    assert "not fit to fly; the next best is tried" in done.err and "do not fly" not in done.err
+    assert "do not fly" not in Path("best/model.hpp").read_text()
     flown = json.loads(pinnquad("loop best/model.block --json").out)
     assert flown["model"]["rmse_m"] == pytest.approx(loop["model"]["rmse_m"])
 
@@ -87,8 +87,8 @@ def test_what_flies_worse_than_without_jerk_is_not_exported_without_a_word(pinnq
     report, comment = report_of("asked"), Path("asked/model.hpp").read_text().split("#pragma once")[0]
     loop = report["closed_loop"]
     assert report["exported_model"] == "ridge_causal" and loop["model"]["rmse_m"] > loop["without_jerk"]["rmse_m"]
-    assert re.search("^train: warning: DO NOT FLY: .* without the path's jerk .* cm", done.err, re.M), done
-    assert any("DO NOT FLY" in warning for warning in report["warnings"])
-    assert comment.splitlines()[2].startswith("// DO NOT FLY: ") and "without the path's jerk" in comment
+    assert re.search("^train: warning: do not fly: .* without the path's jerk .* cm", done.err, re.M), done
+    assert any("do not fly" in warning for warning in report["warnings"])
+    assert comment.splitlines()[2].startswith("// do not fly: ") and "without the path's jerk" in comment
     assert all(len(line) <= 120 for line in comment.splitlines())
-    assert "DO NOT FLY" in Path("asked/report.html").read_text()
+    assert "do not fly" in Path("asked/report.html").read_text()

@@ -120,7 +120,7 @@ def test_slopes_under_noise(pinnquad, flown):
         assert certificate["known"]["thrust"]["by"] == "least squares"
         least = min(certificate["slope"][axis] / certificate["airframe_slope"][axis] for axis in AXES)
         assert f"at least {least:.2f} of the airframe's own slope" in said
-        assert f"at least {least:.2f} of the airframe's own slope" in pinnquad("certify", folder / "model.hpp").out
+        assert f"at least {least:.2f} of the airframe's own slope" in pinnquad("certify", folder / "model.hpp").flat
         assert said.count("by smoothed rows") == (3 if by == "smoothed rows" else 0)
         assert f"<td>{by}</td>" in (folder / "report.html").read_text()
         assert any("smoothed rows" in warning for warning in report["warnings"]) == (by == "smoothed rows")
@@ -181,8 +181,8 @@ def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
             cells[17:21] = [0.2 + 0.6 * float(u) + 0.004 * (float(cells[16]) - 20) for u in cells[17:21]]
 
     edited(flight, "near.csv", near_ground)
-    said = pinnquad(f"train near.csv {TRAIN} --out near").out
-    assert re.search(r"shown the altitude: .* with it [0-9.]*e-3, without [0-9.]*e-3$", said, re.M), said
+    said = pinnquad(f"train near.csv {TRAIN} --out near --verbose").flat
+    assert re.search(r"altitude used by the structured model: .* with it [0-9.]*e-3, without it [0-9.]*e-3 ", said), said
     assert "pinnquad::InverseFeaturesWithAltitude;" in Path("near/model.hpp").read_text()
     for model in "model.hpp", "model.block":
         pinnquad(f"certify near/{model}")
@@ -214,11 +214,10 @@ def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
 
 def test_limits_of_trust(pinnquad, flight, flown, compiler, flags):
     """In a header beside the model, of 80 s of validation rows and more; nothing that stays."""
-    assert re.search("^  no limits .* 80 s",
-                     pinnquad(f"train {flight} {TRAIN} --out short --models structured").out, re.M)
+    assert re.search(" no trust.hpp: .* 80 s", pinnquad(f"train {flight} {TRAIN} --out short --models structured").flat)
     long = flown("--seed 3 --samples 9000")
     said = pinnquad(f"train {long} {TRAIN} --out trusted --models structured").out
-    assert "  trusted/trust.hpp: struct TrainedQuadModelTrust" in said
+    assert " trusted/trust.hpp: struct TrainedQuadModelTrust" in said
     compiler(*flags, "-O1", "-Wall", "-Wextra", "-Werror", "-I", "trusted", SOURCE / "tests/programs/trust/guarded.cpp",
              "-o", "guarded")
     Program("./guarded")("trusted/replay.txt")

@@ -63,7 +63,7 @@ def test_refused(pinnquad, dataset, write, logs, words, at, keyword):
 
 def test_each_flight_in_turn(pinnquad, logs):
     """A table, a report, a header, a closed loop. programs.log_headers compiles such headers."""
-    said = pinnquad(f"{TRAIN} --hold-out-each flight --models constant,linear,ridge --seeds 2 --out each").out
+    said = pinnquad(f"{TRAIN} --hold-out-each flight --models constant,linear,ridge --seeds 2 --out each --verbose").flat
     assert "what the others are compared with" in said
     assert {"results.csv", "report.json", "report.html", "model.hpp", "model.block", "replay.txt"} <= set(listing("each"))
     assert "fits" not in listing("each"), "the fits of a whole training were left behind"
@@ -73,7 +73,7 @@ def test_each_flight_in_turn(pinnquad, logs):
         assert re.search(text, report), text
     assert not re.search('"worse_than_mean": *true', report)
     assert all(flight in page for flight in FLIGHTS)
-    assert re.search(r"adaptive: R\^2 .*mean absolute error .*thrust .* s", said), said
+    assert re.search(r"with a bias of the past: R\^2 .*mean absolute error .*thrust .* s", said), said
     for model in report_of("each")["models"].values():
         adaptive, times = model["adaptive"], model["adaptive"]["bias_time_constants_s"]
         assert 0 < adaptive["mean_absolute_error"]["mean"] and len(times) == 4
@@ -111,7 +111,7 @@ def held_out(report, page, header):
 
 def test_one_flight_cannot_decide(pinnquad, logs):
     """Nothing is called a success."""
-    said = pinnquad(f"{TRAIN} --hold-out flight2 --models constant,linear --seeds 1 --out one").out
+    said = pinnquad(f"{TRAIN} --hold-out flight2 --models constant,linear --seeds 1 --out one --verbose").flat
     assert "1 held-out flight can't tell" in said
     assert '"success": true' not in Path("one/report.json").read_text()
 
@@ -150,17 +150,18 @@ def test_another_payload_has_no_say(pinnquad, dataset, flown):
     error = verdict["held_out_rmse"]
     assert error["exported"] == models["ridge"]["rmse"]["mean"] and error["best_other_model"] == "linear"
     assert error["exported"] < error["best_other"] == models["linear"]["rmse"]["mean"] < error["mean_commands"]
-    assert verdict["in_words"] in done.out.split("[4/5]")[1].split("\n")[1]
+    assert f"verdict {verdict['in_words']} next {verdict['next']} models" in done.flat, done
     comment = " ".join(line[3:] for line in Path("own/model.hpp").read_text().split("#pragma once")[0].split("\n")[2:])
-    assert comment.startswith(f"{verdict['in_words']}. rms error of the commands held out: "), comment
-    assert verdict["in_words"].split(",")[0] in Path("own/report.html").read_text().split("chosen for the header")[0]
+    assert comment.startswith(f"{verdict['in_words']}. Next: ") and "rms error of the commands held out: " in comment, comment
+    short, why = verdict["in_words"].split(",")[0].split(": ")
+    assert f"<h1>{short}</h1>\n<p>{why}, R²" in Path("own/report.html").read_text()
 
     done = pinnquad(f"{words} --validate heavy --out named")
     assert report_of("named")["folds"][0]["chosen_by"] == "heavy, as --validate says"
     assert report_of("named")["folds"][0]["validation"] == ["heavy"]
     # a worse one by name: which is better, and that this one is not to fly
     done = pinnquad(f"{words} --export linear --out asked")
-    assert re.search("^train: warning: DO NOT FLY: linear .*(beaten by ridge.*--export ridge|figure-eight)", done.err, re.M), done
+    assert re.search("^train: warning: do not fly: linear .*(beaten by ridge.*--export ridge|figure-eight)", done.err, re.M), done
     assert not report_of("asked")["verdict"]["fit_to_fly"]
     # the only flight of its vehicle: by its quarters, and what would be better
     dataset("two", {"heavy": "heavy.csv", "flight1": flights["flight1"], "flight3": flights["flight3"]})

@@ -14,6 +14,7 @@
 #include "airframe/toml_writer.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/file_roles.hpp"
+#include "command_line/in_columns.hpp"
 #include "command_line/options.hpp"
 #include "logs/airframe_doubts.hpp"
 #include "pinnquad/deploy/airframe_writer.hpp"
@@ -48,7 +49,7 @@ void tell(const programs::NamedAirframe& airframe) {
   const std::array<double, 3> turn = logs::greatest_turn_rad_s2(a);
   std::printf("  hovers at command %.3f; greatest angular acceleration roll %.0f, pitch %.0f, yaw %.1f rad/s^2\n",
               logs::hover_command(a), turn[0], turn[1], turn[2]);
-  for (const std::string& doubt : logs::airframe_doubts(a)) std::printf("  warning: %s\n", doubt.c_str());
+  for (const std::string& doubt : logs::airframe_doubts(a)) programs::print_message("warning: " + doubt, 2);
 }
 
 int check(const AirframeOptions& options) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "airframe/names.hpp"
+#include "command_line/in_columns.hpp"
 #include "logs/airframe_file.hpp"
 #include "pinnquad/dynamics/airframe_value.hpp"
 
@@ -21,9 +22,9 @@ inline void list_airframes() {
   each_airframe([](auto tag) {
     using Vehicle = typename decltype(tag)::type;
     constexpr pinnquad::Airframe<double> airframe = pinnquad::airframe_value<Vehicle, double>();
-    std::printf("%-16s %6.3f kg, rotors up to %5.0f rpm, thrust-to-weight %.3f\n%18s%s\n", Vehicle::name,
-                airframe.mass_kg, 60 * airframe.max_rotor_speed_rev_s, airframe.thrust_to_weight(), "",
-                airframe_source(tag));
+    std::printf("%-16s %6.3f kg, rotors up to %5.0f rpm, thrust-to-weight %.3f\n", Vehicle::name, airframe.mass_kg,
+                60 * airframe.max_rotor_speed_rev_s, airframe.thrust_to_weight());
+    print_line(airframe_source(tag), 18);
   });
 }
 

@@ -14,6 +14,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "command_line/in_columns.hpp"
 #include "command_line/interrupt.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/version.hpp"
@@ -24,9 +25,10 @@ constexpr int exit_failed = 1;
 constexpr int exit_bad_input = 2;
 constexpr int exit_internal_fault = 70;  ///< as sysexits.h has it
 
-/// "fly: what is wrong" on stderr: one line, whatever stands in a path or an argument.
+/// "fly: what is wrong" on stderr: one line, whatever a path or an argument holds; a terminal gets it wrapped.
 inline void complain(const char* program, const std::string& what) {
-  std::fprintf(stderr, "%s: %s\n", program, pinnquad::printable(what).c_str());
+  const std::string line = std::string(program) + ": " + pinnquad::printable(what);
+  std::fprintf(stderr, "%s\n", isatty(STDERR_FILENO) != 0 ? in_columns(line, 2).c_str() : line.c_str());
 }
 
 namespace detail {

@@ -15,6 +15,7 @@
 #include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
+#include "command_line/in_columns.hpp"
 #include "command_line/options.hpp"
 #include "convert/begun_features.hpp"
 #include "convert/convert_network.hpp"
@@ -78,9 +79,8 @@ void begin_features(const ConvertOptions& options) {
   AtomicFile file(options.out);
   file.stream() << text;
   file.commit();
-  std::printf(
-      "%s: look at ranges and units, add mean and scale where the network was standardised, name the airframe\n",
-      printable(options.out).c_str());
+  programs::print_entry("next", "look at ranges and units in " + printable(options.out) +
+                                    ", add mean and scale if the network was standardised, name the airframe");
 }
 
 int convert(const ConvertOptions& options) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "command_line/flight_verdict.hpp"
 #include "command_line/folder_lock.hpp"
 #include "command_line/in_words.hpp"
 #include "convert/converted_model.hpp"
@@ -90,17 +91,19 @@ std::string write_model(const Conversion& conversion, const ForeignMeaning& mean
   block_file.close();
   header_file.commit();
   block_file.commit();
-  const std::string most = in_words("%.1e", difference);
-  std::string said = printable(header_path) + ": struct " + conversion.name + ", " + model.answer() + ", " +
-                     std::to_string(model.network().parameter_count()) + " parameters\n" + printable(block_path) +
-                     ": " + std::to_string(block.size()) + " bytes; at most " + most +
-                     " from the source's commands, over " + std::to_string(model.golden_count()) +
-                     " golden vectors and 1000 motions inside the envelope\n";
+  FlightVerdict verdict;
   if (written.signs_unproven) {
-    said +=
-        "not proven to follow the angular acceleration that is asked: pinnquad certify " + printable(block_path) + "\n";
+    verdict.care("no proof that more angular acceleration asked is more torque commanded",
+                 "pinnquad certify " + printable(block_path));
   }
-  return said;
+  verdict.care("no flight judged it", "pinnquad evaluate " + printable(block_path) + " FLIGHTS");
+  return entry("verdict", verdict.words()) + entry("next", verdict.next()) +
+         entry("files", printable(header_path) + ": struct " + conversion.name + ", " +
+                            std::to_string(model.network().parameter_count()) + " parameters") +
+         entry("", printable(block_path) + ": " + std::to_string(block.size()) + " bytes") +
+         entry("checked", "at most " + in_words("%.1e", difference) + " from the source's commands, over " +
+                              std::to_string(model.golden_count()) +
+                              " golden vectors and 1000 motions inside the envelope");
 }
 
 }  // namespace

@@ -86,8 +86,9 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
       {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
   const AnalyticInverse<SwitchedQuadrotor> analytic(vehicle);
   const auto fly = [&](const auto& feed_forward) {
-    return track(vehicle, world, trajectory, controller, feed_forward, TrackingPlan<double>{},
-                 [](const auto&...) noexcept {});
+    const TrackingPlan<double> usual;
+    return track(vehicle, world, trajectory, controller, feed_forward, usual,
+                 flights.traces.model.observer(usual.duration_s));
   };
   using FallsBack = Fallback<AnalyticInverse<SwitchedQuadrotor>>;
   const auto fly_model = [&](const auto& guard) { return with_feed_forward(model, guard, ground_z_m, columns, fly); };
@@ -95,7 +96,10 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
                                       : fly_model(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic));
   if (world.voltage_V != nullptr) flights.last_voltage_V = *world.voltage_V;
   flights.analytic_inverse = track(vehicle, trajectory, controller, analytic);
-  flights.without_jerk = track(vehicle, WithoutJerk{trajectory}, controller, analytic);
+  ExactWorld<SwitchedQuadrotor> exact{vehicle};
+  const TrackingPlan<double> usual;
+  flights.without_jerk = track(vehicle, exact, WithoutJerk{trajectory}, controller, analytic, usual,
+                               flights.traces.without.observer(usual.duration_s));
   return flights;
 }
 

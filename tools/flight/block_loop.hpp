@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "flight/loop_figures.hpp"
 #include "flight/model_range.hpp"
 #include "pinnquad/aero/battery.hpp"
 #include "pinnquad/deploy/block_model.hpp"
@@ -31,6 +32,7 @@ struct LoopFlights {
   bool near_ground = false;            ///< in ground effect: the model is shown the altitude
   double last_voltage_V = 0;           ///< of a battery that the model reads
   pinnquad::TrackingResult<double> model, analytic_inverse, without_jerk;
+  FlownTraces traces{};  ///< of the model, and of the analytic inverse without jerk
 };
 
 /// The motions that a model answers. The model must stay where it is.

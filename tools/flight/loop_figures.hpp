@@ -2,11 +2,42 @@
 // Figures of closed loops: how far off each feed-forward flew, and whether a model lost the vehicle.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "pinnquad/simulation/tracking.hpp"
 
 namespace programs {
+
+/// Where a closed loop was to be and was, every tenth of a second, seen from above.
+struct FlownTrace {
+  std::vector<double> time_s, planned_north_m, planned_east_m, north_m, east_m, error_m;
+
+  /// For track(): it takes no memory while it flies.
+  auto observer(double duration_s) {
+    constexpr double interval_s = 0.1;
+    *this = {};
+    for (std::vector<double>* values : {&time_s, &planned_north_m, &planned_east_m, &north_m, &east_m, &error_m}) {
+      values->reserve(static_cast<std::size_t>(duration_s / interval_s) + 2);
+    }
+    return [this](double now_s, const auto& point, const auto& vehicle, const auto&...) noexcept {
+      if (now_s + 1e-9 < interval_s * static_cast<double>(time_s.size()) || time_s.size() == time_s.capacity()) return;
+      time_s.push_back(now_s);
+      planned_north_m.push_back(point.position_m[0]);
+      planned_east_m.push_back(point.position_m[1]);
+      north_m.push_back(vehicle.body.position_m[0]);
+      east_m.push_back(vehicle.body.position_m[1]);
+      error_m.push_back((point.position_m - vehicle.body.position_m).norm());
+    };
+  }
+};
+
+/// A flight with the model, and the same one without it.
+struct FlownTraces {
+  FlownTrace model, without;
+};
 
 /// The share of the control ticks that the model answered; of one that was not asked 0.
 inline double answered_share(const pinnquad::FallbackCount& count) {

@@ -16,6 +16,7 @@
 #include "command_line/file_roles.hpp"
 #include "command_line/progress_line.hpp"
 #include "identify/told_vehicle.hpp"
+#include "identify/vehicle_verdict.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
 
@@ -74,11 +75,11 @@ void print_json(const programs::ToldVehicle& vehicle, const logs::ImportedDatase
 }
 
 void print_table(const programs::ToldVehicle& vehicle, const logs::ImportedDataset& dataset) {
-  for (const std::string& taken : dataset.taken) std::printf("%s\n", taken.c_str());
-  if (!dataset.curve.told.empty()) std::printf("%s\n", dataset.curve.told.c_str());
-  for (const std::string& warning : dataset.warnings) std::printf("warning: %s\n", warning.c_str());
-  std::printf("%zu flights, %.1f s of them, in %zu blocks\n", dataset.flights.size(), vehicle.found.duration_s,
-              vehicle.found.blocks);
+  for (const std::string& taken : dataset.taken) programs::print_message(taken);
+  if (!dataset.curve.told.empty()) programs::print_message(dataset.curve.told);
+  for (const std::string& warning : dataset.warnings) programs::print_message("warning: " + warning);
+  programs::print_entry("flights", programs::in_words("%zu, %.1f s, in %zu blocks", dataset.flights.size(),
+                                                      vehicle.found.duration_s, vehicle.found.blocks));
   std::printf("%-38s %10s  %-22s %-8s %s\n", "number", "value", "95 % interval", "unit", "excitation");
   for (const programs::IdentifiedNumber& number : vehicle.numbers) {
     std::printf("%-38s %10.4g  %-22s %-8s %s\n", number.words.c_str(), number.estimate.value,
@@ -87,10 +88,10 @@ void print_table(const programs::ToldVehicle& vehicle, const logs::ImportedDatas
   }
   for (const programs::IdentifiedNumber& number : vehicle.numbers) {
     if (programs::is_told(number)) continue;
-    std::printf("not told: %s (%s); fly: %s\n", number.words.c_str(), number.moved.c_str(), number.flight.c_str());
+    programs::print_line("not determined: " + number.words + " (" + number.moved + "); fly: " + number.flight);
   }
-  std::printf("ratios alone are of the flights; not of them:\n");
-  for (const std::string& one : vehicle.assumed) std::printf("  %s\n", one.c_str());
+  std::printf("flights show ratios only (thrust/mass, torque/inertia); not from the flights:\n");
+  for (const std::string& one : vehicle.assumed) programs::print_line(one, 2);
 }
 
 int run(const IdentifyOptions& options) {
@@ -107,6 +108,7 @@ int run(const IdentifyOptions& options) {
   const programs::ToldVehicle vehicle =
       programs::told_vehicle(dataset, said_by(options), !options.mapping.empty() || !dataset.taken.empty());
   if (!vehicle.airframe) {
+    if (!options.json) programs::print_verdict(programs::vehicle_verdict(vehicle, options.out));
     programs::complain("identify", vehicle.why_not);
     return programs::exit_failed;
   }
@@ -118,8 +120,9 @@ int run(const IdentifyOptions& options) {
   if (options.json) {
     print_json(vehicle, dataset, options.out);
   } else {
+    programs::print_verdict(programs::vehicle_verdict(vehicle, options.out));
     print_table(vehicle, dataset);
-    if (!options.out.empty()) std::printf("wrote %s\n", options.out.c_str());
+    if (!options.out.empty()) programs::print_entry("wrote", options.out);
   }
   return 0;
 }

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "command_line/commands.hpp"
+#include "command_line/in_columns.hpp"
+#include "command_line/in_words.hpp"
 #include "command_line/progress_line.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
 
@@ -49,25 +51,28 @@ void print_steps(const logs::ImportedDataset& dataset) {
         step.rows_before > step.rows_after && step.rows_before > 0
             ? 100.0 * static_cast<double>(step.rows_before - step.rows_after) / static_cast<double>(step.rows_before)
             : 0.0;
-    std::printf("%-34s %10zu %10zu %7.2f%%  %s\n", shortened(step.name, 34).c_str(), step.rows_before, step.rows_after,
-                cost, step.told.c_str());
+    const std::string line = programs::in_words("%-34s %10zu %10zu %7.2f%%", shortened(step.name, 34).c_str(),
+                                                step.rows_before, step.rows_after, cost);
+    programs::print_message(line + (step.told.empty() ? "" : "  " + step.told));
   }
 }
 
 void print_text(const logs::ImportedDataset& dataset, const std::string& out) {
-  for (const std::string& taken : dataset.taken) std::printf("%s\n", taken.c_str());
+  for (const std::string& taken : dataset.taken) programs::print_message(taken);
   print_steps(dataset);
-  for (const std::string& note : dataset.notes) std::printf("%s\n", note.c_str());
-  if (!dataset.curve.told.empty()) std::printf("%s\n", dataset.curve.told.c_str());
+  for (const std::string& note : dataset.notes) programs::print_message(note);
+  if (!dataset.curve.told.empty()) programs::print_message(dataset.curve.told);
   for (const pinnquad::Flight& flight : dataset.flights.flights()) {
     std::printf("%-34s %10zu rows, %.1f s, trajectory %s\n", flight.name.c_str(), flight.size(),
                 flight.back().time_s - flight.front().time_s, flight.trajectory.c_str());
   }
   for (const std::string& missing : dataset.absent)
     std::printf("absent: %s (the logs lack it; filled with 0)\n", missing.c_str());
-  for (const std::string& warning : dataset.warnings) std::printf("warning: %s\n", warning.c_str());
-  std::printf("%zu rows of %zu flights, every %g s, lag of %g s removed: %s\n", dataset.flights.rows(),
-              dataset.flights.size(), dataset.sample_period_s, dataset.lag_removed_s, out.c_str());
+  for (const std::string& warning : dataset.warnings) programs::print_message("warning: " + warning);
+  programs::print_message(
+      programs::in_words("%zu rows of %zu flights, every %g s, lag of %g s removed: ", dataset.flights.rows(),
+                         dataset.flights.size(), dataset.sample_period_s, dataset.lag_removed_s) +
+      out);
 }
 
 logs::LogSettings settings_of(const ImportOptions& options) {

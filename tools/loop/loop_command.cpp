@@ -27,6 +27,7 @@
 #include "flight/loop_figures.hpp"
 #include "loop/controlled_loop.hpp"
 #include "loop/loop_model.hpp"
+#include "loop/loop_verdict.hpp"
 #include "loop/vehicles.hpp"
 #include "pinnquad/exported/model.hpp"
 
@@ -87,21 +88,24 @@ void print_flight(const char* name, const TrackingResult<double>& flown) {
 
 void print_table(const LoopOptions& options, const BlockModel& model, const std::string& airframe,
                  const std::vector<double>& columns, const programs::LoopFlights& flights) {
-  std::printf("model       %s, for %s\n", printable(model.path()).c_str(), model.airframe_name().c_str());
+  programs::print_entry("model", printable(model.path()) + ", for " + model.airframe_name());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const ColumnName column = model.columns()[i];
     if (flights.last_voltage_V > 0 && column.name == BatteryVoltage::name) continue;
-    std::printf("column      %s %g %s\n", printable(column.name).c_str(), columns[i], printable(column.unit).c_str());
+    programs::print_entry("column",
+                          printable(column.name) + programs::in_words(" %g ", columns[i]) + printable(column.unit));
   }
   if (!options.battery.pack.empty()) {
-    std::printf("battery     %s, %g %% at the start", options.battery.pack.c_str(), options.battery.charge_percent);
-    if (flights.last_voltage_V > 0) std::printf(", %.2f V at the end", flights.last_voltage_V);
-    std::printf("\n");
+    programs::print_entry(
+        "battery",
+        options.battery.pack + programs::in_words(", %g %% at the start", options.battery.charge_percent) +
+            (flights.last_voltage_V > 0 ? programs::in_words(", %.2f V at the end", flights.last_voltage_V) : ""));
   }
-  std::printf("trajectory  %s, period %.1f s, %.2f to %.2f m above the ground%s, flown by %s for %.0f s\n",
-              options.trajectory.c_str(), flights.period_s, flights.lowest_m, flights.highest_m,
-              flights.near_ground ? ", in ground effect" : "", printable(airframe).c_str(),
-              TrackingPlan<double>{}.duration_s);
+  programs::print_entry(
+      "trajectory", programs::in_words("%s, period %.1f s, %.2f to %.2f m above the ground%s, flown by %s for %.0f s",
+                                       options.trajectory.c_str(), flights.period_s, flights.lowest_m,
+                                       flights.highest_m, flights.near_ground ? ", in ground effect" : "",
+                                       printable(airframe).c_str(), TrackingPlan<double>{}.duration_s));
   std::printf("  %-20s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "answered by the model");
   print_flight("model", flights.model);
   print_flight("analytic inverse", flights.analytic_inverse);
@@ -111,7 +115,7 @@ void print_table(const LoopOptions& options, const BlockModel& model, const std:
   for (const auto& [status, ticks] : by_status.items()) {
     programs::add_to_list(reasons, std::to_string(ticks.get<unsigned>()) + " " + status);
   }
-  if (!reasons.empty()) std::printf("  the analytic inverse stood in for the model: %s\n", reasons.c_str());
+  if (!reasons.empty()) programs::print_line("the analytic inverse flew in place of the model: " + reasons, 2);
 }
 
 void print_json(const nlohmann::json& value) {
@@ -120,22 +124,29 @@ void print_json(const nlohmann::json& value) {
 
 void print_errors(const LoopOptions& options, const std::vector<std::string>& conditions,
                   const std::vector<nlohmann::json>& rows, const std::string& airframe, double duration_s) {
-  std::printf(
-      "trajectory  %s, flown by %s for %.0f s, with noise in what controllers see\n"
-      "RMSE of the position in cm, of what comes after %.0f s\n  %-18s",
-      options.trajectory.c_str(), printable(airframe).c_str(), duration_s, programs::ControlledLoop::settled_s, "");
-  for (const std::string& condition : conditions) std::printf(" %15s", condition.c_str());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const nlohmann::json& row = rows[i];
-    if (i % conditions.size() == 0) std::printf("\n  %-18s", row["controller"].get<std::string>().c_str());
-    if (row["crashed"].get<bool>()) {
-      std::printf(" %15s", "lost");
-    } else {
-      std::printf(" %15.2f", row["rmse_cm"].get<double>());
+  programs::print_verdict(programs::controllers_verdict(rows, conditions.size()));
+  programs::print_entry("trajectory",
+                        programs::in_words("%s, flown by %s for %.0f s, with noise in what controllers see",
+                                           options.trajectory.c_str(), printable(airframe).c_str(), duration_s));
+  programs::print_line(programs::in_words("RMSE of the position in cm, of what comes after %.0f s",
+                                          programs::ControlledLoop::settled_s));
+  constexpr std::size_t beside = 5;  // conditions in one table: no line is too wide
+  for (std::size_t first = 0; first < conditions.size(); first += beside) {
+    const std::size_t last = std::min(conditions.size(), first + beside);
+    std::printf("  %-18s", "");
+    for (std::size_t c = first; c < last; ++c) std::printf(" %15s", conditions[c].c_str());
+    std::printf("\n");
+    for (const std::size_t begin : programs::best_first(rows, conditions.size())) {
+      std::printf("  %-18s", rows[begin]["controller"].get<std::string>().c_str());
+      for (std::size_t c = first; c < last; ++c) {
+        const nlohmann::json& row = rows[begin + c];
+        const bool lost = row["crashed"].get<bool>();
+        std::printf(" %15s", lost ? "lost" : programs::in_words("%.2f", row["rmse_cm"].get<double>()).c_str());
+      }
+      std::printf("\n");
     }
   }
-  std::printf("\n");
-  for (const std::string& line : programs::bias_warnings(rows)) std::printf("warning: %s\n", line.c_str());
+  for (const std::string& line : programs::bias_warnings(rows)) programs::print_message("warning: " + line);
 }
 
 /// Controllers side by side, each under each condition.
@@ -211,19 +222,18 @@ int loop(const LoopOptions& options) {
   const programs::LoopFlights flights = programs::fly_loop(
       model, {options.trajectory, given.airframe.value, options.guard == "envelope", given.columns, given.battery});
   programs::stop_if_interrupted();
-  const nlohmann::json report = report_of(options, model, given.airframe.name, given.columns, flights);
+  nlohmann::json report = report_of(options, model, given.airframe.name, given.columns, flights);
+  const programs::FlightVerdict verdict = programs::loop_verdict(report);
+  report["verdict"] = programs::verdict_json(verdict);
   if (options.json) {
     print_json(report);
   } else {
+    programs::print_verdict(verdict);
     print_table(options, model, given.airframe.name, given.columns, flights);
   }
-  const auto failed = [&](const char* why) {
-    programs::complain("loop", model.path() + ": " + why);
-    return programs::exit_failed;
-  };
-  if (programs::lost_vehicle(report)) return failed("loses the vehicle");
-  if (!(programs::answered_share(flights.model.fallback) > 0)) return failed("answers nothing on this trajectory");
-  return 0;
+  if (verdict.may_fly() != programs::MayFly::no) return 0;
+  programs::complain("loop", model.path() + ": " + verdict.why());
+  return programs::exit_failed;
 }
 
 }  // namespace
@@ -247,7 +257,9 @@ Command loop_command(CLI::App& program) {
           ->check(CLI::IsMember({"envelope", "none"}));
   const std::vector<std::string> of_model = names_of(loop_controllers), under = names_of(loop_conditions);
   const auto with = [](std::vector<std::string> names, const std::vector<std::string>& more) {
-    names.insert(names.end(), more.begin(), more.end());
+    for (const std::string& name : more) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
     return names;
   };
   add_names(*line, "--controllers", options->controllers, with(of_model, vehicle_controllers()),
@@ -279,9 +291,8 @@ Command loop_command(CLI::App& program) {
       "  pinnquad loop trained.block --battery 3x2200 --battery-charge 40\n"
       "  pinnquad loop trained.block --controllers adaptive,indi --conditions calm,payload\n"
       "  pinnquad loop --vehicles 20 --out flown\n"
-      "Exit codes: 0; 1 the model loses the vehicle, or answers nothing; 2 bad input or a file that can't be read; "
-      "130\n"
-      "interrupted.");
+      "Exit codes: 0; 1 do not fly: the model loses the vehicle, flies it worse than no model, or answers nothing; 2\n"
+      "bad input or a file that can't be read; 130 interrupted.");
   return {line, [options] { return loop(*options); }};
 }
 

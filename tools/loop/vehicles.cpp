@@ -398,10 +398,11 @@ double quantile(std::vector<double> values, double share) {
 
 void print_vehicles(const VehiclesOptions& options, const std::vector<nlohmann::json>& rows) {
   std::printf(
-      "%zu vehicles of seed %llu, each %s; learnt for %g s\n"
-      "figure-eight: RMSE of the position in cm of those that are not lost; slopes flown: error in %%, median\n"
+      "%zu vehicle%s of seed %llu, each %s; learnt for %g s\n"
+      "figure-eight: RMSE of the position in cm of those that are not lost\n"
+      "slopes flown: error in %%, median\n"
       "  %-14s %-14s %8s %8s %6s %9s %7s %7s %7s\n",
-      options.vehicles, static_cast<unsigned long long>(options.seed),
+      options.vehicles, options.vehicles == 1 ? "" : "s", static_cast<unsigned long long>(options.seed),
       options.start == "laws" ? "by laws of its mass and propeller" : "within 40 % of its archetype", options.frozen_s,
       "condition", "controller", "median", "p90", "lost", "thrust", "roll", "pitch", "yaw");
   for (std::size_t first = 0; first < rows.size(); first += options.vehicles) {

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/command.hpp"
+#include "command_line/in_columns.hpp"
+#include "command_line/in_words.hpp"
 #include "model/given_model.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "training/certificate_words.hpp"
@@ -89,13 +91,13 @@ void print_text(const nlohmann::json& all) {
   const auto text = [&](const char* key) { return printable(all[key].get<std::string>()); };
   std::printf("model       %s, contents_hash %s\n", text("name").c_str(), text("contents_hash").c_str());
   std::printf("network     %s, %d parameters\n", text("network").c_str(), all["parameters"].get<int>());
-  std::printf("features    %s\n", line_of(all["features"]).c_str());
+  programs::print_entry("features", line_of(all["features"]));
   if (all.contains("window")) {
     const auto& window = all["window"];
     std::printf("window      %d instants, %g ms apart, %s\n", window["taps"].get<int>(),
                 1e3 * window["period_s"].get<double>(), window["causal"].get<bool>() ? "looking back" : "centred");
   }
-  if (all.contains("columns")) std::printf("columns     %s\n", line_of(all["columns"]).c_str());
+  if (all.contains("columns")) programs::print_entry("columns", line_of(all["columns"]));
   std::printf("outputs     %s: %s\n", text("outputs_are").c_str(), line_of(all["outputs"]).c_str());
   std::printf("airframe    %s\n", text("airframe").c_str());
   std::printf("commands    %s, %g to %g\n", all["commands"]["meaning"].get<std::string>().c_str(),
@@ -103,12 +105,13 @@ void print_text(const nlohmann::json& all) {
   if (all.contains("proven")) std::printf("structure   %s\n", all["proven"].get<bool>() ? "proven" : "not proven");
   std::printf("trust       %s\n", all["limits_of_trust"].get<bool>() ? "limits are there" : "no limits");
   if (all.contains("bias_time_constants_s")) {
-    std::printf("bias        learnt in flight, time constants %s\n",
-                programs::time_constants_in_words(all["bias_time_constants_s"].get<std::vector<double>>()).c_str());
+    programs::print_entry(
+        "bias", "learnt in flight, time constants " +
+                    programs::time_constants_in_words(all["bias_time_constants_s"].get<std::vector<double>>()));
   }
   if (all.contains("provenance")) {
     for (const auto& [word, value] : all["provenance"].items()) {
-      std::printf("%-11s %s\n", printable(word).c_str(), printable(value.get<std::string>()).c_str());
+      programs::print_entry(printable(word), printable(value.get<std::string>()));
     }
   }
   std::printf("rows        %u, data %s\n", all["training_rows"].get<unsigned>(), text("training_data_hash").c_str());

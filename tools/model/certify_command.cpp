@@ -19,6 +19,7 @@
 #include "command_line/console.hpp"
 #include "model/findings.hpp"
 #include "model/given_model.hpp"
+#include "model/model_verdict.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "training/certificate_words.hpp"
 
@@ -26,7 +27,7 @@ namespace {
 
 using namespace pinnquad;
 using programs::bias_time_constants_s, programs::Findings, programs::has_base, programs::in_words,
-    programs::least_thrust_slope;
+    programs::least_thrust_slope, programs::print_entry;
 
 constexpr int exit_neither = 3;
 constexpr std::array<const char*, 3> axes = {Roll::name, Pitch::name, Yaw::name};
@@ -41,8 +42,8 @@ struct CertifyOptions {
 void print_bias(const BlockModel& model) {
   const auto times_s = bias_time_constants_s(model);
   if (!times_s) return;
-  std::printf("bias       %s\n           time constants: %s\n", programs::bias_in_words(model.airframe()).c_str(),
-              programs::time_constants_in_words(*times_s).c_str());
+  print_entry("bias", programs::bias_in_words(model.airframe()) +
+                          "; time constants: " + programs::time_constants_in_words(*times_s));
 }
 
 void print_thrust(const BlockModel& model, const Findings& findings) {
@@ -50,56 +51,53 @@ void print_thrust(const BlockModel& model, const Findings& findings) {
   const Certificate& certificate = *findings.certificate();
   const double own = hover_thrust_slope(model.airframe()), floor = least_thrust_share * own;
   const double held = certificate.held_thrust_slope;
-  std::printf("thrust     the sum of the commands by the thrust asked: %.6f s^2/m, %.2f of the airframe's own in hover",
-              held, held / own);
-  if (findings.past_or_future) {
-    std::printf(", of one that is held; of the present alone %.6f", certificate.thrust_slope);
-  }
-  std::printf("%s\n", !has_base(model) ? "" : ", while the base's commands are in 0 to 1");
+  std::string line = in_words(
+      "the sum of the commands by the thrust asked: %.6f s^2/m, %.2f of the airframe's own in hover", held, held / own);
+  if (findings.past_or_future)
+    line += in_words(", of one that is held; of the present alone %.6f", certificate.thrust_slope);
+  print_entry("thrust", line + (has_base(model) ? ", while the base's commands are in 0 to 1" : ""));
   const double range = certificate.residual_upper[0] - certificate.residual_lower[0];
   const double least = least_thrust_slope(findings);
-  if (range > 0 && std::isfinite(least)) {
-    std::printf("           with the residual %.6f or more at every input\n", least);
-  }
+  if (range > 0 && std::isfinite(least))
+    print_entry("", in_words("with the residual %.6f or more at every input", least));
   if (range > 0 && held > floor && least < floor) {
-    std::printf(
-        "           the residual may take %.6f: half of the airframe's is sure over a step of %.3g m/s^2 or more\n",
-        range, range / (held - floor));
+    print_entry("",
+                in_words("the residual may take %.6f: half of the airframe's is sure over a step of %.3g m/s^2 or more",
+                         range, range / (held - floor)));
   }
-  if (const auto doubt = programs::thrust_doubt(certificate, own)) std::printf("warning    %s\n", doubt->c_str());
+  if (const auto doubt = programs::thrust_doubt(certificate, own)) print_entry("warning", *doubt);
 }
 
 void print_with_rates(const Findings& findings) {
   if (!findings.with_rates[0]) {
-    std::printf("with rates nothing is known of an acceleration that is held with the body rates that it makes\n");
+    print_entry("with rates", "nothing is known of an acceleration that is held with the body rates that it makes");
     return;
   }
   bool above = true;
-  std::printf(
-      "with rates of an acceleration held from the window's first instant on, with the body rates that it makes\n");
+  print_entry("with rates",
+              "of an acceleration held from the window's first instant on, with the body rates that it makes");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double least = findings.with_rates[axis]->least(axis + 1);
-    std::printf("           %-5s ", axes[axis]);
-    std::isfinite(least) ? std::printf("%.6f s^2/rad or more\n", least) : std::printf("nothing is known\n");
+    print_entry("", in_words("%-5s ", axes[axis]) +
+                        (std::isfinite(least) ? in_words("%.6f s^2/rad or more", least) : "nothing is known"));
     above = above && least > 0;
   }
   if (!above) {
-    std::printf(
-        "warning    an acceleration that is held is proven with the body rates as they are; with those that it makes "
-        "the sum may fall\n");
+    print_entry("warning",
+                "an acceleration that is held is proven with the body rates as they are; with those that it makes the "
+                "sum may fall");
   }
 }
 
 void print_rounding(const Findings& findings) {
-  std::printf("rounding   turns no order of two accelerations of the present: a sum may rest, it never falls\n");
+  print_entry("rounding", "turns no order of two accelerations of the present: a sum may rest, it never falls");
   const Certificate& certificate = *findings.certificate();
   if (!std::isfinite(certificate.rounding)) return;
   const double* step = certificate.sure_step;
-  std::printf(
-      "           inside the envelope the base's commands are within %.1e of the real ones, and a sum rises for sure "
-      "from a step of %.1e, %.1e, %.1e rad/s^2 on%s\n",
-      certificate.rounding, step[0], step[1], step[2],
-      findings.past_or_future ? "; over a smaller one that is held it may fall" : "");
+  print_entry("", in_words("inside the envelope the base's commands are within %.1e of the real ones, and a sum rises "
+                           "for sure from a step of %.1e, %.1e, %.1e rad/s^2 on%s",
+                           certificate.rounding, step[0], step[1], step[2],
+                           findings.past_or_future ? "; over a smaller one that is held it may fall" : ""));
 }
 
 /// Of a model that is not proven.
@@ -107,65 +105,72 @@ void print_provable(const Findings& findings) {
   std::string uncounted;
   for (const std::string& name : findings.uncounted) uncounted += (uncounted.empty() ? "" : ", ") + printable(name);
   if (!uncounted.empty()) {
-    std::printf(
-        "no proof   the affine part counts the angular acceleration of a tap as three features; these show one beside "
-        "them, or may show one: %s\n",
-        uncounted.c_str());
+    print_entry("no proof",
+                "the affine part counts the angular acceleration of a tap as three features; these show one beside "
+                "them, or may show one: " +
+                    uncounted);
   }
-  std::printf(
-      "provable   an affine network, and what pinnquad train fits to the same flights (docs/structured_models.md)\n");
+  print_entry("provable",
+              "an affine network, and what pinnquad train fits to the same flights (docs/structured_models.md)");
+}
+
+void print_proof(const BlockModel& model, const Findings& findings) {
+  const AxisSlopes own = hover_slopes(model.airframe());
+  print_entry("proven",
+              std::string("each signed sum of the commands rises with the angular acceleration about its "
+                          "axis") +
+                  (findings.certificate() == nullptr ? "" : " and with no other, before a limit clips a command") +
+                  ", " + programs::least_share_in_words(findings.proof->held_slope, own));
+  print_entry("for", "all finite features, inside the envelope and outside of it");
+  print_entry("by", in_words(*findings.proof));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::string line = in_words("%-5s %.6f s^2/rad, %.2f of the airframe's own in hover", axes[axis],
+                                findings.proof->held_slope[axis], findings.proof->held_slope[axis] / own[axis]);
+    if (findings.past_or_future) {
+      line += in_words(", of one that is held; of the present alone %.6f", findings.proof->slope[axis]);
+    }
+    print_entry(axis == 0 ? "slope" : "", line);
+  }
+  for (const std::string& doubt : programs::slope_doubts(findings.proof->held_slope, own)) {
+    print_entry("warning", doubt);
+  }
+  if (findings.certificate() == nullptr) return;
+  print_entry("bound", programs::bound_in_words(*findings.certificate()));
+  print_bias(model);
+  print_thrust(model, findings);
+  if (findings.past_or_future) print_with_rates(findings);
+  print_rounding(findings);
 }
 
 void print_text(const BlockModel& model, const Findings& findings) {
-  std::printf("model      %s: %s, for %s\n", printable(model.path()).c_str(), model.answer().c_str(),
-              model.airframe_name().c_str());
-  if (findings.proven()) {
-    const AxisSlopes own = hover_slopes(model.airframe());
-    std::printf("proven     each signed sum of the commands rises with the angular acceleration about its axis%s\n",
-                findings.certificate() == nullptr ? "" : " and with no other, before a limit clips a command");
-    std::printf("           %s\n", programs::least_share_in_words(findings.proof->held_slope, own).c_str());
-    std::printf("for        all finite features, inside the envelope and outside of it\n");
-    std::printf("by         %s\n", in_words(*findings.proof));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::printf("%s%-5s %.6f s^2/rad, %.2f of the airframe's own in hover", axis == 0 ? "slope      " : "           ",
-                  axes[axis], findings.proof->held_slope[axis], findings.proof->held_slope[axis] / own[axis]);
-      if (findings.past_or_future)
-        std::printf(", of one that is held; of the present alone %.6f", findings.proof->slope[axis]);
-      std::printf("\n");
-    }
-    for (const std::string& doubt : programs::slope_doubts(findings.proof->held_slope, own)) {
-      std::printf("warning    %s\n", doubt.c_str());
-    }
-    if (findings.certificate() != nullptr) {
-      std::printf("bound      %s\n", programs::bound_in_words(*findings.certificate()).c_str());
-      print_bias(model);
-      print_thrust(model, findings);
-      if (findings.past_or_future) print_with_rates(findings);
-      print_rounding(findings);
-    }
-    return;
-  }
-  if (!findings.search.found) {
-    std::printf(
-        "neither    nothing is proven of this structure, and no counterexample was found in %ld motions (%.1f s)\n",
-        findings.search.evaluations, findings.search.seconds);
+  const programs::Counterexample* found = findings.search.found ? &*findings.search.found : nullptr;
+  programs::print_verdict(
+      programs::model_verdict(model, findings.proof, found != nullptr ? axes[found->asked.axis] : nullptr));
+  print_entry("model", printable(model.path()) + ", for " + model.airframe_name());
+  if (findings.proven()) return print_proof(model, findings);
+  if (found == nullptr) {
+    print_entry("neither", in_words("nothing is proven of this structure, and no counterexample was found in %ld "
+                                    "motions (%.1f s)",
+                                    findings.search.evaluations, findings.search.seconds));
     for (std::size_t way = 0; way < findings.ways.size(); ++way) {
-      std::printf("%s%-5s %.6f s^2/rad%s\n", way == 0 ? "least      " : "           ", axes[findings.ways[way].axis],
-                  findings.search.least[way], findings.ways[way].held ? ", held" : "");
+      print_entry(way == 0 ? "least" : "",
+                  in_words("%-5s %.6f s^2/rad%s", axes[findings.ways[way].axis], findings.search.least[way],
+                           findings.ways[way].held ? ", held" : ""));
     }
     print_provable(findings);
     return;
   }
-  const programs::Counterexample& found = *findings.search.found;
-  std::printf("refuted    more %s acceleration is asked, and less is commanded: found after %ld motions, %.3f s\n",
-              axes[found.asked.axis], findings.search.evaluations, findings.search.seconds);
-  std::printf("at         (inside the training envelope)\n");
-  for (std::size_t i = 0; i < found.x.size(); ++i) {
-    std::printf("           %-12s %.9g\n", findings.names[i].c_str(), found.x[i]);
+  print_entry("refuted",
+              in_words("more %s acceleration is asked, and less is commanded: found after %ld motions, %.3f s",
+                       axes[found->asked.axis], findings.search.evaluations, findings.search.seconds));
+  print_entry("at", "(inside the training envelope)");
+  for (std::size_t i = 0; i < found->x.size(); ++i) {
+    print_entry("", in_words("%-12s %.9g", findings.names[i].c_str(), found->x[i]));
   }
-  std::printf("more       %s%s larger by %.6g: the signed sum falls from %.6f to %.6f (derivative %.6f s^2/rad)\n",
-              findings.names[found.asked.places.front()].c_str(), found.asked.held ? " at all instants" : "",
-              found.step, found.sum, found.sum_of_more, found.derivative);
+  print_entry("more",
+              in_words("%s%s larger by %.6g: the signed sum falls from %.6f to %.6f (derivative %.6f s^2/rad)",
+                       findings.names[found->asked.places.front()].c_str(), found->asked.held ? " at all instants" : "",
+                       found->step, found->sum, found->sum_of_more, found->derivative));
   print_provable(findings);
 }
 

@@ -14,6 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/in_columns.hpp"
 #include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "model/replayed_row.hpp"
@@ -161,11 +162,11 @@ inline void print_summary(const Replayed& replayed, const ReplaySummary& summary
     std::printf("%-11s %zu (%.1f %%)\n", name, count, 100.0 * static_cast<double>(count) / static_cast<double>(rows));
   }
   const std::string causes = detail::counts_in_words(summary.causes, "ok");
-  if (!causes.empty()) std::printf("because     %s\n", causes.c_str());
+  if (!causes.empty()) print_entry("because", causes);
   if (!summary.outside.empty()) {
     std::map<std::string, std::size_t> rows_of;
     for (const auto& [feature, count] : summary.outside) rows_of[feature] = count.rows;
-    std::printf("outside     %s\n", detail::counts_in_words(rows_of).c_str());
+    print_entry("outside", detail::counts_in_words(rows_of));
   }
   if (summary.longest.rows > 0) {
     std::printf("longest     %.3f s without the model: %zu %s from %s\n", summary.longest.duration_s,
@@ -175,12 +176,12 @@ inline void print_summary(const Replayed& replayed, const ReplaySummary& summary
     std::printf("commands    equal to the log's, bit for bit\n");
   } else if (summary.furthest != nullptr) {
     const auto i = summary.furthest_rotor;
-    std::printf(
-        "commands    largest difference from the log's %.2g: u%zu %.4f, logged %.4f, at %s; mean of the largest per "
-        "%s %.2g\n",
-        summary.largest_difference, i + 1, summary.furthest->commands[i], summary.furthest->logged[i],
-        detail::place_of(replayed, *summary.furthest).c_str(), replayed.of_core ? "tick" : "row",
-        summary.mean_difference);
+    print_entry("commands",
+                in_words("largest difference from the log's %.2g: u%zu %.4f, logged %.4f, at %s; mean of the largest "
+                         "per %s %.2g",
+                         summary.largest_difference, i + 1, summary.furthest->commands[i], summary.furthest->logged[i],
+                         detail::place_of(replayed, *summary.furthest).c_str(), replayed.of_core ? "tick" : "row",
+                         summary.mean_difference));
   }
   std::printf("events      %zu%s\n", summary.events.size(),
               summary.events.size() > events_shown ? ", the first ones (--out has every row):" : "");
@@ -189,7 +190,7 @@ inline void print_summary(const Replayed& replayed, const ReplaySummary& summary
     std::printf("  %10.3f s, %s  %s%s%s\n", row.time_s, in_words("%.3f s", summary.events[i].duration_s).c_str(),
                 printable(row.state).c_str(), row.reason.empty() ? "" : ": ", printable(row.reason).c_str());
   }
-  for (const std::string& note : replayed.notes) std::printf("note        %s\n", printable(note).c_str());
+  for (const std::string& note : replayed.notes) print_entry("note", printable(note));
   if (!replayed.of_core) return;
   if (replayed.at_the_edge > 0) {
     std::printf("note        %zu ticks differ by rounding alone: a feature on the border of the envelope\n",

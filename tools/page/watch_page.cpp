@@ -22,7 +22,7 @@ namespace programs {
 namespace {
 
 constexpr const char* unavailable =
-    "the page to watch a flight is not built; build the target watch_bundle (it needs Node.js, npm and the network)";
+    "the page to watch a flight is not beside this program: it was built without Node.js, npm or the network";
 
 /// Base64 of the values as a little-endian array, on any machine.
 template <class Value>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A flight as one HTML page to watch it in 3D, offline. What it is besides a flight is bundled by the target
-// watch_bundle; this class puts a flight into it. See docs/watch.md.
+// A flight as one HTML page to watch it in 3D, offline. What it is besides a flight is bundled when the program is
+// built; this class puts a flight into it. See docs/watch.md.
 #pragma once
 
 #include <cstdint>

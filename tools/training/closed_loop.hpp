@@ -228,11 +228,10 @@ inline bool analytic_inverse_fails(const nlohmann::json& flown) {
 
 /// The same of recorded flights, whose airframe was given: it flies as `pinnquad loop` does.
 inline nlohmann::json fly_given(const pinnquad::BlockModel& model, const pinnquad::RowSet& training,
-                                const pinnquad::Airframe<double>& airframe) {
+                                const pinnquad::Airframe<double>& airframe, FlownTraces& traces) {
   try {
-    const LoopFlights flown =
-        fly_loop(model, {loop_trajectories.front(), airframe, true, usual_columns(model, training),
-                         battery_of_flights(model, training, airframe)});
+    LoopFlights flown = fly_loop(model, {loop_trajectories.front(), airframe, true, usual_columns(model, training),
+                                         battery_of_flights(model, training, airframe)});
     nlohmann::json result = {{"trajectory", "figure-eight"},
                              {"half_length_m", flown.half_length_m},
                              {"period_s", flown.period_s},
@@ -244,16 +243,17 @@ inline nlohmann::json fly_given(const pinnquad::BlockModel& model, const pinnqua
     if (analytic_inverse_fails(result)) {
       return {{"why_not", "the airframe's own analytic inverse does not fly it"}};
     }
+    traces = std::move(flown.traces);
     return result;
   } catch (const std::invalid_argument& refused) {
     return {{"why_not", refused.what()}};
   }
 }
 
-/// Results of the flight, for report.json and the page; `why_not` alone where there was none. Under the guard of its
-/// export: outside its envelope, and while its window fills, the analytic inverse answers.
+/// Results of the flight, for report.json, and its traces for the page; `why_not` alone where there was none. Under the
+/// guard of its export: outside its envelope, and while its window fills, the analytic inverse answers.
 inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnquad::RowSet& training,
-                                 const IdentifiedVehicle& identified, bool has_velocity) {
+                                 const IdentifiedVehicle& identified, bool has_velocity, FlownTraces& traces) {
   if (!identified.airframe) return {{"why_not", "the flights do not identify their vehicle"}};
   constexpr double shortest_s = 2;
   const auto eight = eight_for(identified.airframe->value, 0, flown_envelope(training, has_velocity), shortest_s);
@@ -269,10 +269,13 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
   const pinnquad::FlightController<double> controller({}, pinnquad::flight_limits(vehicle.airframe(), 1.0));
   using Analytic = pinnquad::AnalyticInverse<IdentifiedQuadrotor>;
   const Analytic analytic(vehicle);
+  pinnquad::ExactWorld<IdentifiedQuadrotor> exact{vehicle};
   const auto fly = [&](const auto& feed_forward) {
-    return pinnquad::track(vehicle, *eight, controller, feed_forward, plan);
+    return pinnquad::track(vehicle, exact, *eight, controller, feed_forward, plan,
+                           traces.model.observer(plan.duration_s));
   };
-  const auto alone = pinnquad::track(vehicle, pinnquad::WithoutJerk{*eight}, controller, analytic, plan);
+  const auto alone = pinnquad::track(vehicle, exact, pinnquad::WithoutJerk{*eight}, controller, analytic, plan,
+                                     traces.without.observer(plan.duration_s));
   nlohmann::json result = {{"trajectory", "figure-eight"},           {"half_length_m", eight->half_length_m},
                            {"half_width_m", eight->half_width_m},    {"period_s", eight->period_s},
                            {"formula", loop_figures(fly(analytic))}, {"without_jerk", loop_figures(alone)}};
@@ -289,7 +292,7 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
     const auto& effects = vehicle.effects();
     const IdentifiedOnBattery flown(vehicle.airframe(), {}, *battery, std::get<0>(effects), std::get<1>(effects));
     BatteryWorld<IdentifiedOnBattery> world{{flown}, voltage_among(model, columns)};
-    return pinnquad::track(vehicle, world, *eight, controller, policy, plan, [](const auto&...) noexcept {});
+    return pinnquad::track(vehicle, world, *eight, controller, policy, plan, traces.model.observer(plan.duration_s));
   });
   result["model"] = loop_figures(by_model);
   result["against_formula"] = comparison_json(compared);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
+#include "flight/loop_figures.hpp"
 #include "page/chart.hpp"
 #include "training/held_out_dynamics.hpp"
 #include "training/kind_verdict.hpp"
@@ -21,6 +22,49 @@ namespace programs {
 /// Kinds that a drawing shows in colour, an index of JudgedKinds::kinds each.
 inline constexpr std::size_t most_shown_kinds = 3;
 inline constexpr const char* colour_of_shown[most_shown_kinds] = {colour::blue, colour::orange, colour::green};
+
+/// A path from above, with the model and without it, and how far off both were.
+inline Chart path_chart(const FlownTraces& flown) {
+  const FlownTrace &with = flown.model, &without = flown.without;
+  Panel path;
+  path.title = "Path from above";
+  path.x.name = "east, m";
+  path.y.name = "north, m";
+  path.height = 0;
+  path.series = {{"planned", Shape::line, colour::muted, with.planned_east_m, with.planned_north_m, 4, 0.45},
+                 {"without the model", Shape::line, colour::orange, without.east_m, without.north_m},
+                 {"with the model", Shape::line, colour::blue, with.east_m, with.north_m}};
+  double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
+  for (const Series& series : path.series) {
+    for (const std::vector<double>* values : {&series.x, &series.y}) {
+      const std::size_t axis = values == &series.x ? 0 : 1;
+      for (const double value : *values) {
+        low[axis] = std::min(low[axis], value);
+        high[axis] = std::max(high[axis], value);
+      }
+    }
+  }
+  const double half = 0.55 * std::max({high[0] - low[0], high[1] - low[1], 0.1});  // one scale on both axes
+  path.x.least = (low[0] + high[0]) / 2 - half;
+  path.x.most = (low[0] + high[0]) / 2 + half;
+  path.y.least = (low[1] + high[1]) / 2 - half;
+  path.y.most = (low[1] + high[1]) / 2 + half;
+  Panel error;
+  error.title = "Distance from the path";
+  error.x.name = "time, s";
+  error.y = {"cm", 0};
+  error.height = 300;
+  const auto in_cm = [](std::vector<double> values) {
+    for (double& value : values) value *= 100;
+    return values;
+  };
+  error.series = {{"without the model", Shape::line, colour::orange, without.time_s, in_cm(without.error_m)},
+                  {"with the model", Shape::line, colour::blue, with.time_s, in_cm(with.error_m)}};
+  return {"The path flown with the model and without it",
+          "Planned path and both flown paths from above, and the distance from the path over time.",
+          {path, error},
+          2};
+}
 
 /// Root mean square error of every kind on each held-out flight: a mark each, those shown in colour.
 inline Chart flights_chart(const JudgedKinds& judged, const std::vector<std::size_t>& shown) {

@@ -70,7 +70,6 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   app.footer(
       "Examples:\n"
       "  pinnquad train logs --hold-out flight7 --out my_model\n"
-      "  pinnquad train my_logs --hold-out-each trajectory --out my_model\n"
       "More: docs/train.md, docs/log_training.md.\n"
       "Exit codes: 0; 1 nothing exported; 2 bad input; 130 interrupted: it goes on from there.");
   add_flights(app, options);
@@ -92,6 +91,7 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
              "first seed (initialisation and batch order)")
       ->type_name("N");
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
+  app.add_flag("--verbose", options.verbose, "statistical tests, slopes, settings and times beside the verdict");
   app.add_flag("--allow-poor", options.allow_poor, "export what is worse than the mean of the commands too, marked");
 }
 

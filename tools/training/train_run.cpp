@@ -18,6 +18,7 @@
 #include "airframe/choice.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
+#include "command_line/flight_verdict.hpp"
 #include "command_line/folder_lock.hpp"
 #include "command_line/interrupt.hpp"
 #include "command_line/listed.hpp"
@@ -29,6 +30,7 @@
 #include "training/export_verdict.hpp"
 #include "training/fit_store.hpp"
 #include "training/flown_vehicle.hpp"
+#include "training/inputs_code.hpp"
 #include "training/train_input.hpp"
 #include "training/training_page.hpp"
 #include "training/training_report.hpp"
@@ -64,7 +66,7 @@ void require_separate_files(const TrainOptions& options) {
 }
 
 void announce(const std::string& step) {
-  std::printf("%s\n", step.c_str());
+  programs::print_line(step, 0);
   std::fflush(stdout);
 }
 
@@ -72,8 +74,10 @@ void announce(const std::string& step) {
 void print_vehicle(const programs::FlownVehicle& vehicle) {
   if (!vehicle.is_known()) return;
   const programs::IdentifiedVehicle& asked = *vehicle.asked;
-  announce("      vehicle " + (vehicle.identified() ? "identified: " + programs::identified_in_words(asked.found)
-                                                    : "not identified: " + printable(asked.why_not)));
+  programs::print_message(
+      "vehicle " + (vehicle.identified() ? "identified: " + programs::identified_in_words(asked.found)
+                                         : "not identified: " + printable(asked.why_not)),
+      6);
 }
 
 /// Fits, judges, exports: one run of the command.
@@ -122,6 +126,7 @@ class Training {
       write_page();
     });
     store.clear();
+    print_summary();
     return code;
   }
 
@@ -145,12 +150,18 @@ class Training {
   void tell_networks() const {
     const std::string epochs = plan_.epochs > 0 ? std::to_string(plan_.epochs) + " epochs" : "epochs as suit each kind";
     for (const programs::Recipe& recipe : selection_.recipes) {
-      announce("      network " + recipe.network + "; " + recipe.settings.at("optimizer").get<std::string>() +
-               ", batch " + std::to_string(recipe.settings.at("batch").get<int>()) + ", " + epochs);
+      detail("network " + recipe.network + "; " + recipe.settings.at("optimizer").get<std::string>() + ", batch " +
+             std::to_string(recipe.settings.at("batch").get<int>()) + ", " + epochs);
     }
     if (!tells_structured()) return;
-    announce("      structured: " +
-             programs::structured_settings(options_.pinned_slopes).at("words").get<std::string>());
+    detail("structured: " + programs::structured_settings(options_.pinned_slopes).at("words").get<std::string>());
+  }
+
+  /// A line that --verbose alone prints.
+  void detail(const std::string& text, std::size_t indent = 2) const {
+    if (!options_.verbose) return;
+    programs::print_line(text, indent);
+    std::fflush(stdout);
   }
 
   void fit(const programs::FitStore& store) {
@@ -166,8 +177,10 @@ class Training {
     announce("[3/5] judge");
     judged_ = programs::judge_fits(plan_, fits_);
     verdicts_ = programs::verdicts_on(judged_);
-    programs::print_models(plan_, judged_, verdicts_);
-    programs::print_training_time(judged_);
+    if (options_.verbose) {
+      programs::print_details(judged_, verdicts_);
+      programs::print_training_time(judged_);
+    }
     tell_altitude();
     std::fflush(stdout);
     report_.judged(plan_, judged_, verdicts_);
@@ -183,9 +196,9 @@ class Training {
       const std::string why = !is_finite(choice.error_with)
                                   ? std::string("as --altitude asks")
                                   : "error on the validation rows with it " + thousandths(choice.error_with, 2) +
-                                        ", without " + thousandths(choice.error_without, 2) +
-                                        (choice.taken ? "" : "; a fifth less would take it");
-      std::printf("  the structured model is %s the altitude: %s\n", choice.taken ? "shown" : "not shown", why.c_str());
+                                        ", without it " + thousandths(choice.error_without, 2) +
+                                        (choice.taken ? "" : "; it must lower the error by a fifth");
+      detail(std::string("altitude ") + (choice.taken ? "used" : "not used") + " by the structured model: " + why);
       report_.altitude(choice, options_.altitude, why);
       return;
     }
@@ -232,7 +245,7 @@ class Training {
   void tell_judges(const programs::Fold& fold) {
     constexpr double shortest_s = 30;
     if (fold.judges.empty()) return;
-    announce("      choose what is exported: " + fold.chosen_by);
+    detail("choose what is exported: " + fold.chosen_by, 6);
     double rows = 0;
     for (const programs::Judge& judge : fold.judges) rows += static_cast<double>(judge.rows.size());
     const double duration_s = rows * plan_.sample_period_s;
@@ -258,6 +271,8 @@ class Training {
   int refuse(const std::string& reason, const std::string& advice = {}) {
     report_.write_not_exported(reason);
     told_ = "Nothing was exported: " + reason + ".";
+    found_.emplace();
+    found_->refuse("nothing was exported: " + reason, livelier());
     std::string earlier;
     for (const char* name : export_names) {
       const std::string path = options_.out + "/" + name;
@@ -277,11 +292,36 @@ class Training {
            "a better flight, --allow-poor, or --models paper_physics_informed, of which nothing is proven";
   }
 
+  /// The flight that the identification lacks most, else one that most models lack.
+  std::string livelier() const {
+    const std::string flight = missing_flight();
+    return flight.empty() ? programs::livelier_flight : "record: " + flight;
+  }
+  std::string missing_flight() const {
+    if (!vehicle_.asked || vehicle_.is_known()) return {};
+    for (const programs::IdentifiedNumber& number : programs::identified_numbers(vehicle_.asked->found)) {
+      if (!programs::is_told(number)) return number.flight;
+    }
+    return {};
+  }
+
+  /// The verdict, what to do next, a line a model, and the files.
+  void print_summary() {
+    std::printf("\n");
+    if (found_) programs::print_verdict(*found_);
+    programs::print_entry("models",
+                          "on rows that they were not trained on: " + programs::rows_in_words(plan_, judged_));
+    programs::print_kinds(judged_, [&](std::size_t k) { return made_ && chosen_ == k ? "exported" : ""; });
+    for (const std::string& line : summary_) std::fputs(line.c_str(), stdout);
+    programs::print_entry("page", options_.out + "/report.html" + (options_.verbose ? "" : "; more here: --verbose"));
+  }
+
   struct Exported {
     std::shared_ptr<const programs::TrainedNetwork> model;
     std::uint64_t seed = 0;
     const programs::Fold* fold = nullptr;
-    nlohmann::json flown;  ///< what came of the closed loop
+    nlohmann::json flown{};          ///< what came of the closed loop
+    programs::FlownTraces traces{};  ///< and where it flew
   };
 
   std::string export_choice() const {
@@ -334,7 +374,7 @@ class Training {
                      ", fitted to all flights, is not proven to turn the way it is told to: it stays out");
         continue;
       }
-      next.flown = fly(next, judged_.kinds[k].kind);
+      next.flown = fly(next, judged_.kinds[k].kind, next.traces);
       const std::string unfit = programs::unfit_to_fly(next.flown);
       if (!unfit.empty()) {
         unfit_.push_back(k);
@@ -397,14 +437,14 @@ class Training {
           programs::best_fit(all_fits_.finished, 0, once.kinds.front().takes_validation(plan_.settings));
       if (best == nullptr)
         throw std::invalid_argument("the fit to all flights has no finite error on " + all_->validation.front());
-      return Exported{best->model, best->seed, &*all_, {}};
+      return Exported{best->model, best->seed, &*all_};
     }
     const programs::FinishedFit* best =
         programs::best_fit(fits_.finished, kind, plan_.kinds[kind].takes_validation(plan_.settings));
     if (best == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
     programs::FinishedFit again = *best;
     if (!again.model) programs::fit_again(plan_, again);
-    return Exported{again.model, again.seed, &plan_.folds[again.fold], {}};
+    return Exported{again.model, again.seed, &plan_.folds[again.fold]};
   }
 
   void write(const Exported& made, const programs::ModelKind& kind, const Verdict& verdict) {
@@ -414,20 +454,37 @@ class Training {
     const std::vector<std::string> beaten = programs::beaten_in_words(others, judged_, *chosen_);
     const bool by_a_proven_one =
         others.beaten() && judged_.kinds[*others.best].proven() && !programs::any_smoothed(made.model->slopes());
-    const programs::ExportVerdict said =
-        programs::export_verdict(kind.title, verdict, made.flown, by_a_proven_one ? beaten.front() : "");
-    report_.export_verdict(said, beside, programs::beside_json(others, judged_));
-    announce("  " + said.words + "\n  " + beside);
-    for (const std::string& line : beaten) {
-      if (said.words.find(line) == std::string::npos) report_.warn(line);
+    programs::ExportFacts facts{kind.title, verdict, made.flown, by_a_proven_one ? beaten.front() : ""};
+    const std::optional<BlockModel::ProvenSigns> signs = made.model->block()->proven_signs();
+    facts.proven = signs.has_value();
+    facts.known = vehicle_.is_known();
+    facts.flight = missing_flight();
+    facts.last_commands_err_less = others.last_commands < others.own;
+    if (signs && vehicle_.is_known()) {
+      const Airframe<double>& airframe = plan_.airframe.value;
+      const double thrust_share =
+          signs->structure ? signs->structure->held_thrust_slope / hover_thrust_slope(airframe) : 1;
+      facts.slopes = programs::odd_slopes(signs->held_slope, hover_slopes(airframe), thrust_share);
     }
-    if (!said.fit_to_fly) report_.warn(said.words);
+    const programs::FlightVerdict of_header = programs::export_verdict(facts);  // without a path of this machine
+    facts.block = options_.out + "/model.block";
+    found_ = programs::export_verdict(facts);
+    traces_ = made.traces;
+    inputs_ = programs::inputs_code(*made.model->block(), options_.model_name);
+    made_ = true;
+    report_.export_verdict(*found_, beside, programs::beside_json(others, judged_));
+    detail(beside);
+    for (const std::string& line : beaten) {
+      if (found_->words().find(line) == std::string::npos) report_.warn(line);
+    }
+    const bool unfit = found_->may_fly() == programs::MayFly::no;
+    if (unfit) report_.warn(found_->words());
     Provenance from =
         programs::provenance_of(*made.model,
                                 programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
                                                         plan_.settings, made.seed, plan_.epochs, verdict),
                                 bias, vehicle_.is_known());
-    from.fitness = said.words;
+    from.fitness = of_header.words() + ". Next: " + of_header.next();
     from.beside = beside;
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
@@ -438,22 +495,21 @@ class Training {
     if (!trusted) std::filesystem::remove(trust, ignored);  // of an earlier training
     programs::write_replay(options_.out + "/replay.txt", *made.model->block(),
                            made.fold->split.test.empty() ? made.fold->split.validation : made.fold->split.test);
-    std::printf("  %s: struct %s, %s%s%s\n", header.c_str(), options_.model_name.c_str(), kind.title,
-                kind.seeded ? (" of seed " + std::to_string(made.seed)).c_str() : "",
-                said.fit_to_fly ? "" : "; its header says DO NOT FLY");
+    add_file("files", header + ": struct " + options_.model_name + ", " + kind.title +
+                          (kind.seeded ? " of seed " + std::to_string(made.seed) : "") +
+                          (unfit ? "; its first lines say: do not fly" : ""));
     if (trusted) {
-      std::printf("  %s: struct %sTrust, when it is not to be trusted: limits of distance and command residual\n",
-                  trust.c_str(), options_.model_name.c_str());
+      add_file("", trust + ": struct " + options_.model_name +
+                       "Trust, limits of distance and command residual: beyond them don't trust it");
     } else if (!written.no_trust_because.empty()) {
-      std::printf("  no limits of distance and command residual (trust.hpp): %s\n", written.no_trust_because.c_str());
+      add_file("", "no trust.hpp: " + written.no_trust_because);
     }
-    std::printf("  %s: the same weights as a block of %zu bytes\n", block.c_str(), written.block_bytes);
+    add_file("", block + ": the same weights as a block of " + std::to_string(written.block_bytes) + " bytes");
     report_.trusted(trusted ? trust : "", written.no_trust_because);
     tell_certificate(*made.model->block(), made.model->slopes());
     if (bias) {
-      std::printf(
-          "  learnt in flight: a bias of its signed sums (AdaptiveInverse, docs/adaptive.md); time constants %s\n",
-          programs::time_constants_in_words(*bias).c_str());
+      detail("learnt in flight: a bias of its signed sums (AdaptiveInverse, docs/adaptive.md); time constants " +
+             programs::time_constants_in_words(*bias));
       report_.bias(*bias, plan_.airframe.value);
     }
     tell_flight(made.flown);
@@ -469,8 +525,8 @@ class Training {
   void tell_certificate(const BlockModel& model, const SlopesOfSums& known) {
     const std::optional<BlockModel::ProvenSigns> signs = model.proven_signs();
     if (!signs) {
-      std::printf("  nothing is proven of its signs: `pinnquad certify %s/model.hpp` looks for a counterexample\n",
-                  options_.out.c_str());
+      detail("nothing is proven of its signs: `pinnquad certify " + options_.out +
+             "/model.hpp` looks for a counterexample");
       return;
     }
     const Airframe<double>& airframe = plan_.airframe.value;
@@ -481,28 +537,27 @@ class Training {
     const bool known_vehicle = vehicle_.is_known();
     std::string least, ratios;
     if (known_vehicle) {
-      least = ",\n    " + programs::least_share_in_words(slopes, own);
+      least = ", " + programs::least_share_in_words(slopes, own);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         ratios += (axis == 0 ? ": " : ", ") + decimals(slopes[axis] / own[axis], 2);
       }
       ratios += " of the airframe's own in hover";
     }
-    std::printf(
-        "  proven: each signed sum of the commands rises with the angular acceleration about its axis, for every "
-        "input%s;\n    slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad%s;\n",
-        least.c_str(), slopes[0], slopes[1], slopes[2], ratios.c_str());
+    summary_.push_back(
+        programs::entry("proven", "more angular acceleration asked is more torque commanded, at every input" + least));
+    detail(programs::in_words("slopes roll %.6f, pitch %.6f, yaw %.6f s^2/rad", slopes[0], slopes[1], slopes[2]) +
+           ratios);
     if (structure) {
-      std::printf("    thrust slope %.6f s^2/m: %.2f of the airframe's own in hover;\n", structure->held_thrust_slope,
-                  structure->held_thrust_slope / own_thrust);
+      detail(programs::in_words("thrust slope %.6f s^2/m: %.2f of the airframe's own in hover",
+                                structure->held_thrust_slope, structure->held_thrust_slope / own_thrust));
     }
-    std::printf("    %s\n", programs::bound_in_words(structure).c_str());
+    detail(programs::bound_in_words(structure));
     const std::string intervals =
         known_vehicle ? known_slopes_in_words(known, own_thrust, own) : known_slopes_in_words(known, 1, {1, 1, 1}, 4);
     if (!intervals.empty()) {
-      std::printf("  95 %% intervals of the training rows, %s: %s\n",
-                  known_vehicle ? "over the airframe's own" : "s^2/rad and s^2/m", intervals.c_str());
+      detail(std::string("95 % intervals of the training rows, ") +
+             (known_vehicle ? "over the airframe's own" : "s^2/rad and s^2/m") + ": " + intervals);
     }
-    std::fflush(stdout);
     if (known_vehicle) {
       const std::string cause = vehicle_.identified() && !vehicle_.given
                                     ? "trained on quiet or noisy flights, or by the lag of the rotors, " +
@@ -514,13 +569,16 @@ class Training {
     if (const auto doubt = programs::thrust_doubt(*structure, own_thrust)) report_.warn(*doubt);
   }
 
+  void add_file(const std::string& name, const std::string& text) { summary_.push_back(programs::entry(name, text)); }
+
   /// The model in a closed loop on the vehicle of the logs, of recorded flights on their airframe; what looks ahead is
   /// not flown on measured motion.
-  nlohmann::json fly(const Exported& made, const programs::ModelKind& kind) const {
+  nlohmann::json fly(const Exported& made, const programs::ModelKind& kind, programs::FlownTraces& traces) const {
     if (kind.reach == programs::TimeReach::centred) return {};
-    if (!vehicle_.asked) return programs::fly_given(*made.model->block(), made.fold->split.train, plan_.airframe.value);
+    if (!vehicle_.asked)
+      return programs::fly_given(*made.model->block(), made.fold->split.train, plan_.airframe.value, traces);
     return programs::fly_logged(*made.model->block(), made.fold->split.train, *vehicle_.asked,
-                                !dataset_.lacks("velocity"));
+                                !dataset_.lacks("velocity"), traces);
   }
 
   void tell_flight(const nlohmann::json& flown) {
@@ -528,19 +586,18 @@ class Training {
     report_.flown(flown);
     if (flown.contains("why_not")) {
       const std::string why_not = "the model was not flown: " + flown["why_not"].get<std::string>();
-      vehicle_.asked ? report_.warn(why_not) : announce("  " + why_not);
+      vehicle_.asked ? report_.warn(why_not) : detail(why_not);
       return;
     }
     const auto centimetres = [&](const char* who) { return decimals(100 * flown[who]["rmse_m"].get<double>(), 1); };
-    std::printf(
-        "  flown on the vehicle that %s, figure-eight of %.1f s: %s cm off; by the analytic inverse %s, "
-        "by that without jerk and snap of the path %s\n",
-        vehicle_.asked ? "was identified" : "was given", flown["period_s"].get<double>(), centimetres("model").c_str(),
-        centimetres("formula").c_str(), centimetres("without_jerk").c_str());
+    summary_.push_back(programs::entry(
+        "flown", "a figure-eight of " + decimals(flown["period_s"].get<double>(), 1) + " s, on the vehicle that " +
+                     (vehicle_.asked ? "was identified" : "was given") + ": " + centimetres("model") +
+                     " cm off; the analytic inverse " + centimetres("formula") +
+                     "; without jerk and snap of the path " + centimetres("without_jerk")));
     const std::string compared = programs::comparison_in_words(flown["against_formula"]);
     if (!compared.empty()) {
-      std::printf("    its sums of commands beside the formula's there, slope (rms difference): %s\n",
-                  compared.c_str());
+      detail("its sums of commands beside the formula's there, slope (rms difference): " + compared);
     }
     const double answered = flown["model"]["answered_share"];
     if (answered < 0.99 && programs::unfit_to_fly(flown).empty()) {
@@ -578,27 +635,29 @@ class Training {
 
   void tell_held_out() const {
     const programs::HeldOutDynamics& held_out = *dynamics_;
-    std::printf("  on the rows held out the guard of %s answers %.1f %%\n", judged_.kinds[held_out.kind].kind.title,
-                100 * held_out.guard.answered_share());
+    detail(std::string("on the rows held out the guard of ") + judged_.kinds[held_out.kind].kind.title + " answers " +
+           decimals(100 * held_out.guard.answered_share(), 1) + " %");
     if (!held_out.has_spectra()) return;
-    std::printf("  noise lets no model have more than R^2 %.3f%s; flown after predicted commands:",
-                programs::mean_over_motors(held_out.ceiling.r2), held_out.ceiling.white ? "" : " (it is not white)");
+    std::string words =
+        "best R^2 possible with this sensor noise: " + decimals(programs::mean_over_motors(held_out.ceiling.r2), 3) +
+        (held_out.ceiling.white ? "" : " (the noise is not white)") + "; flown after predicted commands:";
     for (std::size_t sum = 0; sum < programs::sum_names.size(); ++sum) {
       const programs::FollowedRange& followed = held_out.followed[sum];
-      std::printf("%s %s", sum > 0 ? "," : "", programs::sum_names[sum]);
-      if (followed.to_hz > 0) {
-        std::printf(" to %.1f Hz, gain %.2f, %.0f ms", followed.to_hz, followed.gain, 1e3 * followed.delay_s);
-      } else {
-        std::printf(" not at all");
-      }
+      words += std::string(sum > 0 ? "," : "") + " " + programs::sum_names[sum];
+      words += followed.to_hz > 0 ? programs::in_words(" to %.1f Hz, gain %.2f, %.0f ms", followed.to_hz, followed.gain,
+                                                       1e3 * followed.delay_s)
+                                  : " not at all";
     }
-    std::printf("\n");
+    detail(words);
   }
 
   /// The page, and one to watch each held-out flight in 3D where that is built.
   void write_page() {
     programs::TrainingPage input{plan_,          dataset_, fits_, judged_, verdicts_,
                                  report_.json(), chosen_,  told_, {},      dynamics_ ? &*dynamics_ : nullptr};
+    input.found = found_ ? &*found_ : nullptr;
+    input.traces = &traces_;
+    input.inputs = inputs_;
     if (programs::WatchPage::available()) {
       programs::ProgressLine progress("flights to watch");
       for (const std::string& name : judged_.flights) {
@@ -614,7 +673,6 @@ class Training {
     AtomicFile file(options_.out + "/report.html");
     file.stream() << programs::training_page(input);
     file.commit();
-    std::printf("  %s/report.html\n", options_.out.c_str());
   }
 
   const TrainOptions& options_;
@@ -631,6 +689,11 @@ class Training {
   std::vector<std::size_t> unfit_;                     ///< kinds that were found not fit to fly
   std::optional<programs::HeldOutDynamics> dynamics_;  ///< of it, or of the best that was judged
   std::string told_;                                   ///< what became of the export
+  std::optional<programs::FlightVerdict> found_;       ///< on the export
+  bool made_ = false;                                  ///< something was exported
+  programs::FlownTraces traces_;                       ///< of it in the closed loop
+  std::string inputs_;                                 ///< C++ that fills its Inputs
+  std::vector<std::string> summary_;                   ///< entries after the table of models
 };
 
 }  // namespace
@@ -662,10 +725,10 @@ int programs::train(const TrainOptions& options) {
   std::printf("      %zu rows of %zu flight%s\n", dataset.flights.rows(), dataset.flights.size(),
               dataset.flights.size() == 1 ? "" : "s");
   if (!options.flights.empty() && !dataset.steps.empty() && !options.lag_s) {
-    announce("      " + dataset.steps.back().told + "; --lag 0 leaves the commands as they are");
+    programs::print_message(dataset.steps.back().told + "; --lag 0 leaves the commands as they are", 6);
   }
   print_folds(folds);
-  if (!given && !dataset.curve.told.empty()) announce("      " + dataset.curve.told);
+  if (!given && !dataset.curve.told.empty()) programs::print_message(dataset.curve.told, 6);
   if (options.flights.empty()) {
     vehicle = flown_vehicle(given, dataset, places_of(options, dataset), folds);
     print_vehicle(vehicle);

@@ -31,6 +31,7 @@ struct TrainOptions {
   int epochs = 0;  ///< 0: what suits each kind
   std::uint64_t seed = 1;
   unsigned threads = 0;
+  bool verbose = false;     ///< details beside the verdict and the table
   bool allow_poor = false;  ///< export what is worse than the mean, marked as such
 
   /// Of what was imported.

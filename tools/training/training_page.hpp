@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "command_line/flight_verdict.hpp"
 #include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "page/page.hpp"
@@ -32,6 +34,9 @@ struct TrainingPage {
   std::string export_sentence;                 ///< what became of it
   std::map<std::string, std::string> watched;  ///< flight -> file to watch it in 3D, where there is one
   const HeldOutDynamics* dynamics = nullptr;   ///< of the kind that is shown first
+  const FlightVerdict* found = nullptr;        ///< on what was exported; null: nothing was judged for it
+  const FlownTraces* traces = nullptr;         ///< of its closed loop
+  std::string inputs{};                        ///< C++ that fills its Inputs; empty: nothing was exported
 };
 
 namespace detail {
@@ -104,6 +109,8 @@ inline nlohmann::json table_rows(const TrainingPage& in, bool centred) {
                           {"key", kind.kind.key},
                           {"sees", word_of(kind.kind.reach)},
                           {"exported", in.exported == k},
+                          {"r2", shown_figure(over_seeds(kind, error_figures[0]), 1, 3)},
+                          {"rmse", shown_figure(over_seeds(kind, error_figures[3]), 1e3, 1)},
                           {"badge", badge_of(in.verdicts[k].standing)},
                           {"standing", word_of(in.verdicts[k].standing)},
                           {"sentence", in.verdicts[k].sentence}};
@@ -410,6 +417,35 @@ inline nlohmann::json or_false(const std::string& text) {
   return text.empty() ? nlohmann::json(false) : nlohmann::json(text);
 }
 
+inline nlohmann::json lines_of(const std::string& text) {
+  nlohmann::json lines = nlohmann::json::array();
+  std::istringstream rest(text);
+  for (std::string line; std::getline(rest, line);) lines.push_back(line);
+  return lines;
+}
+
+/// The verdict; false where there is none.
+inline nlohmann::json found_json(const TrainingPage& in) {
+  if (in.found == nullptr) return false;
+  std::string why = in.found->why();
+  for (std::size_t at; (at = why.find("R^2")) != std::string::npos;) why.replace(at, 3, "R²");
+  return {{"may_fly", word_of(in.found->may_fly())},
+          {"short", in.found->short_words()},
+          {"why", why},
+          {"next", or_false(in.found->next())}};
+}
+
+/// The path flown with the model and without it, and the error over time; false where it did not fly.
+inline nlohmann::json flown_path(const TrainingPage& in) {
+  const nlohmann::json& flown = in.report["closed_loop"];
+  if (in.traces == nullptr || in.traces->model.time_s.empty() || !flown.contains("model")) return false;
+  const auto centimetres = [&](const char* who) { return shown::number(100 * flown[who]["rmse_m"].get<double>(), 1); };
+  return {{"drawing", inline_svg(path_chart(*in.traces))},
+          {"with", centimetres("model")},
+          {"without", centimetres("without_jerk")},
+          {"answered", shown::number(100 * flown["model"]["answered_share"].get<double>(), 1)}};
+}
+
 }  // namespace detail
 
 /// The whole page.
@@ -430,7 +466,9 @@ inline std::string training_page(const TrainingPage& in) {
       {"logged", !in.dataset.mapping.empty() || !in.dataset.steps.empty()},
       {"fewest_pairs", fewest_pairs},
       {"can_decide", in.judged.flights.size() >= fewest_pairs},
-      {"verdict", detail::or_false(in.report["verdict"].is_object() ? in.report["verdict"].value("in_words", "") : "")},
+      {"found", detail::found_json(in)},
+      {"flown_path", detail::flown_path(in)},
+      {"inputs", detail::lines_of(in.inputs)},
       {"export_sentence", in.export_sentence},
       {"airframe", in.plan.airframe.name},
       {"bias_delay", shown::number(1e3 * in.plan.past.delay_s, 0)},

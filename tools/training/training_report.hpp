@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line/build_facts.hpp"
+#include "command_line/console.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/csv_table.hpp"
@@ -229,7 +230,7 @@ class TrainingReport {
 
   /// A warning: no reason to stop; printed on stderr too.
   void warn(const std::string& text) {
-    std::fprintf(stderr, "train: warning: %s\n", pinnquad::printable(text).c_str());
+    complain("train", "warning: " + text);
     json_["warnings"].push_back(pinnquad::printable(text));
   }
 
@@ -292,9 +293,12 @@ class TrainingReport {
   }
 
   /// The words that an export's header begins with.
-  void export_verdict(const ExportVerdict& said, const std::string& beside, nlohmann::json errors) {
-    json_["verdict"].update({{"fit_to_fly", said.fit_to_fly},
-                             {"in_words", pinnquad::printable(said.words)},
+  void export_verdict(const FlightVerdict& found, const std::string& beside, nlohmann::json errors) {
+    json_["verdict"].update({{"fit_to_fly", found.may_fly() != MayFly::no},
+                             {"may_fly", word_of(found.may_fly())},
+                             {"in_words", pinnquad::printable(found.words())},
+                             {"why", pinnquad::printable(found.why())},
+                             {"next", pinnquad::printable(found.next())},
                              {"beside_in_words", beside},
                              {"held_out_rmse", std::move(errors)}});
   }

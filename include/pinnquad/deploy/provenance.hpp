@@ -49,7 +49,7 @@ struct Provenance {
   /// Proven: least slopes of the signed sums, s^2/rad. A model with a certificate has its own.
   std::optional<AxisSlopes> proven_slopes = std::nullopt;
   SlopesOfSums slopes{};       ///< as the training rows know them
-  std::string fitness{};       ///< may it fly, without a full stop: "DO NOT FLY: why"; empty: nothing is said
+  std::string fitness{};       ///< may it fly, and what to do next, without a full stop; empty: nothing is said
   std::string beside{};        ///< its error beside those of others, as fitness
   bool airframe_known = true;  ///< false: slopes are not told over those of the airframe, which is another one
 

@@ -99,7 +99,7 @@ TEST_CASE("the page: figures, verdicts, drawings, worst moments with their links
   // over time, gain and phase, residuals; flights, errors over, ellipses; four moments: for wide, for narrow
   CHECK(count_of(page, "<svg") == 2 * (3 + 3 + 4));
   CHECK(page.find("<h2>Gain and phase, predicted to flown</h2>") != std::string::npos);
-  CHECK(page.find("noise lets no model have more than ") != std::string::npos);
+  CHECK(page.find(" with this noise") != std::string::npos);
   CHECK(page.find("outside the envelope of the training rows") != std::string::npos);
   CHECK(page.find("<td class=\"n\">39.9</td><td class=\"n\">38.2 to 41.5</td><td>rad/s^2</td><td>good</td>") !=
         std::string::npos);
@@ -121,6 +121,52 @@ TEST_CASE(
   CHECK(page.find("· tilt ") != std::string::npos);
   CHECK(page.find("No flights to watch in 3D") != std::string::npos);
   CHECK(page.find("id=\"vehicle\"") == std::string::npos);
+}
+
+TEST_CASE("the page begins with the verdict, the path flown with and without the model, and its Inputs to copy") {
+  using namespace pinnquad_test;
+  Judged run(simulated_dataset(4, 300), {constant_kind(), secret_mean_kind(), linear_kind()}, {{"flight2"}, {}}, 2);
+  pinnquad::logs::ImportedDataset imported;
+  imported.flights = run.dataset;
+  imported.sample_period_s = 0.05;
+  programs::TrainingReport report("nowhere.json", run.plan, imported);
+  report.judged(run.plan, run.judged, run.verdicts);
+  report.flown(
+      {{"period_s", 7.5},
+       {"model",
+        {{"rmse_m", 0.0123}, {"answered_share", 0.75}, {"largest_error_m", 1}, {"flown_s", 30}, {"status", "ok"}}},
+       {"formula", {{"rmse_m", 0.02}, {"largest_error_m", 1}, {"flown_s", 30}, {"status", "ok"}}},
+       {"without_jerk", {{"rmse_m", 0.456}, {"largest_error_m", 1}, {"flown_s", 30}, {"status", "ok"}}},
+       {"against_formula", nlohmann::json::object()}});
+  programs::FlightVerdict found("all is well");
+  found.care("R^2 0.7 is <low>", "record more");
+  programs::FlownTraces traces;
+  traces.model = {{0, 1}, {0, 1}, {0, 1}, {0, 1}, {0, 1}, {0, 0.1}};
+  traces.without = traces.model;
+  programs::TrainingPage input{run.plan,
+                               imported,
+                               run.fits,
+                               run.judged,
+                               run.verdicts,
+                               report.json(),
+                               std::size_t{2},
+                               "Exported.",
+                               {},
+                               nullptr,
+                               &found,
+                               &traces,
+                               "first line\nsecond line\n"};
+  const std::string page = programs::training_page(input);
+  const std::size_t verdict = page.find("<div class=\"verdict care\"><h1>fly with care</h1>");
+  REQUIRE(verdict != std::string::npos);
+  CHECK(page.find("R² 0.7 is &lt;low&gt;.") != std::string::npos);
+  CHECK(page.find("<b>Next:</b> record more") != std::string::npos);
+  CHECK(verdict < page.find("<b>1.2 cm</b>"));
+  CHECK(page.find("45.6 cm without it") != std::string::npos);
+  CHECK(page.find("<b>75.0&#160;%</b><span>of the path") != std::string::npos);
+  CHECK(page.find("Path from above") < page.find("<details"));
+  CHECK(page.find("first line&#10;second line&#10;") < page.find("<details"));
+  CHECK(page.find("{{") == std::string::npos);
 }
 
 TEST_CASE("the page draws what the first seed's model predicts") {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# Installs the locked packages into the folder PACKAGES and runs bundle.mjs. Run by the target watch_bundle with
+# Installs the locked packages into the folder PACKAGES and runs bundle.mjs. Run by the targets watch_page and watch_bundle with
 # NODE, NPM, SOURCE, PACKAGES, PAGE and REQUIRED (ON or AUTO). What fails under AUTO is a notice, and there is no page.
 get_filename_component(folder "${PAGE}" DIRECTORY)
 file(MAKE_DIRECTORY "${folder}")
@@ -8,7 +8,7 @@ file(MAKE_DIRECTORY "${folder}")
 macro(give_up what output)
   file(REMOVE "${PAGE}") # a page of older sources would be a lie
   if(REQUIRED STREQUAL "AUTO")
-    message(NOTICE "pinnquad: ${what}; fly --watch is not available. It said:\n${output}")
+    message(NOTICE "pinnquad: ${what}; fly --watch is not available. With a network: build the target watch_bundle. It said:\n${output}")
     return()
   endif()
   message(FATAL_ERROR "pinnquad: ${what}. It said:\n${output}")

@@ -179,8 +179,9 @@ struct CoreSettings {
   float most_across_m_s2{BiasSettings<float>{}.most_across_m_s2};
   float bias_hold_s{BiasSettings<float>{}.hold_s};
   float bias_fade_s{BiasSettings<float>{}.fade_s};
-  float state_delay_s{
-      0};  ///< by which a state comes late beside the commands; told (above 0), the biases are quick_where_told()
+  /// By which a state comes late beside the commands. 0: unknown, and the biases are slow; above 0 they are
+  /// quick_where_told().
+  float state_delay_s{0};
   // effects of the analytic inverse's vehicle
   std::uint32_t effects{0};
   float drag_n_s_m{0};          ///< of LinearDamping
