@@ -137,6 +137,14 @@ def test_a_throttle(pinnquad, flown):
         about = json.loads((Path(name) / "dataset.json").read_text())["thrust_curve"]
         assert about["k"] == pytest.approx(0.6, abs=0.02) and about["fitted"] == (name == "throttle")
     assert imported["throttle"] == pytest.approx(imported["stated"], abs=1e-9)
+    pinnquad("import throttle.csv --mapping throttle.toml --lag 0 --thrust-curve 0.6 --out given")
+    assert Path("given/throttle.csv").read_text() == Path("stated/throttle.csv").read_text()
+    assert json.loads(Path("given/dataset.json").read_text())["thrust_curve"] == json.loads(
+        Path("stated/dataset.json").read_text())["thrust_curve"]
+    pinnquad.refused("import throttle.csv --mapping throttle.toml --thrust-curve 2 --out bad", keyword="--thrust-curve")
+    Path("speeds.toml").write_text(THROTTLE.replace("signal", "speed"))
+    pinnquad.refused("import throttle.csv --mapping speeds.toml --airframe px4_sih --thrust-curve 0.6 --out bad",
+                     keyword="rotor speeds")
     pinnquad("import throttle.csv --mapping stated.toml --lag 0 --rate 200 --out between")
     thrusts = {round(200 * t): 0.4 * u + 0.6 * u ** 2 for t, u in
                ((float(row["t"]), float(row["u1"])) for row in table(next(Path("between").glob("*.csv"))))}

@@ -196,6 +196,16 @@ order = "betaflight"
     assert "32767" in said
 
 
+@pytest.mark.parametrize("scale", [0.5, 0.6])
+def test_imu_quaternion_of_another_scale(pinnquad, scale):
+    """Its x, y and z stand for another number than 32767, so the attitude turns by too little: it passed."""
+    names = [re.sub("^time$", "time (us)", name) for name in [*EXPLORER, *(f"imuQuaternion[{i}]" for i in range(3))]]
+    write("log.csv", [names], [[*blackbox_row(n, motors=(48, 2047)), *(round(scale * part) for part in quaternion_of(n))]
+                               for n in range(ROWS)])
+    pinnquad.refused("import log.csv --mapping betaflight --airframe paper_quadrotor --out bad", at="log.csv",
+                     keyword="the scale of the quaternion or the angles, or the range of the gyro")
+
+
 def test_a_cut_table(pinnquad):
     """The file ends within a row: that row is left out with a word. A short row before it is refused."""
     plain("log.csv")

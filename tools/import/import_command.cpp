@@ -25,7 +25,7 @@ struct ImportOptions {
   std::string mapping;
   std::string airframe;
   std::string out;
-  std::optional<double> rate_hz, to_s, cut_s;
+  std::optional<double> rate_hz, thrust_curve, to_s, cut_s;
   double from_s = 0;
   std::string lag = "auto";
   bool hold = false;
@@ -82,6 +82,7 @@ logs::LogSettings settings_of(const ImportOptions& options) {
   settings.rate_hz = options.rate_hz;
   settings.hold_commands = options.hold;
   settings.lag_s = programs::lag_of(options.lag);
+  settings.thrust_curve = options.thrust_curve;
   settings.from_s = options.from_s;
   settings.to_s = options.to_s;
   settings.cut_s = options.cut_s;
@@ -133,6 +134,9 @@ Command import_command(CLI::App& program) {
   line->add_option("--lag", options->lag, "from command to motion, removed from the commands: estimated, or as given")
       ->type_name("auto|SECONDS")
       ->capture_default_str();
+  add_number(*line, "--thrust-curve", options->thrust_curve, 0.0, 1.0,
+             "k of thrust = (1 - k) u + k u^2; else the mapping's, or fitted")
+      ->default_str("");
   add_time_range(*line, *options);
   add_number(*line, "--cut", options->cut_s, 1.0, 1e6,
              "flights become parts of about so many s, of which train can hold one out");

@@ -44,9 +44,9 @@ std::string evidence(const Identification& found) {
 
 CommandCurve command_curve(const Dataset& flights, const std::optional<double>& stated) {
   constexpr double longest_s = 1200;
-  const std::string overrule = "; `thrust_curve` in [motors] of a mapping, or --airframe, overrules it";
+  const std::string overrule = "; --thrust-curve, `thrust_curve` in [motors] of a mapping, or --airframe overrules it";
   const std::string law = "thrust curve of the commands, (1 - k) u + k u^2: ";
-  if (stated) return {*stated, false, law + "k = " + number_text(*stated) + ", as mapping or log says"};
+  if (stated) return {*stated, false, law + "k = " + number_text(*stated) + ", as given, or as mapping or log says"};
   RowSet rows;
   for (const Flight& flight : flights.flights()) {
     const double end_s = flight.front().time_s + longest_s / static_cast<double>(flights.size());

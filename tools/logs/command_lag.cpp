@@ -177,11 +177,14 @@ double sharpness_of(const std::vector<double>& curve, double step_s) noexcept {
   return peak > 0 ? 1 - better / peak : 0;
 }
 
+/// Share of the distance of two rows to which a lag between them is told at best.
+constexpr double of_a_row = 0.1;
+
 /// Half of the 95 % interval of a maximum, by how the log-likelihood per row bends there. Rows that a low-pass leaves
-/// alike count as one; what lies between rows is told to a fifteenth of their distance at best.
+/// alike count as one.
 double give_or_take_s(const std::vector<double>& curve, const LagGrid& grid, double seconds, std::size_t rows,
                       double low_pass_Hz) noexcept {
-  constexpr double deviations = 2, between_rows = 1.0 / 15;
+  constexpr double deviations = 2;
   const auto top = static_cast<std::size_t>(std::max_element(curve.begin(), curve.end()) - curve.begin());
   if (top == 0 || top + 1 >= curve.size()) return 0;
   const double bend = 2 * curve[top] - curve[top - 1] - curve[top + 1];
@@ -189,7 +192,7 @@ double give_or_take_s(const std::vector<double>& curve, const LagGrid& grid, dou
   if (low_pass_Hz > 0) independent = std::min(independent, 2 * low_pass_Hz * seconds);
   if (!(bend > 0 && independent > 0)) return HUGE_VAL;
   const double row_s = grid.period_s * static_cast<double>(grid.fine);
-  return std::hypot(deviations * grid.step_s() / std::sqrt(independent * bend), between_rows * row_s);
+  return std::hypot(deviations * grid.step_s() / std::sqrt(independent * bend), of_a_row * row_s);
 }
 
 /// Gives rows weights by blocks of time, so that a catch by hand or a knock weighs no more than the liveliest of the
@@ -359,9 +362,12 @@ CommandLag estimate_command_lag(const std::vector<Flight>& segments, double peri
         milliseconds(best.lag_s);
   } else if (best.spread_s > CommandLag::spread_of_doubt_s) {
     best.warning = "the motions disagree about the lag by " + milliseconds(best.spread_s);
-  } else if (best.give_or_take_s > CommandLag::most_give_or_take_s) {
-    best.warning = "the flight is too short or too calm to tell it: it looks like " + milliseconds(best.lag_s) +
-                   ", give or take " + milliseconds(best.give_or_take_s);
+  } else if (best.give_or_take_s > CommandLag::known_s) {
+    const bool far_apart = of_a_row * period_s > 0.9 * CommandLag::known_s;
+    best.warning =
+        (far_apart ? "rows " + milliseconds(period_s) + " apart don't tell it to " + milliseconds(CommandLag::known_s)
+                   : std::string("the flight is too short or too calm to tell it")) +
+        ": it looks like " + milliseconds(best.lag_s) + ", give or take " + milliseconds(best.give_or_take_s);
   } else {
     best.warning = "the lag hardly stands out: one that is 50 ms away explains the motion nearly as well";
   }

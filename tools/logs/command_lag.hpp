@@ -70,12 +70,15 @@ struct CommandLag {
   std::string warning;        ///< why it is not known, or that it is negative; empty for none
   std::size_t rows = 0;
 
-  static constexpr double spread_of_doubt_s = 0.01, confidence_of_doubt = 0.2, most_give_or_take_s = 0.005;
-  /// Told by a motion, the same by all that tell one, to 5 ms, and one 50 ms away explains clearly less.
-  bool known() const noexcept {
+  static constexpr double spread_of_doubt_s = 0.01, confidence_of_doubt = 0.2, likely_s = 0.01, known_s = 0.005;
+  /// Told by a motion, the same by all that tell one, to 10 ms, and one 50 ms away explains clearly less: nearer than
+  /// any guess, but no measurement.
+  bool likely() const noexcept {
     return found && told && spread_s <= spread_of_doubt_s && confidence >= confidence_of_doubt &&
-           give_or_take_s <= most_give_or_take_s;
+           give_or_take_s <= likely_s;
   }
+  /// Likely, and to 5 ms: never of rows 50 ms apart.
+  bool known() const noexcept { return likely() && give_or_take_s <= known_s; }
 };
 
 /// The lags that are tried: motors and links are faster, and motion before its command is what a clock that is wrong or

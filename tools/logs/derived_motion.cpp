@@ -141,6 +141,7 @@ LogRows rows_of_log(CommonRows rows, const BoundLog& log, const Mapping& mapping
       const bool world = axes_of(log, Quantity::acceleration) == Axes::world;
       acceleration = world ? in_body(rows, rows.acceleration) : rows.acceleration;
     } else if (result.has_velocity) {
+      result.force_of_velocity = true;
       if (!present(velocity_world)) velocity_world = in_world(rows, rows.velocity);
       acceleration = in_body(rows, derivative(rows, velocity_world, 1, "acceleration of velocities", result));
     } else {

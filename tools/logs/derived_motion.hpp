@@ -20,9 +20,10 @@ struct LogRows {
   Flight flight;
   std::vector<bool> landed;  ///< by what the log says; empty if it says nothing
   bool has_velocity = false, has_altitude = false;
-  std::vector<std::string> told;  ///< how what was computed was computed
-  std::size_t incomplete = 0;     ///< rows left out: a cell without a number, a gap in a topic
-  std::size_t window_ends = 0;    ///< rows left out: where a derivative's window reached beyond the rows
+  bool force_of_velocity = false;  ///< no accelerometer: the specific force is that which the velocity changes by
+  std::vector<std::string> told;   ///< how what was computed was computed
+  std::size_t incomplete = 0;      ///< rows left out: a cell without a number, a gap in a topic
+  std::size_t window_ends = 0;     ///< rows left out: where a derivative's window reached beyond the rows
 };
 
 /// Height of the ground in the log's heights: that of the rows on it before the flight, if the mapping says so.

@@ -27,6 +27,7 @@
 #include "logs/row_checks.hpp"
 #include "logs/sensor_check.hpp"
 #include "logs/standing_columns.hpp"
+#include "logs/tilt_check.hpp"
 #include "logs/tumbling.hpp"
 #include "logs/vehicle_check.hpp"
 #include "pinnquad/data/plausibility.hpp"
@@ -84,6 +85,7 @@ class Steps {
 struct Passage {
   std::string name, trajectory, source;
   std::size_t mapping = 0;  ///< which of the import's
+  bool force_of_velocity = false;
   std::vector<Flight> segments;
 
   std::size_t rows() const {
@@ -185,7 +187,22 @@ class Import {
       add(dataset_.taken, "mapping " + offered.name + " taken: " + offered.why);
     }
     if (mappings_.empty()) refuse_without_log();
+    if (settings_.thrust_curve) state_curve(*settings_.thrust_curve);
     use(0);
+  }
+
+  /// As if each mapping said so.
+  void state_curve(double k) {
+    bool taken = false;
+    for (Mapping& mapping : mappings_) {
+      for (Source& source : mapping.sources) {
+        if (source.quantity != Quantity::motors || source.numbers == MotorNumbers::speed) continue;
+        source.thrust_curve = k;
+        source.thrust_curve_parameter.clear();
+        taken = true;
+      }
+    }
+    if (!taken) throw std::invalid_argument("--thrust-curve goes with motor values: the mapping's are rotor speeds");
   }
 
   void use(std::size_t mapping) {
@@ -311,6 +328,7 @@ class Import {
     passage.trajectory = part.trajectory;
     passage.source = place.path;
     passage.mapping = current_;
+    passage.force_of_velocity = log_rows.force_of_velocity;
     Flight airborne = without(std::move(log_rows.flight), out);
     steps_.add("on the ground", before, airborne.size(),
                "landed by the log, lower than the mapping's [ground] says, borne by something");
@@ -508,13 +526,19 @@ class Import {
         lag_s = lag.lag_s;
         told = "estimated, confidence " + number_text(std::round(lag.confidence * 100) / 100);
       } else {
-        std::tie(lag_s, told) = usual_lag();
+        if (lag.likely() && lag.lag_s > 0) {  // motion before its commands is less likely than any guess
+          lag_s = lag.lag_s;
+          told = "as it looks";
+        } else {
+          std::tie(lag_s, told) = usual_lag();
+        }
         warn("lag not known: " + lag.warning + "; " + number_text(std::round(*lag_s * 1e3)) + " ms are removed, " +
-             told + ": give --lag SECONDS, or log quick small rolls and pitches in still air");
+             told +
+             ": give --lag SECONDS, or log quick small rolls and pitches in still air, rows less than 50 ms apart");
       }
     }
     dataset_.lag_removed_s = std::round(*lag_s * 1e6) / 1e6;
-    if (dataset_.lag_removed_s < -CommandLag::most_give_or_take_s) {  // less may be chance
+    if (dataset_.lag_removed_s < -CommandLag::known_s) {  // less may be chance
       dataset_.warnings.push_back(
           "lag: the commands stand " + number_text(std::round(-dataset_.lag_removed_s * 1e4) / 10) +
           " ms behind the motion that they make: the log's clocks or filters are off by more than the rotors lag; the "
@@ -605,7 +629,7 @@ class Import {
             if (finding.may_be_heading) causes_.emplace(flight.name, finding.words);
           }
         }
-        require_plausible_flight(flight, passage.source);
+        require_plausible_flight(flight, passage);
         const std::string unchecked = motion_not_checked(flight);
         if (!unchecked.empty()) add(dataset_.notes, flight.name + ": not checked: too little motion: " + unchecked);
         dataset_.flights.add(std::move(flight));
@@ -637,13 +661,15 @@ class Import {
 
   /// With its cause: an attitude in another order makes rates that do not turn it, and accelerations that fit no
   /// velocity.
-  void require_plausible_flight(const Flight& flight, const std::string& source) const {
+  void require_plausible_flight(const Flight& flight, const Passage& passage) const {
     auto found = find_implausible(flight);
     if (!found) found = find_standing_column(flight, {!dataset_.lacks("velocity"), !dataset_.lacks("altitude")});
     if (!found) found = find_wrong_gravity(flight);
+    if (!found) found = find_turning_of_other_size(flight);
+    if (!found && passage.force_of_velocity) found = find_velocity_off_tilt(flight, !dataset_.lacks("altitude"));
     if (!found) return;
     const auto cause = causes_.find(flight.name);
-    throw InputError(source, 0, 0, found->expected,
+    throw InputError(passage.source, 0, 0, found->expected,
                      (cause == causes_.end() ? "" : cause->second + "; ") + found->found + " at " +
                          number_text(flight[found->row].time_s) + " s of flight " + flight.name);
   }

@@ -247,4 +247,22 @@ std::vector<SensorFinding> check_sensors(const Flight& flight, bool has_velocity
   return findings;
 }
 
+std::optional<detail::Implausible> find_turning_of_other_size(const Flight& flight) {
+  using namespace detail;
+  constexpr double most = 4.0 / 3, related = 0.6;
+  const MotionBlocks sums = turning_pair(flight, {}).sums(turning_step_s);
+  const double product = sums.products.trace(), turned = sums.changes.sum(), integrated = sums.integrals.sum();
+  if (!(product > related * std::sqrt(turned * integrated)) || !(product > 0)) return std::nullopt;
+  // noise of the rates makes product / integrated small, noise of the attitude turned / product large
+  const bool small = turned<product / most, large = product> most * integrated;
+  const auto gain = [&](const MotionSums& block) {
+    return small ? block.products.trace() / most - block.changes.sum()
+                 : block.products.trace() - most * block.integrals.sum();
+  };
+  if (!(small || large) || !is_plain(sums.each(gain))) return std::nullopt;
+  return Implausible{0, angles_field, "an attitude that turns by the integral of the body rates w_x, w_y, w_z",
+                     "one that turns by " + short_number(small ? turned / product : product / integrated) +
+                         " times that: the scale of the quaternion or the angles, or the range of the gyro"};
+}
+
 }  // namespace pinnquad::logs

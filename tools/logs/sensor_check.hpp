@@ -6,10 +6,12 @@
 //   change of v / step - g - f = r x f
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pinnquad/data/dataset.hpp"
+#include "pinnquad/data/motion_checks.hpp"
 
 namespace pinnquad::logs {
 
@@ -26,5 +28,10 @@ struct SensorFinding {
 /// 14 ms, 3 and 1 degrees. Limits: fewer than 16 steps decide nothing. An offset of the accelerometer of 0.9 m/s^2
 /// looks like 5 degrees. A specific force that was computed of the velocity agrees with it.
 std::vector<SensorFinding> check_sensors(const Flight& flight, bool has_velocity, bool has_altitude);
+
+/// A mistake where the attitude plainly turns by less than three quarters, or more than four thirds, of what the rates
+/// integrate to over steps of 0.2 s, whichever of the two has the noise: counts of a quaternion that stand for another
+/// number, a gyro of another range.
+std::optional<detail::Implausible> find_turning_of_other_size(const Flight& flight);
 
 }  // namespace pinnquad::logs

@@ -65,7 +65,7 @@ struct Judged {
   double highest_command = 0;
   double lag_s = 0;  ///< from the commands as they were logged
   bool has_lag = false;
-  bool lag_found = false;  ///< known, see CommandLag
+  bool lag_found = false;  ///< likely, see CommandLag
 };
 
 /// Within what motors and links make, unless commands that are off by much more explain roll and pitch far better.
@@ -76,7 +76,7 @@ CommandLag widest_lag(const std::vector<Flight>& segments, double period_s) {
   };
   CommandLag lag = estimate_command_lag(segments, period_s);
   CommandLag wide = estimate_command_lag(segments, period_s, {-0.4, 0.4});
-  const bool better = wide.known() && explained(wide) > std::max(well, far_better * explained(lag));
+  const bool better = wide.likely() && explained(wide) > std::max(well, far_better * explained(lag));
   return better ? wide : lag;
 }
 
@@ -112,7 +112,7 @@ Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_
     judged.highest_command = std::max(judged.highest_command, *std::max_element(u.begin(), u.end()));
   }
   const CommandLag lag = widest_lag(judged.aligned, period_s);
-  judged.lag_found = lag.known();
+  judged.lag_found = lag.likely();
   judged.lag_s = lag.lag_s + lag_removed_s;
   for (Flight& segment : judged.aligned) segment = remove_lag(std::move(segment), period_s, lag.found ? lag.lag_s : 0);
   judged.has_lag = lag.found;

@@ -54,7 +54,7 @@ inline void remove_latency(pinnquad::logs::ImportedDataset& dataset, const pinnq
   }
   if (!given) {
     const pinnquad::logs::CommandLag lag = pinnquad::logs::estimate_command_lag(all, period_s);
-    if (!lag.known()) return;
+    if (!lag.likely()) return;
     const double rotor_s = detail::slowest_rotor_s(airframe);
     lag_s = period_s * std::round(detail::latency_s(lag.lag_s, rotor_s) / period_s);
     told = "whole rows of " + detail::milliseconds(lag.lag_s) + ", estimated, less the rotors' " +

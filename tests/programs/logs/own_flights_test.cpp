@@ -23,13 +23,13 @@ struct Imported {
   std::vector<Flight> flights;
   std::string refused;  ///< or what contradicts the vehicle
   double lag_s = 0;
-  bool lag_known = true;
+  bool lag_known = true, lag_likely = false;
 };
 
-Imported imported(const OwnFlight& plan, const std::vector<LoggedInstant>& instants) {
+Imported imported(const OwnFlight& plan, const std::vector<LoggedInstant>& instants, const std::string& mapping) {
   const TemporaryFolder folder;
   pinnquad::logs::LogSettings settings;
-  settings.mapping = folder.write("own.toml", own_mapping(plan));
+  settings.mapping = folder.write("own.toml", mapping);
   settings.airframe = plan.small ? "crazyflie_2_1" : "paper_quadrotor";
   const std::string log = folder.write("flight.ulg", own_ulog(instants, plan));
   Imported result;
@@ -39,12 +39,19 @@ Imported imported(const OwnFlight& plan, const std::vector<LoggedInstant>& insta
     result.flights.assign(flights.begin(), flights.end());
     if (!dataset.contradictions.empty()) result.refused = dataset.contradictions.front();
     result.lag_s = dataset.lag_removed_s;
-    for (const std::string& warning : dataset.warnings)
-      result.lag_known = result.lag_known && warning.find("lag not known") == std::string::npos;
+    for (const std::string& warning : dataset.warnings) {
+      if (warning.find("lag not known") == std::string::npos) continue;
+      result.lag_known = false;
+      result.lag_likely = warning.find("are removed, as it looks: give --lag") != std::string::npos;
+    }
   } catch (const std::exception& error) {
     result.refused = error.what();
   }
   return result;
+}
+
+Imported imported(const OwnFlight& plan, const std::vector<LoggedInstant>& instants) {
+  return imported(plan, instants, own_mapping(plan));
 }
 
 Imported imported(const OwnFlight& plan) { return imported(plan, flown_instants(plan)); }
@@ -101,10 +108,11 @@ std::size_t flights_to_fly() {
 
 }  // namespace
 
-/// Rows 50 ms apart: to a sixth of a row.
+/// Rows 50 ms apart were told to 5 ms, and were up to 8 ms off: what is removed of them is nearer than any guess, and
+/// not known.
 TEST_CASE("no own flight is refused; its lag is right to 5 ms, or not known") {
-  constexpr double slow_filter_s = 0.008, least_s = 0.005, of_a_row = 1.0 / 6;
-  std::size_t known = 0;
+  constexpr double slow_filter_s = 0.008, known_s = 0.005, likely_s = 0.01, far_apart_s = 0.05;
+  std::size_t known = 0, likely = 0, close = 0, far = 0;
   for (std::size_t n = 0; n < flights_to_fly(); ++n) {
     const OwnFlight plan = own_flight(n);
     CAPTURE(n);
@@ -112,14 +120,19 @@ TEST_CASE("no own flight is refused; its lag is right to 5 ms, or not known") {
     const std::vector<LoggedInstant> instants = flown_instants(plan);
     const Imported read = imported(plan, instants);
     CHECK(read.refused == "");
-    if (!read.lag_known || !read.refused.empty()) continue;
-    ++known;
-    const double lag_s = true_lag_s(instants, plan), row_s = read.flights[0][1].time_s - read.flights[0][0].time_s;
-    const double tolerance_s = std::max(least_s, of_a_row * row_s);
+    if (!read.refused.empty()) continue;
+    const double row_s = read.flights[0][1].time_s - read.flights[0][0].time_s;
+    const bool far_apart = row_s > 0.9 * far_apart_s;
+    CHECK_FALSE((far_apart && read.lag_known));
+    (far_apart ? far : close) += 1;
+    if (!read.lag_known && !read.lag_likely) continue;
+    (read.lag_known ? known : likely) += 1;
+    const double lag_s = true_lag_s(instants, plan), tolerance_s = read.lag_known ? known_s : likely_s;
     CHECK(read.lag_s > lag_s - tolerance_s);  // an angular acceleration of the log is filtered once more
     CHECK(read.lag_s < lag_s + tolerance_s + (plan.derivative ? slow_filter_s : 0));
   }
-  CHECK(10 * known > 8 * flights_to_fly());
+  CHECK(10 * known > 8 * close);
+  CHECK(2 * likely > far);
 }
 
 /// Roll, pitch and yaw answer a knock before the commands do: 49 ms were removed, the wrong way.
@@ -145,6 +158,32 @@ TEST_CASE("a catch by hand does not decide the order of the motors") {
     CAPTURE(n);
     CHECK(imported(own_flight(n)).refused == "");
   }
+}
+
+/// Without an accelerometer it passed without a word: what is derived of a velocity agrees with it in any axes.
+TEST_CASE("a velocity in the body's axes, read as the world's, is found by the tilt where there is no accelerometer") {
+  std::size_t lively = 0, found = 0;
+  for (std::size_t n = 0; n < flights_to_fly(); n += 3) {
+    const OwnFlight plan = own_flight(n);
+    CAPTURE(n);
+    CAPTURE(flight_kind_names[static_cast<std::size_t>(plan.kind)]);
+    std::string mapping = own_mapping(plan);
+    const std::size_t begin = mapping.find("[specific_force]");
+    mapping.erase(begin, mapping.find("[velocity]") - begin);
+    std::vector<LoggedInstant> instants = flown_instants(plan);
+    CHECK(imported(plan, instants, mapping).refused == "");
+    if (plan.kind != FlightKind::lively && plan.kind != FlightKind::gusts) continue;
+    using pinnquad::swap_enu_ned, pinnquad::swap_flu_frd;
+    for (LoggedInstant& now : instants) {
+      now.velocity_m_s = pinnquad::world_to_body(now.attitude, now.velocity_m_s);
+      if (plan.enu_flu)
+        now.velocity_m_s = swap_enu_ned(swap_flu_frd(now.velocity_m_s));  // own_ulog() swaps the world's
+    }
+    ++lively;
+    found +=
+        imported(plan, instants, mapping).refused.find("velocities in the body's axes") != std::string::npos ? 1 : 0;
+  }
+  CHECK(10 * found > 9 * lively);
 }
 
 TEST_CASE("faults are found in a lively flight, but for two") {

@@ -64,11 +64,14 @@ struct LogSettings {
   std::string airframe;
   std::optional<double> rate_hz;  ///< empty: that of the slowest of commands, body rates and force, at most 100
   std::optional<double> lag_s;    ///< from command to motion; empty: estimated
-  double from_s = 0;              ///< of each log, from its first row on: rows before are left out
-  std::optional<double> to_s;     ///< and rows after; empty: to the end
-  std::optional<double> cut_s;    ///< flights are cut into parts of about this length; empty: they stay whole
-  bool hold_commands = false;     ///< a command holds until the next row, where lines are drawn between rows otherwise
-  bool keep_saturated = false;    ///< rows with a command at its limit stay: what the motors were given is known
+  /// k of a rotor's thrust (1 - k) u + k u^2 by the motor's value u; empty: as mapping or log says, else fitted. Throws
+  /// std::invalid_argument where the motors are rotor speeds.
+  std::optional<double> thrust_curve;
+  double from_s = 0;            ///< of each log, from its first row on: rows before are left out
+  std::optional<double> to_s;   ///< and rows after; empty: to the end
+  std::optional<double> cut_s;  ///< flights are cut into parts of about this length; empty: they stay whole
+  bool hold_commands = false;   ///< a command holds until the next row, where lines are drawn between rows otherwise
+  bool keep_saturated = false;  ///< rows with a command at its limit stay: what the motors were given is known
   OnProgress on_progress;
 };
 
