@@ -196,8 +196,9 @@ class OnboardInverse {
     }
     if (!begun_ || now_us - begun_us_ < settings_.period_us) return;
     const Scalar t_s = sine_time_s<Scalar>(now_us - begun_us_ - settings_.period_us);
-    answer_.add(t_s, settings_.excitation, amplitudes, motion, bank_, regression_.keep());
-    second_.add(t_s, settings_.excitation, amplitudes, motion, bank_, Scalar(1));
+    const AskedSines<Scalar> asked = asked_sines(t_s, settings_.excitation, amplitudes);
+    answer_.add(asked, motion, bank_, regression_.keep());
+    second_.add(asked, motion, bank_, Scalar(1));
   }
 
   /// Two periods of flight.

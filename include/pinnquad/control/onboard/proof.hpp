@@ -99,9 +99,9 @@ bool slope_possible(std::size_t k, Scalar slope, Scalar thrust, Scalar propeller
 template <class Scalar>
 Scalar terms_bound(std::size_t k, const ForwardSum<Scalar>& sum, const ForwardSum<Scalar>& start) noexcept {
   constexpr Scalar envelope[4][rise_term] = {{Scalar(0), Scalar(3), Scalar(9), Scalar(6), Scalar(6)},
-                                             {Scalar(0), Scalar(1), Scalar(4), Scalar(4), Scalar(6)},
-                                             {Scalar(0), Scalar(1), Scalar(4), Scalar(4), Scalar(6)},
-                                             {Scalar(0), Scalar(1), Scalar(2), Scalar(8), Scalar(0)}};
+                                             {Scalar(0), Scalar(4), Scalar(4), Scalar(6), Scalar(1)},
+                                             {Scalar(0), Scalar(4), Scalar(4), Scalar(6), Scalar(1)},
+                                             {Scalar(0), Scalar(2), Scalar(8), Scalar(0), Scalar(1)}};
   Scalar bound(0);
   for (std::size_t i = 1; i < rise_term; ++i) {
     const Scalar beside = (sum.theta[i] - start.theta[i]) / sum.slope();
