@@ -19,7 +19,11 @@ namespace pinnquad {
 template <class Scalar>
 struct RegressionSettings {
   Scalar forget_s = Scalar(20), forget_drag_s = Scalar(30);
-  Scalar repeats = Scalar(3);     ///< rows that say the same, as two of them share a period
+  Scalar repeats = Scalar(3);  ///< rows that say the same, as two of them share a period
+  /// Feedback answers wind with the commands that a row is of, and least squares take one for the other. Rows are beside
+  /// this share of their running means, so long, which the wind is in too; not of yaw.
+  std::array<Scalar, 3> wind_s{Scalar(0.15), Scalar(0.3), Scalar(0.3)};
+  Scalar wind_share = Scalar(0.9);
   std::uint32_t rows_of_yaw = 4;  ///< are one of yaw, their mean: feedback answers gyro noise that is quicker
 };
 
@@ -46,6 +50,7 @@ class SumRegression {
     const Scalar period_s = Scalar(1e-6) * static_cast<Scalar>(period_us);
     root_keep_ = exp(-period_s / (Scalar(2) * settings.forget_s));
     root_keep_yaw_ = exp(-Scalar(settings.rows_of_yaw) * period_s / (Scalar(2) * settings.forget_s));
+    for (std::size_t k = 0; k < 3; ++k) follows_[k] = period_s / (period_s + settings.wind_s[k]);
     root_keep_drag_ = exp(-period_s / (Scalar(4) * settings.forget_drag_s));  // two rows a period
   }
 
@@ -62,6 +67,8 @@ class SumRegression {
              const Vector3<Scalar>& force_m_s2) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       SumRow row = row_of(k, motion, bank);
+      if (!(rows_ > Scalar(0))) means_[k] = row;
+      put_beside(row, means_[k], follows_[k], settings_.wind_share);
       triangles_[k].turn_in(row.shared, row.owns, root_keep_);
     }
     rows_ = keep() * rows_ + Scalar(1);
@@ -74,9 +81,7 @@ class SumRegression {
   /// Share of the rows before that is kept.
   Scalar keep() const noexcept { return root_keep_ * root_keep_; }
   /// Rows of a sum that are remembered.
-  Scalar rows(std::size_t k) const noexcept {
-    return k == 3 ? rows_of_yaw_ * Scalar(settings_.rows_of_yaw) : rows_;
-  }
+  Scalar rows(std::size_t k) const noexcept { return k == 3 ? rows_of_yaw_ * Scalar(settings_.rows_of_yaw) : rows_; }
 
   /// The lag that leaves least of the angular accelerations, between those of the bank by the parabola through the best
   /// one and its neighbours; yaw counts a third.
@@ -156,6 +161,16 @@ class SumRegression {
     }
     return row;
   }
+  static void put_beside(SumRow& row, SumRow& means, Scalar follows, Scalar share) noexcept {
+    const auto beside = [=](Scalar& value, Scalar& mean) noexcept {
+      mean += follows * (value - mean);
+      value -= share * mean;
+    };
+    for (std::size_t i = 0; i < row.shared.size(); ++i) beside(row.shared[i], means.shared[i]);
+    for (std::size_t lag = 0; lag < lag_count; ++lag) {
+      for (std::size_t i = 0; i < row.owns[lag].size(); ++i) beside(row.owns[lag][i], means.owns[lag][i]);
+    }
+  }
   void teach_yaw(const SumRow& row) noexcept {
     const Scalar share = Scalar(1) / Scalar(settings_.rows_of_yaw);
     for (std::size_t i = 0; i < row.shared.size(); ++i) mean_.of.shared[i] += share * row.shared[i];
@@ -180,6 +195,7 @@ class SumRegression {
   RegressionSettings<Scalar> settings_;
   std::uint32_t period_us_;
   Scalar root_keep_{0}, root_keep_yaw_{0}, root_keep_drag_{0};
+  std::array<Scalar, 3> follows_{};
   std::uint64_t row_us_ = 0;
   std::array<SumTriangles<Scalar>, 4> triangles_{};
   Scalar rows_{0}, rows_of_yaw_{0}, rows_of_drag_{0};  ///< each as often as it is still remembered
@@ -187,6 +203,7 @@ class SumRegression {
     SumRow of;
     std::uint32_t rows = 0;
   } mean_{};  ///< of yaw, until it is whole
+  std::array<SumRow, 3> means_{};
   Triangle<Scalar, 3> drag_{};
 };
 
