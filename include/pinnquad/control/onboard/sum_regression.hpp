@@ -20,8 +20,8 @@ template <class Scalar>
 struct RegressionSettings {
   Scalar forget_s = Scalar(20), forget_drag_s = Scalar(30);
   Scalar repeats = Scalar(3);  ///< rows that say the same, as two of them share a period
-  /// Feedback answers wind with the commands that a row is of, and least squares take one for the other. Rows are beside
-  /// this share of their running means, so long, which the wind is in too; not of yaw.
+  /// Feedback answers wind with the commands that a row is of, and least squares take one for the other. Rows are
+  /// beside this share of their running means, so long, which the wind is in too; not of yaw.
   std::array<Scalar, 3> wind_s{Scalar(0.15), Scalar(0.3), Scalar(0.3)};
   Scalar wind_share = Scalar(0.9);
   std::uint32_t rows_of_yaw = 4;  ///< are one of yaw, their mean: feedback answers gyro noise that is quicker
