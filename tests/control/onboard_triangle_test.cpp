@@ -15,48 +15,56 @@
 
 using namespace pinnquad;
 
-TEST_CASE("R^T R is the sum of products, each row as often as it is remembered") {
+TEST_CASE("R^T R of each variant is the sum of products, each row as often as it is remembered") {
   constexpr double keep = 0.97, rounding = 1e-10;
-  Triangle<double, 5> triangle;
-  Eigen::Matrix<double, 5, 5> sums = Eigen::Matrix<double, 5, 5>::Zero();
+  using Shared = SharedTriangle<double, 3, 2, 4>;
+  Shared triangles;
+  std::array<Eigen::Matrix<double, 6, 6>, 4> sums;
+  sums.fill(Eigen::Matrix<double, 6, 6>::Zero());
   std::mt19937_64 random{3};
-  double rows = 0;
   for (int n = 0; n < 300; ++n) {
-    Triangle<double, 5>::Row row{};
+    Shared::Row row{};
+    Shared::Owns owns{};
     for (double& x : row) x = standard_normal(random);
-    triangle.add(row, std::sqrt(keep));
-    const Eigen::Map<const Eigen::Matrix<double, 5, 1>> v(row.data());
-    sums = keep * sums + v * v.transpose();
-    rows = keep * rows + 1;
-  }
-  for (std::size_t i = 0; i < 5; ++i) {
-    for (std::size_t j = i; j < 5; ++j) {
-      double product = 0;
-      for (std::size_t k = 0; k <= i; ++k) product += triangle.at(k, i) * triangle.at(k, j);
-      CHECK(std::abs(product - sums(static_cast<int>(i), static_cast<int>(j))) < rounding * sums.norm());
+    for (std::size_t v = 0; v < owns.size(); ++v) {
+      for (double& x : owns[v]) x = standard_normal(random);
+      Eigen::Matrix<double, 6, 1> m;
+      m << row[0], row[1], row[2], owns[v][0], owns[v][1], row[3];
+      sums[v] = keep * sums[v] + m * m.transpose();
     }
+    triangles.turn_in(row, owns, std::sqrt(keep));
   }
-  CHECK(std::abs(triangle.rows() - rows) < rounding * rows);
+  for (std::size_t v = 0; v < sums.size(); ++v) {
+    const Triangle<double, 6> triangle = triangles.of(v);
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t j = i; j < 6; ++j) {
+        double product = 0;
+        for (std::size_t k = 0; k <= i; ++k) product += triangle.at(k, i) * triangle.at(k, j);
+        CHECK(std::abs(product - sums[v](static_cast<int>(i), static_cast<int>(j))) < rounding * sums[v].norm());
+      }
+    }
+    CHECK(triangles.left(v) == triangle.at(5, 5));
+  }
 }
 
 TEST_CASE("a solution is that of the normal equations with the prior") {
-  constexpr double repeats = 3, tolerance = 1e-8;
+  constexpr double rows = 200, repeats = 3, tolerance = 1e-8;
   SumTriangle<double> triangle;
   Eigen::Matrix<double, 7, 7> products = Eigen::Matrix<double, 7, 7>::Zero();
   Eigen::Matrix<double, 7, 1> with_output = Eigen::Matrix<double, 7, 1>::Zero();
   std::mt19937_64 random{5};
-  for (int n = 0; n < 200; ++n) {
+  for (int n = 0; n < rows; ++n) {
     SumTriangle<double>::Row row{};
     row[0] = 1;
     for (std::size_t i = 1; i < 7; ++i) row[i] = standard_normal(random);
     row[7] = 2 - row[1] + 0.5 * row[4] + 30 * row[6] + standard_normal(random);
-    triangle.add(row, 1.0);
+    triangle.turn_in(row, 1.0);
     const Eigen::Map<const Eigen::Matrix<double, 7, 1>> x(row.data());
     products += x * x.transpose();
     with_output += row[7] * x;
   }
   const Terms<double> mean{0, 1, 0, 0, 0, 0, 20}, deviations{5, 0.1, 1, 0.3, 1, 0.2, 10};
-  const SumSolution<double> solution = solved(triangle, mean, deviations, repeats);
+  const SumSolution<double> solution = solved(triangle, rows, mean, deviations, repeats);
   for (int i = 0; i < 7; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const double weight = repeats * solution.left_square / (deviations[at] * deviations[at]);

@@ -23,7 +23,7 @@ struct ExcitationSettings {
       Sines{Scalar(0.6), Scalar(0.8), Scalar(0.7), Scalar(1.7)}, Sines{Scalar(2), Scalar(5), Scalar(1.1), Scalar(2.3)},
       Sines{Scalar(2), Scalar(5), Scalar(1.4), Scalar(2.9)}, Sines{Scalar(0.5), Scalar(1.5), Scalar(0.5), Scalar(1.3)}};
   Scalar most_of_sum = Scalar(0.4);    ///< no sine asks for more of a signed sum of thrust fractions
-  Scalar share_unknown = Scalar(0.4);  ///< of them, where nobody asked for sines, while the sum is unknown
+  Scalar share_unknown = Scalar(0.7);  ///< of them, where nobody asked for sines, while the sum is unknown
   Scalar rise_s = Scalar(0.3);
 };
 

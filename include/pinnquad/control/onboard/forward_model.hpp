@@ -16,8 +16,8 @@
 namespace pinnquad {
 
 /// Terms of a sum. That of the sum's own thrusts is the last; the one before is how fast they rise: a state that comes
-/// later, or sooner, than the lag says.
-inline constexpr std::size_t term_count = 7, own_term = term_count - 1, rise_term = own_term - 1;
+/// later, or sooner, than the lag says. Of terms before lag_terms the lag changes none.
+inline constexpr std::size_t term_count = 7, own_term = term_count - 1, rise_term = own_term - 1, lag_terms = 4;
 template <class Scalar>
 using Terms = std::array<Scalar, term_count>;
 
@@ -38,8 +38,8 @@ SumMotion<Scalar> sum_motion(const MotionInputs<Scalar>& motion) noexcept {
 }
 
 /// x of sum k: 1, four terms, the rise of its own thrusts, these. Thrust: v_z, v_z |v_z|, v_x, v_y. Roll, pitch, yaw:
-/// the total sum (a centre of gravity that is off), its own rate, the product of the two others, the velocity across
-/// (0 of yaw).
+/// its own rate, the product of the two others, the velocity across (0 of yaw), the total sum (a centre of gravity that
+/// is off).
 template <class Scalar>
 Terms<Scalar> terms_of(std::size_t k, const SumMotion<Scalar>& motion, Scalar total,
                        const Followed<Scalar>& own) noexcept {
@@ -47,9 +47,9 @@ Terms<Scalar> terms_of(std::size_t k, const SumMotion<Scalar>& motion, Scalar to
   const Scalar rise = own.rise_1_s, sum = own.sum, one(1);
   switch (k) {
     case 0: return {one, v[2], v[2] < Scalar(0) ? -v[2] * v[2] : v[2] * v[2], v[0], v[1], rise, sum};
-    case 1: return {one, total, w[0], w[1] * w[2], v[1], rise, sum};
-    case 2: return {one, total, w[1], w[2] * w[0], v[0], rise, sum};
-    default: return {one, total, w[2], w[0] * w[1], Scalar(0), rise, sum};
+    case 1: return {one, w[0], w[1] * w[2], v[1], total, rise, sum};
+    case 2: return {one, w[1], w[2] * w[0], v[0], total, rise, sum};
+    default: return {one, w[2], w[0] * w[1], Scalar(0), total, rise, sum};
   }
 }
 
@@ -88,9 +88,9 @@ ForwardModel<Scalar> forward_model(const Airframe<Scalar>& airframe) noexcept {
     model[k].lag = lag;
   }
   model[0].theta[2] = -airframe.drag_area_m2[2] * rated_air_density_kg_m3<Scalar> / airframe.mass_kg;
-  model[1].theta[3] = (j[1] - j[2]) / j[0];
-  model[2].theta[3] = (j[2] - j[0]) / j[1];
-  model[3].theta[3] = (j[0] - j[1]) / j[2];
+  model[1].theta[2] = (j[1] - j[2]) / j[0];
+  model[2].theta[2] = (j[2] - j[0]) / j[1];
+  model[3].theta[2] = (j[0] - j[1]) / j[2];
   return model;
 }
 
@@ -103,20 +103,16 @@ Terms<Scalar> prior_deviations(std::size_t k, const ForwardSum<Scalar>& start) n
   if (k == 0) {
     return {Scalar(5), Scalar(0.5), Scalar(0.05), Scalar(0.05), Scalar(0.05), delay_s * slope, slope};
   }
-  return {Scalar(20), Scalar(0.2) * slope, Scalar(1), Scalar(0.7), Scalar(1), delay_s * slope, slope};
+  const Scalar product = k == 3 ? Scalar(0.25) : Scalar(0.7);  // (J_x - J_y) / J_z, J_z about J_x + J_y
+  return {Scalar(20), Scalar(1), product, Scalar(1), Scalar(0.2) * slope, delay_s * slope, slope};
 }
 
 /// Columns: the terms, then the acceleration that they explain.
 inline constexpr std::size_t output_column = term_count;
 template <class Scalar>
 using SumTriangle = Triangle<Scalar, output_column + 1>;
-
-/// Mean square of what least squares leave of the acceleration, without a prior.
 template <class Scalar>
-Scalar mean_left_square(const SumTriangle<Scalar>& triangle) noexcept {
-  const Scalar left = triangle.at(output_column, output_column);
-  return triangle.rows() > Scalar(0) ? left * left / triangle.rows() : Scalar(0);
-}
+using SumTriangles = SharedTriangle<Scalar, lag_terms, term_count - lag_terms, lag_count>;
 
 /// Solution of a sum, and what is known of its slope.
 template <class Scalar>
@@ -127,19 +123,20 @@ struct SumSolution {
 };
 
 /// Least squares with a prior, which is added here and is never forgotten: a term of which nothing is said any more
-/// goes back to it. `repeats`: so many rows say the same; the prior weighs against the rows as one of their number.
+/// goes back to it. `repeats`: so many of the rows say the same; the prior weighs against them as one of their number.
 template <class Scalar>
-SumSolution<Scalar> solved(SumTriangle<Scalar> triangle, const Terms<Scalar>& mean, const Terms<Scalar>& deviations,
-                           Scalar repeats) noexcept {
+SumSolution<Scalar> solved(SumTriangle<Scalar> triangle, Scalar rows, const Terms<Scalar>& mean,
+                           const Terms<Scalar>& deviations, Scalar repeats) noexcept {
   using std::sqrt;
   SumSolution<Scalar> result;
-  result.left_square = mean_left_square(triangle);
+  const Scalar left = triangle.at(output_column, output_column);
+  result.left_square = rows > Scalar(0) ? left * left / rows : Scalar(0);
   const Scalar weight = sqrt(repeats * result.left_square + Scalar(1e-12));
   for (std::size_t i = 0; i < term_count; ++i) {
     typename SumTriangle<Scalar>::Row row{};
     row[i] = weight / deviations[i];
     row[output_column] = row[i] * mean[i];
-    triangle.turn_in(row, i);
+    triangle.turn_in(row, Scalar(1), i);
   }
   for (std::size_t i = term_count; i-- > 0;) {
     Scalar right = triangle.at(i, output_column);

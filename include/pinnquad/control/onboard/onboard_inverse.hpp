@@ -196,8 +196,9 @@ class OnboardInverse {
     }
     if (!begun_ || now_us - begun_us_ < settings_.period_us) return;
     const Scalar t_s = sine_time_s<Scalar>(now_us - begun_us_ - settings_.period_us);
-    answer_.add(t_s, settings_.excitation, amplitudes, motion, bank_, regression_.keep());
-    second_.add(t_s, settings_.excitation, amplitudes, motion, bank_, Scalar(1));
+    const AskedSines<Scalar> asked = asked_sines(t_s, settings_.excitation, amplitudes);
+    answer_.add(asked, motion, bank_, regression_.keep());
+    second_.add(asked, motion, bank_, Scalar(1));
   }
 
   /// Two periods of flight.
@@ -303,6 +304,12 @@ class OnboardInverse {
       const SineWitness<Scalar> sines{answer_.share(k), answer_.slope(k, sum.forward, settings_.excitation)};
       sum.refused_last = refusal(k, sum.forward, start_model_[k], solution, regression_.rows(k),
                                  candidate_[0].forward.slope(), sines, start_.propeller_diameter_m, settings_.proof);
+    }
+    const auto late = [this](std::size_t k) noexcept { return candidate_[k].refused_last == OnboardRule::lag_unknown; };
+    const bool any_late = late(1) || late(2);  // samples that come late are of all sums
+    for (std::size_t k = 0; k < 4; ++k) {
+      OnboardSum<Scalar>& sum = candidate_[k];
+      if (any_late && sum.refused_last == OnboardRule::none) sum.refused_last = OnboardRule::lag_unknown;
       sum.proven = sum.refused_last == OnboardRule::none;
       judging_ = judging_ || sum.proven;
       if (!sum.proven) flown_[k].refused_last = sum.refused_last;

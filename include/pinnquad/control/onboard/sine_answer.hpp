@@ -12,21 +12,41 @@
 
 namespace pinnquad {
 
+/// A complex number.
+template <class Scalar>
+struct SineWave {
+  Scalar real{0}, imaginary{0};
+};
+
+/// A exp(-i w t) of each sum's fast sine, A the amplitude asked for, an acceleration.
+template <class Scalar>
+using AskedSines = std::array<SineWave<Scalar>, 4>;
+/// At `t_s` of the sines.
+template <class Scalar>
+AskedSines<Scalar> asked_sines(Scalar t_s, const ExcitationSettings<Scalar>& settings,
+                               const std::array<Scalar, 4>& amplitudes) noexcept {
+  using std::cos;
+  using std::sin;
+  constexpr Scalar two_pi = Scalar(6.283185307179586);
+  AskedSines<Scalar> asked{};
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    const Scalar angle = two_pi * settings.sums[k].fast_Hz * t_s;
+    asked[k] = {amplitudes[k] * cos(angle), -amplitudes[k] * sin(angle)};
+  }
+  return asked;
+}
+
 /// Fourier sums of each signed sum and of its acceleration at the frequency of its fast sine, weighted by the sine's
 /// amplitude, and forgotten as rows are.
 template <class Scalar>
 class SineAnswer {
  public:
-  /// A row whose middle is at `t_s` of the sines; the thrusts are behind the lag of `reference_lag`. The amplitudes are
-  /// those asked for, accelerations.
-  void add(Scalar t_s, const ExcitationSettings<Scalar>& settings, const std::array<Scalar, 4>& amplitudes,
-           const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank, Scalar keep) noexcept {
-    using std::cos;
-    using std::sin;
+  /// A row and the sines that were asked for in its middle; its thrusts are behind the lag of `reference_lag`.
+  void add(const AskedSines<Scalar>& asked, const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank,
+           Scalar keep) noexcept {
     for (std::size_t k = 0; k < 4; ++k) {
-      energy_[k] = keep * energy_[k] + amplitudes[k] * amplitudes[k] / Scalar(2);
-      const Scalar angle = two_pi * settings.sums[k].fast_Hz * t_s;
-      const Wave by{amplitudes[k] * cos(angle), -amplitudes[k] * sin(angle)};
+      const SineWave<Scalar>& by = asked[k];
+      energy_[k] = keep * energy_[k] + (by.real * by.real + by.imaginary * by.imaginary) / Scalar(2);
       const Scalar own = bank.at(k, reference_lag).sum, a = motion.accelerations[k];
       sum_[k] = {keep * sum_[k].real + by.real * own, keep * sum_[k].imaginary + by.imaginary * own};
       acceleration_[k] = {keep * acceleration_[k].real + by.real * a,
@@ -48,7 +68,7 @@ class SineAnswer {
   Scalar slope(std::size_t k, const ForwardSum<Scalar>& sum,
                const ExcitationSettings<Scalar>& settings) const noexcept {
     const Scalar w = two_pi * settings.sums[k].fast_Hz;
-    const Scalar damping = sum.theta[k == 0 ? 1 : 2];
+    const Scalar damping = sum.theta[1];
     const Wave y = times(
         sum_[k], over(Wave{Scalar(1), w * lag_bank_s<Scalar>[reference_lag]}, Wave{Scalar(1), w * sum.lag.seconds()}));
     const Wave own = times(y, {Scalar(1), w * sum.theta[rise_term] / sum.slope()});
@@ -58,9 +78,7 @@ class SineAnswer {
   }
 
  private:
-  struct Wave {
-    Scalar real{0}, imaginary{0};
-  };
+  using Wave = SineWave<Scalar>;
   static constexpr Scalar two_pi = Scalar(6.283185307179586), least_energy = Scalar(1e-6);
   static constexpr std::size_t reference_lag = 3;
 

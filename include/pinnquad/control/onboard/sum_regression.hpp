@@ -19,7 +19,11 @@ namespace pinnquad {
 template <class Scalar>
 struct RegressionSettings {
   Scalar forget_s = Scalar(20), forget_drag_s = Scalar(30);
-  Scalar repeats = Scalar(3);     ///< rows that say the same, as two of them share a period
+  Scalar repeats = Scalar(3);  ///< rows that say the same, as two of them share a period
+  /// Feedback answers wind with the commands that a row is of, and least squares take one for the other. Rows are
+  /// beside this share of their running means, so long, which the wind is in too; not of yaw.
+  std::array<Scalar, 3> wind_s{Scalar(0.15), Scalar(0.3), Scalar(0.3)};
+  Scalar wind_share = Scalar(0.9);
   std::uint32_t rows_of_yaw = 4;  ///< are one of yaw, their mean: feedback answers gyro noise that is quicker
 };
 
@@ -46,53 +50,39 @@ class SumRegression {
     const Scalar period_s = Scalar(1e-6) * static_cast<Scalar>(period_us);
     root_keep_ = exp(-period_s / (Scalar(2) * settings.forget_s));
     root_keep_yaw_ = exp(-Scalar(settings.rows_of_yaw) * period_s / (Scalar(2) * settings.forget_s));
+    for (std::size_t k = 0; k < 3; ++k) follows_[k] = period_s / (period_s + settings.wind_s[k]);
     root_keep_drag_ = exp(-period_s / (Scalar(4) * settings.forget_drag_s));  // two rows a period
   }
 
   /// Forgets all rows: they are of no flight.
   void forget() noexcept {
     triangles_ = {};
+    rows_ = rows_of_yaw_ = rows_of_drag_ = Scalar(0);
     drag_ = {};
-    yaw_rows_ = 0;
-    yaw_means_ = {};
+    mean_ = {};
   }
 
   /// A row: the motion, the thrusts that the rotors of each lag would have followed, and the specific force, FRD.
   void teach(std::uint64_t now_us, const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank,
              const Vector3<Scalar>& force_m_s2) noexcept {
-    if (now_us / period_us_ - row_us_ / period_us_ > 1) {  // rows of one mean follow each other
-      yaw_rows_ = 0;
-      yaw_means_ = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      SumRow row = row_of(k, motion, bank);
+      if (!(rows_ > Scalar(0))) means_[k] = row;
+      put_beside(row, means_[k], follows_[k], settings_.wind_share);
+      triangles_[k].turn_in(row.shared, row.owns, root_keep_);
     }
+    rows_ = keep() * rows_ + Scalar(1);
+    // rows of one mean follow each other
+    if (now_us / period_us_ - row_us_ / period_us_ > 1) mean_ = {};
     row_us_ = now_us;
-    const bool whole = ++yaw_rows_ >= settings_.rows_of_yaw;
-    for (std::size_t lag = 0; lag < lag_count; ++lag) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Terms<Scalar> x = terms_of(k, motion, bank.at(0, lag).sum, bank.at(k, lag));
-        typename SumTriangle<Scalar>::Row row{};
-        for (std::size_t i = 0; i < term_count; ++i) row[i] = x[i];
-        row[output_column] = motion.accelerations[k];
-        if (k < 3) {
-          triangles_[lag][k].add(row, root_keep_);
-          continue;
-        }
-        auto& mean = yaw_means_[lag];
-        for (std::size_t i = 0; i < row.size(); ++i) mean[i] += row[i] / Scalar(settings_.rows_of_yaw);
-        if (!whole) continue;
-        triangles_[lag][k].add(mean, root_keep_yaw_);
-        mean = {};
-      }
-    }
-    if (whole) yaw_rows_ = 0;
+    teach_yaw(row_of(3, motion, bank));
     teach_drag(motion.velocity_m_s, force_m_s2);
   }
 
   /// Share of the rows before that is kept.
   Scalar keep() const noexcept { return root_keep_ * root_keep_; }
   /// Rows of a sum that are remembered.
-  Scalar rows(std::size_t k) const noexcept {
-    return triangles_[0][k].rows() * (k == 3 ? Scalar(settings_.rows_of_yaw) : Scalar(1));
-  }
+  Scalar rows(std::size_t k) const noexcept { return k == 3 ? rows_of_yaw_ * Scalar(settings_.rows_of_yaw) : rows_; }
 
   /// The lag that leaves least of the angular accelerations, between those of the bank by the parabola through the best
   /// one and its neighbours; yaw counts a third.
@@ -103,7 +93,8 @@ class SumRegression {
     std::size_t best = 0;
     for (std::size_t lag = 0; lag < lag_count; ++lag) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        left[lag][axis] = mean_left_square(triangles_[lag][axis + 1]) + Scalar(1e-12);
+        const Scalar root = triangles_[axis + 1].left(lag);
+        left[lag][axis] = root * root + Scalar(1e-12);
         sum[lag] += weights[axis] * log(left[lag][axis]);
       }
       if (sum[lag] < sum[best]) best = lag;
@@ -126,7 +117,7 @@ class SumRegression {
                                const ForwardSum<Scalar>& start) const noexcept {
     const Terms<Scalar> deviations = prior_deviations(k, start);
     const auto at = [&](std::size_t place) noexcept {
-      return solved(triangles_[place][k], start.theta, deviations, settings_.repeats);
+      return solved(triangles_[k].of(place), k == 3 ? rows_of_yaw_ : rows_, start.theta, deviations, settings_.repeats);
     };
     SumSolution<Scalar> result = at(lag.lower);
     const SumSolution<Scalar> next = at(lag.lower + 1u);
@@ -139,12 +130,12 @@ class SumRegression {
   /// The drag, each number from 0 to as much as a vehicle has; a prior of 0.2 /s and 0.05 /m around none.
   LateralDrag<Scalar> drag() const noexcept {
     using std::sqrt;
-    if (!(drag_.rows() > Scalar(0))) return {};
+    if (!(rows_of_drag_ > Scalar(0))) return {};
     Triangle<Scalar, 3> triangle = drag_;
-    const Scalar left = triangle.at(2, 2) * triangle.at(2, 2) / triangle.rows();
+    const Scalar left = triangle.at(2, 2) * triangle.at(2, 2) / rows_of_drag_;
     const Scalar weight = sqrt(settings_.repeats * left + Scalar(1e-12));
-    triangle.turn_in({weight / Scalar(0.2), Scalar(0), Scalar(0)}, 0);
-    triangle.turn_in({Scalar(0), weight / Scalar(0.05), Scalar(0)}, 1);
+    triangle.turn_in({weight / Scalar(0.2), Scalar(0), Scalar(0)}, Scalar(1));
+    triangle.turn_in({Scalar(0), weight / Scalar(0.05), Scalar(0)}, Scalar(1), 1);
     const Scalar quadratic = triangle.at(1, 2) / triangle.at(1, 1);
     const Scalar linear = (triangle.at(0, 2) - triangle.at(0, 1) * quadratic) / triangle.at(0, 0);
     const auto within = [](Scalar value, Scalar most) noexcept {
@@ -156,22 +147,64 @@ class SumRegression {
  private:
   static constexpr std::array<Scalar, 3> weights{Scalar(1), Scalar(1), Scalar(0.3)};
 
+  struct SumRow {
+    typename SumTriangles<Scalar>::Row shared{};
+    typename SumTriangles<Scalar>::Owns owns{};
+  };
+  static SumRow row_of(std::size_t k, const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank) noexcept {
+    SumRow row;
+    const Terms<Scalar> x = terms_of(k, motion, Scalar(0), {});
+    for (std::size_t i = 0; i < lag_terms; ++i) row.shared[i] = x[i];
+    row.shared[lag_terms] = motion.accelerations[k];
+    for (std::size_t lag = 0; lag < lag_count; ++lag) {
+      const Followed<Scalar> own = bank.at(k, lag);
+      row.owns[lag] = {k == 0 ? x[lag_terms] : bank.at(0, lag).sum, own.rise_1_s, own.sum};
+    }
+    return row;
+  }
+  static void put_beside(SumRow& row, SumRow& means, Scalar follows, Scalar share) noexcept {
+    const auto beside = [=](Scalar& value, Scalar& mean) noexcept {
+      mean += follows * (value - mean);
+      value -= share * mean;
+    };
+    for (std::size_t i = 0; i < row.shared.size(); ++i) beside(row.shared[i], means.shared[i]);
+    for (std::size_t lag = 0; lag < lag_count; ++lag) {
+      for (std::size_t i = 0; i < row.owns[lag].size(); ++i) beside(row.owns[lag][i], means.owns[lag][i]);
+    }
+  }
+  void teach_yaw(const SumRow& row) noexcept {
+    const Scalar share = Scalar(1) / Scalar(settings_.rows_of_yaw);
+    for (std::size_t i = 0; i < row.shared.size(); ++i) mean_.of.shared[i] += share * row.shared[i];
+    for (std::size_t lag = 0; lag < lag_count; ++lag) {
+      for (std::size_t j = 0; j < row.owns[lag].size(); ++j) mean_.of.owns[lag][j] += share * row.owns[lag][j];
+    }
+    if (++mean_.rows < settings_.rows_of_yaw) return;
+    triangles_[3].turn_in(mean_.of.shared, mean_.of.owns, root_keep_yaw_);
+    rows_of_yaw_ = root_keep_yaw_ * root_keep_yaw_ * rows_of_yaw_ + Scalar(1);
+    mean_ = {};
+  }
   void teach_drag(const Vector3<Scalar>& velocity_m_s, const Vector3<Scalar>& force_m_s2) noexcept {
     using std::sqrt;
     const Scalar speed = sqrt(dot<Scalar>(velocity_m_s, velocity_m_s));
     for (int axis = 0; axis < 2; ++axis) {
       const Scalar v = velocity_m_s[axis];
-      drag_.add({-v, -speed * v, force_m_s2[axis]}, root_keep_drag_);
+      drag_.turn_in({-v, -speed * v, force_m_s2[axis]}, root_keep_drag_);
+      rows_of_drag_ = root_keep_drag_ * root_keep_drag_ * rows_of_drag_ + Scalar(1);
     }
   }
 
   RegressionSettings<Scalar> settings_;
   std::uint32_t period_us_;
   Scalar root_keep_{0}, root_keep_yaw_{0}, root_keep_drag_{0};
+  std::array<Scalar, 3> follows_{};
   std::uint64_t row_us_ = 0;
-  std::uint32_t yaw_rows_ = 0;
-  std::array<std::array<SumTriangle<Scalar>, 4>, lag_count> triangles_{};
-  std::array<typename SumTriangle<Scalar>::Row, lag_count> yaw_means_{};
+  std::array<SumTriangles<Scalar>, 4> triangles_{};
+  Scalar rows_{0}, rows_of_yaw_{0}, rows_of_drag_{0};  ///< each as often as it is still remembered
+  struct {
+    SumRow of;
+    std::uint32_t rows = 0;
+  } mean_{};  ///< of yaw, until it is whole
+  std::array<SumRow, 3> means_{};
   Triangle<Scalar, 3> drag_{};
 };
 
