@@ -45,7 +45,7 @@ struct Axes {
   explicit Axes(const std::array<double, 4>& over_start) {
     const ForwardModel<double> model = forward_model(start);
     for (std::size_t k = 0; k < 4; ++k) slopes[k] = over_start[k] * model[k].slope();
-    followed = LagBank<double>::sums_of(commands, detail::signed_mix(start));
+    followed = detail::LagBank<double>::sums_of(commands, detail::signed_mix(start));
   }
 
   State<double> measured() {
@@ -57,7 +57,7 @@ struct Axes {
     return result;
   }
   void step() {
-    const SignedSums<double> sums = LagBank<double>::sums_of(commands, detail::signed_mix(start));
+    const SignedSums<double> sums = detail::LagBank<double>::sums_of(commands, detail::signed_mix(start));
     for (std::size_t k = 0; k < 4; ++k) followed[k] += tick_s / (lag_s + tick_s) * (sums[k] - followed[k]);
     now_us += tick_us;
     if (held) return;
@@ -152,7 +152,7 @@ TEST_CASE("before anything is proven the start flies: sums of the airframe's own
   wanted.angular_rad_s2 = {3, -2, 0.5};
   Commands<double> commands{};
   REQUIRE(policy({}, wanted, 1'000'000, commands) == Status::ok);
-  const SignedSums<double> sums = LagBank<double>::sums_of(commands, detail::signed_mix(start));
+  const SignedSums<double> sums = detail::LagBank<double>::sums_of(commands, detail::signed_mix(start));
   const ForwardModel<double> model = forward_model(start);
   CHECK(std::abs(model[0].slope() * sums[0] - (-1 - standard_gravity_m_s2<double>)) < 1e-9);
   for (std::size_t k = 1; k < 4; ++k) {

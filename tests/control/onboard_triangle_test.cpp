@@ -17,7 +17,7 @@ using namespace pinnquad;
 
 TEST_CASE("R^T R of each variant is the sum of products, each row as often as it is remembered") {
   constexpr double keep = 0.97, rounding = 1e-10;
-  using Shared = SharedTriangle<double, 3, 2, 4>;
+  using Shared = detail::SharedTriangle<double, 3, 2, 4>;
   Shared triangles;
   std::array<Eigen::Matrix<double, 6, 6>, 4> sums;
   sums.fill(Eigen::Matrix<double, 6, 6>::Zero());
@@ -35,7 +35,7 @@ TEST_CASE("R^T R of each variant is the sum of products, each row as often as it
     triangles.turn_in(row, owns, std::sqrt(keep));
   }
   for (std::size_t v = 0; v < sums.size(); ++v) {
-    const Triangle<double, 6> triangle = triangles.of(v);
+    const detail::Triangle<double, 6> triangle = triangles.of(v);
     for (std::size_t i = 0; i < 6; ++i) {
       for (std::size_t j = i; j < 6; ++j) {
         double product = 0;
@@ -49,12 +49,12 @@ TEST_CASE("R^T R of each variant is the sum of products, each row as often as it
 
 TEST_CASE("a solution is that of the normal equations with the prior") {
   constexpr double rows = 200, repeats = 3, tolerance = 1e-8;
-  SumTriangle<double> triangle;
+  detail::SumTriangle<double> triangle;
   Eigen::Matrix<double, 7, 7> products = Eigen::Matrix<double, 7, 7>::Zero();
   Eigen::Matrix<double, 7, 1> with_output = Eigen::Matrix<double, 7, 1>::Zero();
   std::mt19937_64 random{5};
   for (int n = 0; n < rows; ++n) {
-    SumTriangle<double>::Row row{};
+    detail::SumTriangle<double>::Row row{};
     row[0] = 1;
     for (std::size_t i = 1; i < 7; ++i) row[i] = standard_normal(random);
     row[7] = 2 - row[1] + 0.5 * row[4] + 30 * row[6] + standard_normal(random);
@@ -63,8 +63,8 @@ TEST_CASE("a solution is that of the normal equations with the prior") {
     products += x * x.transpose();
     with_output += row[7] * x;
   }
-  const Terms<double> mean{0, 1, 0, 0, 0, 0, 20}, deviations{5, 0.1, 1, 0.3, 1, 0.2, 10};
-  const SumSolution<double> solution = solved(triangle, rows, mean, deviations, repeats);
+  const detail::Terms<double> mean{0, 1, 0, 0, 0, 0, 20}, deviations{5, 0.1, 1, 0.3, 1, 0.2, 10};
+  const detail::SumSolution<double> solution = detail::solved(triangle, rows, mean, deviations, repeats);
   for (int i = 0; i < 7; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const double weight = repeats * solution.left_square / (deviations[at] * deviations[at]);
@@ -80,12 +80,12 @@ TEST_CASE("a solution is that of the normal equations with the prior") {
 }
 
 TEST_CASE("a place between two lags: their mean, the ends where it lies beyond") {
-  for (std::size_t i = 0; i + 1 < lag_count; ++i) {
-    const double between = 0.5 * (lag_bank_s<double>[i] + lag_bank_s<double>[i + 1]);
-    const LagPlace<double> place = lag_place(between);
+  for (std::size_t i = 0; i + 1 < detail::lag_count; ++i) {
+    const double between = 0.5 * (detail::lag_bank_s<double>[i] + detail::lag_bank_s<double>[i + 1]);
+    const detail::LagPlace<double> place = detail::lag_place(between);
     CHECK(place.lower == i);
     CHECK(std::abs(place.seconds() - between) < 1e-15);
   }
-  CHECK(std::abs(lag_place(0.0).seconds() - lag_bank_s<double>.front()) < 1e-15);
-  CHECK(std::abs(lag_place(9.0).seconds() - lag_bank_s<double>.back()) < 1e-15);
+  CHECK(std::abs(detail::lag_place(0.0).seconds() - detail::lag_bank_s<double>.front()) < 1e-15);
+  CHECK(std::abs(detail::lag_place(9.0).seconds() - detail::lag_bank_s<double>.back()) < 1e-15);
 }

@@ -157,7 +157,7 @@ SignedSums<double> hover_slopes(Policy policy, const Airframe<double>& start) {
   const auto sums = [&](const Accelerations<double>& wanted) {
     Commands<double> commands{};
     static_cast<void>(policy(hovering(), wanted, 0, commands));
-    return LagBank<double>::sums_of(rotors.fractions(commands), mix);
+    return pinnquad::detail::LagBank<double>::sums_of(rotors.fractions(commands), mix);
   };
   constexpr std::array<double, 4> by = {-0.3, 0.3, 0.3, 0.03};
   const SignedSums<double> before = sums({});

@@ -8,7 +8,6 @@
 
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/autopilot/core_record.hpp"
-#include "pinnquad/control/onboard/onboard_inverse.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
 namespace pinnquad::autopilot::detail {
@@ -73,20 +72,21 @@ CoreSettings with_effects(CoreSettings settings, const Quadrotor<float, Effects.
   return settings;
 }
 
-/// In place of a learner, where there is none.
-struct NoOnboard {};
-
-/// The learner of a vehicle, from what is guessed of it.
-template <class Onboard>
-auto onboard_of(const Airframe<float>& start, const CoreSettings& settings) noexcept {
-  if constexpr (std::is_void_v<Onboard>) {
-    static_cast<void>(start), static_cast<void>(settings);
-    return NoOnboard{};
+/// The biases of a logged tick.
+template <class Learner>
+void resume_biases(const CoreRecord& logged, Learner& learner) noexcept {
+  const auto sums = [](const float(&b)[4]) noexcept { return SignedSums<float>{b[0], b[1], b[2], b[3]}; };
+  const Vector3<float> across(logged.bias_across_m_s2);
+  const Vector3<float> rate(logged.bias_across_rate_m_s3[0], logged.bias_across_rate_m_s3[1], 0);
+  if (logged.learning != 0) {  // it is the learner's that was logged
+    learner.own().reset();
   } else {
-    OnboardSettings<float> onboard;
-    if (settings.state_delay_s > 0) onboard.delay_s = settings.state_delay_s;
-    return Onboard(start, onboard);
+    learner.own().resume(sums(logged.bias_sums), across, rate, {logged.bias_noise, logged.bias_across_noise_m_s2},
+                         logged.bias_waited_s, static_cast<Status>(logged.bias_status));
   }
+  learner.last().resume(sums(logged.analytic_bias_sums), across, rate,
+                        {logged.analytic_bias_noise, logged.bias_across_noise_m_s2}, logged.analytic_bias_waited_s,
+                        static_cast<Status>(logged.analytic_bias_status));
 }
 
 /// Commands that neither rotor nor sound network asks for: the analytic inverse is asked instead.

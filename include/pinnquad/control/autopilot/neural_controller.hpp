@@ -4,18 +4,18 @@
 // examples/px4_module and examples/crazyflie_app fly it. NED, FRD, SI units; no clock of its own.
 #pragma once
 
-#include <cmath>
 
 #include "pinnquad/control/autopilot/core_settings.hpp"
 #include "pinnquad/control/autopilot/inputs.hpp"
+#include "pinnquad/control/autopilot/learnt_vehicle.hpp"
 #include "pinnquad/control/autopilot/model_inputs.hpp"
 #include "pinnquad/control/autopilot/model_slots.hpp"
+#include "pinnquad/control/autopilot/state_samples.hpp"
 #include "pinnquad/control/autopilot/take_off.hpp"
 #include "pinnquad/control/bias_learner.hpp"
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/feed_forward.hpp"
 #include "pinnquad/control/leaning.hpp"
-#include "pinnquad/control/onboard/onboard_inverse.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/guard.hpp"
 
@@ -62,7 +62,7 @@ class NeuralController {
                  FlownMotion<float>({FlownMotionSettings<float>{}.period_us,
                                      vehicle_.airframe().rise_time_constant_s(0), settings.state_delay_s})),
         take_off_(settings.take_off_s),
-        onboard_(detail::onboard_of<Onboard>(vehicle_.airframe(), settings)) {
+        learnt_(vehicle_.airframe(), settings) {
     settings_.distance_limit = settings_.innovation_limit = 0;
     if constexpr (trusts) {
       settings_.distance_limit = static_cast<float>(NetworkGuard::Distribution::squared_distance_limit);
@@ -85,27 +85,20 @@ class NeuralController {
 
   /// Inputs, each `not_finite`, `out_of_range` or `not_unit_quaternion` for a sample that is refused. rad/s, FRD.
   Status body_rates(std::uint64_t time_us, const Vector3<float>& rates_rad_s) noexcept {
-    const Status status = rates_.accept(time_us, rates_rad_s, detail::check_sample(rates_rad_s));
+    const Status status = samples_.body_rates(time_us, rates_rad_s);
     if (status == Status::ok) learner_.motion().body_rates(time_us, rates_rad_s);
     return status;
   }
   /// Body -> world; normalised, where the norm is within unit_quaternion_tolerance of 1.
-  Status attitude(std::uint64_t time_us, const Quaternion<float>& q) noexcept {
-    const float numbers[4] = {q.w, q.x, q.y, q.z};
-    if (!all_finite(numbers, 4)) return attitude_.accept(time_us, q, Status::not_finite);
-    if (!is_unit(q)) return attitude_.accept(time_us, q, Status::not_unit_quaternion);
-    return attitude_.accept(time_us, normalized(q), Status::ok);
-  }
+  Status attitude(std::uint64_t time_us, const Quaternion<float>& q) noexcept { return samples_.attitude(time_us, q); }
   Status local(std::uint64_t time_us, const LocalState& state) noexcept {
-    Status checked = detail::check_sample(state.position_m);
-    if (checked == Status::ok) checked = detail::check_sample(state.velocity_m_s);
-    const Status status = local_.accept(time_us, state, checked);
+    const Status status = samples_.local(time_us, state);
     if (status == Status::ok) learner_.motion().velocity(time_us, state.velocity_m_s);
     return status;
   }
   /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point.
   Status set_point(std::uint64_t time_us, const TrajectoryPoint<float>& wanted) noexcept {
-    return set_point_.accept(time_us, wanted, detail::check_set_point(wanted));
+    return samples_.set_point(time_us, wanted);
   }
 
   /// Of the pack under load, for a model that asks for it: `not_finite`, or `out_of_range` for what is none.
@@ -114,19 +107,14 @@ class NeuralController {
   /// Given before each step, by a stack that knows. Until then the commands drive nothing and the vehicle is in the
   /// air. A controller that takes over holds the place of that moment.
   void situation(const Situation& now) noexcept {
-    if (now.drives_motors && !situation_.drives_motors) holding_ = false;
+    if (now.drives_motors && !situation_.drives_motors) samples_.hold_anew();
     situation_ = now;
   }
   const Situation& situation() const noexcept { return situation_; }
 
   /// A reset of the estimator, the step of its estimate: the held place and the set point move with it.
   void jump(const LocalState& by, float yaw_rad) noexcept {
-    TrajectoryPoint<float> wanted = set_point_.value();
-    wanted.position_m += by.position_m;
-    wanted.yaw_rad += yaw_rad;
-    set_point_.replace(wanted);
-    held_position_m_ += by.position_m;
-    held_yaw_rad_ += yaw_rad;
+    samples_.jump(by, yaw_rad);
     learner_.motion().interrupt();
     model_inputs_.clear();
     jumped_ = true;
@@ -136,22 +124,16 @@ class NeuralController {
   /// answers.
   const MotionBias<float>& bias() const noexcept {
     if constexpr (has_onboard) {
-      if (learns()) return onboard_.bias();
+      if (learns()) return learnt_.onboard().bias();
     }
     return learner_.own();
   }
   /// The vehicle as it is learnt: its certificate, candidate, rows.
-  const auto& onboard() const noexcept { return onboard_; }
+  const auto& onboard() const noexcept { return learnt_.onboard(); }
   /// The use of the learner that the last situation asked for; off without one.
   Learning learning() const noexcept { return has_onboard ? situation_.learning : Learning::off; }
   /// CoreRecord::learnt.
-  std::uint8_t learnt() const noexcept {
-    unsigned bits = seen_flight_ ? CoreRecord::seen_flight : 0u;
-    if constexpr (has_onboard) {
-      for (std::size_t k = 0; k < 4; ++k) bits |= onboard_.certificate()[k].proven ? 1u << k : 0u;
-    }
-    return static_cast<std::uint8_t>(bits);
-  }
+  std::uint8_t learnt() const noexcept { return static_cast<std::uint8_t>(learnt_.bits()); }
   /// Of the analytic inverse's commands; and the acceleration across the thrust, whoever answers.
   const MotionBias<float>& analytic_bias() const noexcept { return learner_.last(); }
   /// Share of the thrust that it uses, 0 to 1: below 1 at take-off and landing.
@@ -163,7 +145,7 @@ class NeuralController {
   const Learner& learner() const noexcept { return learner_; }
   /// Goes on from a logged tick (replay).
   void resume(const CoreRecord& logged) noexcept {
-    resume_biases(logged);
+    detail::resume_biases(logged, learner_);
     learner_.trust().resume(logged.innovation, logged.trusted != 0);
     // where the command residual is below its limit, `distrusted` is the bias that stood at its bound
     if (logged.trusted != 0 && logged.reaction <= static_cast<std::uint8_t>(Reaction::levels) && logged.asked != 0) {
@@ -178,7 +160,7 @@ class NeuralController {
 
   /// The biases of a logged tick, before its step: it learns nothing then. For a replay that lacks the ticks before.
   void give_biases(const CoreRecord& logged) noexcept {
-    resume_biases(logged);
+    detail::resume_biases(logged, learner_);
     learner_.give();
   }
 
@@ -189,8 +171,10 @@ class NeuralController {
     model_inputs_.tick(now_us);
     const Inverse* inverse = models_.take();
     if (checksum_ != models_.checksum(inverse)) take_model(*inverse);
-    Reaction reaction = inverse == nullptr ? Reaction::gives_up : judge_ages(now_us, report);
-    take_off_.update(now_us, situation_, vertical_motion(reaction));
+    Reaction reaction = inverse == nullptr
+                            ? Reaction::gives_up
+                            : samples_.judge_ages(now_us, settings_, model_inputs_.voltage_is_fresh(), report);
+    take_off_.update(now_us, situation_, samples_.vertical_motion(reaction, expected_m_s2_[2], settings_.position_1_s));
     limit_demand();
     learn(now_us, reaction, inverse);
     if (reaction <= Reaction::levels) {
@@ -229,9 +213,7 @@ class NeuralController {
 
   /// The network's answers since the start, by Status.
   const FallbackCount& count() const noexcept { return count_; }
-  std::uint32_t refused_samples() const noexcept {
-    return rates_.refused() + attitude_.refused() + local_.refused() + set_point_.refused() + model_inputs_.refused();
-  }
+  std::uint32_t refused_samples() const noexcept { return samples_.refused() + model_inputs_.refused(); }
   /// Fills a message of PX4 or the Crazyflie: their fields have the same names.
   template <class Message>
   void describe(const StepReport& report, Message& message) const noexcept {
@@ -266,60 +248,15 @@ class NeuralController {
     learner_.time_constants(detail::bias_time_constants_s(settings_, own));
   }
 
-  Reaction judge_ages(std::uint64_t now_us, StepReport& report) noexcept {
-    const auto bit_if = [](bool stale, std::uint8_t bit) noexcept { return stale ? bit : std::uint8_t{0}; };
-    report.stale_inputs =
-        static_cast<std::uint8_t>(bit_if(!rates_.fresh(now_us, settings_.body_rates_us), body_rates_bit) |
-                                  bit_if(!attitude_.fresh(now_us, settings_.attitude_us), attitude_bit) |
-                                  bit_if(!local_.fresh(now_us, settings_.local_us), local_bit) |
-                                  bit_if(!set_point_.fresh(now_us, settings_.set_point_us), set_point_bit) |
-                                  bit_if(!model_inputs_.voltage_is_fresh(), voltage_bit));
-    if (!report.stale(set_point_bit)) holding_ = false;
-    if (report.stale(body_rates_bit | attitude_bit)) return Reaction::keeps_commands;
-    if (report.stale(local_bit)) {
-      return local_.fresh(now_us, std::uint64_t{settings_.local_us} + settings_.level_us) ? Reaction::levels
-                                                                                          : Reaction::gives_up;
-    }
-    return report.stale(set_point_bit) ? Reaction::holds_position : Reaction::flies;
-  }
-
-  void resume_biases(const CoreRecord& logged) noexcept {
-    const auto sums = [](const float(&b)[4]) noexcept { return SignedSums<float>{b[0], b[1], b[2], b[3]}; };
-    const Vector3<float> across(logged.bias_across_m_s2);
-    const Vector3<float> rate(logged.bias_across_rate_m_s3[0], logged.bias_across_rate_m_s3[1], 0);
-    if (logged.learning != 0) {  // it is the learner's that was logged
-      learner_.own().reset();
-    } else {
-      learner_.own().resume(sums(logged.bias_sums), across, rate, {logged.bias_noise, logged.bias_across_noise_m_s2},
-                            logged.bias_waited_s, static_cast<Status>(logged.bias_status));
-    }
-    learner_.last().resume(sums(logged.analytic_bias_sums), across, rate,
-                           {logged.analytic_bias_noise, logged.bias_across_noise_m_s2}, logged.analytic_bias_waited_s,
-                           static_cast<Status>(logged.analytic_bias_status));
-  }
-
   bool learns() const noexcept { return learning() != Learning::off; }
 
   /// A tick of the vehicle that is learnt, and of the demand's limits, which are those of what flies.
   PINNQUAD_NOINLINE void learn_vehicle(const typename Learner::Tick& tick) noexcept {
     if constexpr (has_onboard) {
-      constexpr std::uint64_t longest_us = 100'000;
-      const std::uint64_t step_us = tick.now_us - learnt_us_;
-      learnt_us_ = tick.now_us;
-      if (learnt_before_ && !learns()) learner_.another_model();  // the network's again
-      learnt_before_ = learns();
+      if (learnt_.hands_back(tick.now_us, learning())) learner_.another_model();
       if (!learns()) return;
       learner_.own().reset();  // the network is not asked
-      const bool known = tick.known && !tick.freezes && !jumped_;
-      if (situation_.learning != Learning::excites) {
-        excited_us_ = 0;
-      } else if (known) {
-        excited_us_ += step_us < longest_us ? step_us : longest_us;
-      }
-      onboard_.excite(situation_.learning == Learning::excites && excited_us_ < excited_for_us);
-      onboard_.freeze(situation_.learning == Learning::frozen);
-      onboard_.learn(tick.now_us, known, state(), last_commands_);
-      seen_flight_ = seen_flight_ || known;
+      learnt_.learn(tick.now_us, learning(), tick.known && !tick.freezes && !jumped_, samples_.state(), last_commands_);
     } else {
       static_cast<void>(tick);
     }
@@ -328,16 +265,10 @@ class NeuralController {
   /// not below learn(): it takes more stack than a tick of the learner.
   PINNQUAD_NOINLINE void limit_demand() noexcept {
     if constexpr (has_onboard) {
-      const std::uint32_t rows = learns() ? onboard_.rows() + 1 : 0;
-      if (rows == limits_rows_) return;
-      limits_rows_ = rows;
-      outer_loop_ = detail::outer_loop(settings_, learns() ? onboard_.airframe() : vehicle_.airframe(),
+      if (!learnt_.another_vehicle(learns())) return;
+      outer_loop_ = detail::outer_loop(settings_, learns() ? learnt_.onboard().airframe() : vehicle_.airframe(),
                                        vehicle_.site().gravity_m_s2);
     }
-  }
-
-  State<float> state() const noexcept {
-    return {local_.value().position_m, local_.value().velocity_m_s, attitude_.value(), rates_.value()};
   }
 
   /// A tick for the biases. Out of line, as target() is.
@@ -357,47 +288,7 @@ class NeuralController {
     };
     learn_vehicle(tick);
     jumped_ = false;
-    learner_.learn(tick, state(), last_commands_, network, analytic);
-  }
-
-  /// It climbs for 10 cm, 0.1 m/s or 0.1 m/s^2: less is an estimate's noise.
-  detail::VerticalMotion vertical_motion(Reaction reaction) const noexcept {
-    constexpr float noise = 0.1f;
-    detail::VerticalMotion motion;
-    const Vector3<float>& velocity = local_.value().velocity_m_s;
-    motion.sink_m_s = velocity[2];
-    motion.along_m_s = std::sqrt(velocity[0] * velocity[0] + velocity[1] * velocity[1]);
-    motion.expected_fall_m_s2 = expected_m_s2_[2];
-    if (reaction != Reaction::flies) return motion;
-    const TrajectoryPoint<float>& wanted = set_point_.value();
-    const float below_m = wanted.position_m[2] - local_.value().position_m[2], sink_m_s = wanted.velocity_m_s[2];
-    motion.asks_to_climb = below_m < -noise || sink_m_s < -noise || wanted.acceleration_m_s2[2] < -noise;
-    if (is_finite(below_m)) motion.asked_sink_m_s = settings_.position_1_s * below_m;
-    if (is_finite(sink_m_s)) motion.asked_sink_m_s += sink_m_s;
-    return motion;
-  }
-
-  /// The point of a trajectory that a reaction flies to; where nothing is asked for, the vehicle's own motion.
-  PINNQUAD_NOINLINE TrajectoryPoint<float> target(Reaction reaction, const State<float>& now) noexcept {
-    TrajectoryPoint<float> point;
-    const Heading<float> heading = pinnquad::heading(now.attitude);
-    point.yaw_rad = std::atan2(heading.sine, heading.cosine);
-    if (reaction == Reaction::levels) {  // no errors: no feedback of what is not known
-      point.position_m = now.position_m;
-      point.velocity_m_s = now.velocity_m_s;
-      return point;
-    }
-    if (reaction == Reaction::holds_position) {
-      if (!holding_) {
-        held_position_m_ = now.position_m;
-        held_yaw_rad_ = point.yaw_rad;
-        holding_ = true;
-      }
-      point.position_m = held_position_m_;
-      point.yaw_rad = held_yaw_rad_;
-      return point;
-    }
-    return detail::completed(set_point_.value(), now, point.yaw_rad);
+    learner_.learn(tick, samples_.state(), last_commands_, network, analytic);
   }
 
   /// Outer loop, then the inverse. The network answers the whole demand, feed-forward and feedback together. Fresh,
@@ -422,11 +313,11 @@ class NeuralController {
                                        [[maybe_unused]] Commands<float>& commands,
                                        [[maybe_unused]] StepReport& report) noexcept {
     if constexpr (has_onboard) {
-      const State<float> now = state();
+      const State<float> now = samples_.state();
       Accelerations<float> wanted;
       const Status outer = want_leaning(reaction, now, wanted);
       if (outer != Status::ok) return outer;
-      report.cause = onboard_(now, wanted, now_us, commands);
+      report.cause = learnt_.onboard()(now, wanted, now_us, commands);
       count_.add(report.cause);
       if (has_output(report.cause)) return report.cause;
       Commands<float> said{};
@@ -452,9 +343,9 @@ class NeuralController {
   /// The motion that a reaction wants. Out of line, as target() is: its stack is free again below network and analytic
   /// inverse, where the stack is deepest.
   PINNQUAD_NOINLINE Status want(Reaction reaction, MotionInputs<float>& motion) noexcept {
-    const State<float> now = state();
+    const State<float> now = samples_.state();
     Accelerations<float> wanted;
-    TrajectoryPoint<float> point = target(reaction, now);
+    TrajectoryPoint<float> point = samples_.target(reaction, now);
     // a vehicle that levels: thrust alone, so that level stays level
     if (reaction != Reaction::levels) point.acceleration_m_s2 -= learner_.across_m_s2();
     const Status outer = demand(now, point, wanted);
@@ -464,9 +355,9 @@ class NeuralController {
   /// That of a vehicle that is learnt, which knows its drag.
   PINNQUAD_NOINLINE Status want_leaning(Reaction reaction, const State<float>& now,
                                         Accelerations<float>& wanted) noexcept {
-    TrajectoryPoint<float> point = target(reaction, now);
+    TrajectoryPoint<float> point = samples_.target(reaction, now);
     if constexpr (has_onboard) {
-      if (reaction != Reaction::levels) point = leaning(onboard_, now, point, vehicle_.site().gravity_m_s2);
+      if (reaction != Reaction::levels) point = leaning(learnt_.onboard(), now, point, vehicle_.site().gravity_m_s2);
     }
     return demand(now, point, wanted);
   }
@@ -483,13 +374,7 @@ class NeuralController {
   Analytic analytic_;
   FlightController<float> outer_loop_;
   ModelSlots<Inverse> models_;
-  detail::Input<Vector3<float>> rates_;
-  detail::Input<Quaternion<float>> attitude_;
-  detail::Input<LocalState> local_;
-  detail::Input<TrajectoryPoint<float>> set_point_;
-  Vector3<float> held_position_m_ = Vector3<float>::Zero();
-  float held_yaw_rad_ = 0;
-  bool holding_ = false;
+  detail::StateSamples samples_;
   Commands<float> last_commands_{};
   Learner learner_;
   Vector3<float> expected_m_s2_ = Vector3<float>::Zero();  ///< of the last answer, NED
@@ -502,11 +387,7 @@ class NeuralController {
   ModelInputs model_inputs_;
   std::uint32_t checksum_ = 0;
   FallbackCount count_{};
-  static constexpr std::uint64_t excited_for_us = 10'000'000;
-  std::conditional_t<has_onboard, Onboard, detail::NoOnboard> onboard_;
-  std::uint64_t learnt_us_ = 0, excited_us_ = 0;
-  std::uint32_t limits_rows_ = 0;  ///< the limits are those after one row less; 0: of the airframe
-  bool learnt_before_ = false, seen_flight_ = false;
+  detail::LearntVehicle<Onboard> learnt_;
 };
 
 }  // namespace pinnquad::autopilot

@@ -27,6 +27,7 @@ struct ExcitationSettings {
   Scalar rise_s = Scalar(0.3);
 };
 
+namespace detail {
 /// Amplitudes of a sum's sines.
 template <class Scalar>
 struct SineAmplitudes {
@@ -46,6 +47,7 @@ template <class Scalar>
 Scalar sine_time_s(std::uint64_t since_us) noexcept {
   return Scalar(1e-6) * static_cast<Scalar>(since_us % 10'000'000);
 }
+}  // namespace detail
 
 /// The accelerations to add at a time after the first: along z, m/s^2, and angular, rad/s^2. `slopes`: of the sums.
 template <class Scalar>
@@ -53,13 +55,14 @@ Accelerations<Scalar> excitation(const ExcitationSettings<Scalar>& settings, std
                                  const std::array<Scalar, 4>& slopes, const std::array<Scalar, 4>& shares) noexcept {
   using std::sin;
   constexpr Scalar two_pi = Scalar(6.283185307179586);
-  const Scalar t_s = sine_time_s<Scalar>(since_us);
+  const Scalar t_s = detail::sine_time_s<Scalar>(since_us);
   const Scalar rises = since_us < 10'000'000 && t_s < settings.rise_s ? t_s / settings.rise_s : Scalar(1);
   Accelerations<Scalar> added;
   for (std::size_t k = 0; k < shares.size(); ++k) {
     if (!(shares[k] > Scalar(0))) continue;
     const auto& sines = settings.sums[k];
-    const SineAmplitudes<Scalar> amplitudes = sine_amplitudes(settings, k, slopes[k], rises * shares[k]);
+    const detail::SineAmplitudes<Scalar> amplitudes =
+        detail::sine_amplitudes(settings, k, slopes[k], rises * shares[k]);
     const Scalar sum =
         amplitudes.slow * sin(two_pi * sines.slow_Hz * t_s) + amplitudes.fast * sin(two_pi * sines.fast_Hz * t_s);
     if (k == 0) {

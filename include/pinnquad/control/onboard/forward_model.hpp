@@ -15,6 +15,8 @@
 
 namespace pinnquad {
 
+namespace detail {
+
 /// Terms of a sum. That of the sum's own thrusts is the last; the one before is how fast they rise: a state that comes
 /// later, or sooner, than the lag says. Of terms before lag_terms the lag changes none.
 inline constexpr std::size_t term_count = 7, own_term = term_count - 1, rise_term = own_term - 1, lag_terms = 4;
@@ -53,19 +55,21 @@ Terms<Scalar> terms_of(std::size_t k, const SumMotion<Scalar>& motion, Scalar to
   }
 }
 
+}  // namespace detail
+
 /// a = theta . x, for thrust fractions behind a lag.
 template <class Scalar>
 struct ForwardSum {
-  Terms<Scalar> theta{};
-  LagPlace<Scalar> lag{};
+  detail::Terms<Scalar> theta{};
+  detail::LagPlace<Scalar> lag{};
 
   /// Acceleration for each unit of the sum, m/s^2 (thrust) or rad/s^2.
-  Scalar slope() const noexcept { return theta[own_term]; }
+  Scalar slope() const noexcept { return theta[detail::own_term]; }
   /// The sum that a motion needs, y = (a - the other terms) / slope, where it rises so fast.
-  Scalar needed(std::size_t k, const SumMotion<Scalar>& motion, Scalar total, Scalar rise_1_s) const noexcept {
-    const Terms<Scalar> x = terms_of(k, motion, total, {Scalar(0), rise_1_s});
+  Scalar needed(std::size_t k, const detail::SumMotion<Scalar>& motion, Scalar total, Scalar rise_1_s) const noexcept {
+    const detail::Terms<Scalar> x = detail::terms_of(k, motion, total, {Scalar(0), rise_1_s});
     Scalar own = motion.accelerations[k];
-    for (std::size_t i = 0; i < own_term; ++i) own -= theta[i] * x[i];
+    for (std::size_t i = 0; i < detail::own_term; ++i) own -= theta[i] * x[i];
     return own / slope();
   }
 };
@@ -79,12 +83,12 @@ ForwardModel<Scalar> forward_model(const Airframe<Scalar>& airframe) noexcept {
   ForwardModel<Scalar> model{};
   const AllocationMatrix<Scalar> matrix = allocation(airframe);
   const auto& j = airframe.inertia_kg_m2;
-  const LagPlace<Scalar> lag = lag_place(airframe.rotor_time_constant_s);
+  const detail::LagPlace<Scalar> lag = detail::lag_place(airframe.rotor_time_constant_s);
   for (std::size_t k = 0; k < model.size(); ++k) {
     Scalar reach(0);
     for (const Scalar entry : matrix[k]) reach += entry < Scalar(0) ? -entry : entry;
     reach /= Scalar(rotor_count);
-    model[k].theta[own_term] = k == 0 ? -reach / airframe.mass_kg : reach / j[k - 1];
+    model[k].theta[detail::own_term] = k == 0 ? -reach / airframe.mass_kg : reach / j[k - 1];
     model[k].lag = lag;
   }
   model[0].theta[2] = -airframe.drag_area_m2[2] * rated_air_density_kg_m3<Scalar> / airframe.mass_kg;
@@ -93,6 +97,8 @@ ForwardModel<Scalar> forward_model(const Airframe<Scalar>& airframe) noexcept {
   model[3].theta[2] = (j[0] - j[1]) / j[2];
   return model;
 }
+
+namespace detail {
 
 /// Widths of what may be, around the start: wide on constants, narrow on what velocities and rates do, which little in
 /// a first minute tells from the own slope (docs/onboard.md).
@@ -147,5 +153,7 @@ SumSolution<Scalar> solved(SumTriangle<Scalar> triangle, Scalar rows, const Term
   result.standard_error = weight / (own < Scalar(0) ? -own : own);
   return result;
 }
+
+}  // namespace detail
 
 }  // namespace pinnquad

@@ -10,7 +10,7 @@
 #include "pinnquad/control/motion_bias.hpp"
 #include "pinnquad/control/rotor_follower.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
 inline constexpr std::size_t lag_count = 8;
 
@@ -57,7 +57,7 @@ class LagBank {
       : period_us_(period_us), period_s_(Scalar(1e-6) * static_cast<Scalar>(period_us)), delayed_(Scalar(0), delay_s) {}
 
   /// Rotors that have settled.
-  void restart(const Commands<Scalar>& fractions, const detail::SignedMix<Scalar>& mix) noexcept {
+  void restart(const Commands<Scalar>& fractions, const SignedMix<Scalar>& mix) noexcept {
     delayed_.restart(fractions);
     following_.fill(sums_of(fractions, mix));
     now_ = before_ = {};
@@ -66,7 +66,7 @@ class LagBank {
   /// One tick after the motion's: the thrust fractions in force since the tick before, of `step_s`. `ended`: the motion
   /// has ended a window, which at() then tells.
   void tick(std::uint64_t now_us, Scalar step_s, bool ended, const Commands<Scalar>& fractions,
-            const detail::SignedMix<Scalar>& mix) noexcept {
+            const SignedMix<Scalar>& mix) noexcept {
     const std::uint64_t number = now_us / period_us_;
     if (number != number_) {
       if (ended) finish();
@@ -99,7 +99,7 @@ class LagBank {
     return {lag.of(low.sum, next.sum), lag.of(low.rise_1_s, next.rise_1_s)};
   }
 
-  static SignedSums<Scalar> sums_of(const Commands<Scalar>& fractions, const detail::SignedMix<Scalar>& mix) noexcept {
+  static SignedSums<Scalar> sums_of(const Commands<Scalar>& fractions, const SignedMix<Scalar>& mix) noexcept {
     SignedSums<Scalar> sums{};
     for (std::size_t k = 0; k < sums.size(); ++k) {
       for (std::size_t i = 0; i < fractions.size(); ++i) sums[k] += mix.signs[k][i] * fractions[i];
@@ -137,4 +137,4 @@ class LagBank {
   Period now_, before_;
 };
 
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

@@ -14,6 +14,7 @@
 #include "pinnquad/control/onboard/excitation.hpp"
 #include "pinnquad/control/onboard/forward_model.hpp"
 #include "pinnquad/control/onboard/lag_bank.hpp"
+#include "pinnquad/control/onboard/onboard_settings.hpp"
 #include "pinnquad/control/onboard/proof.hpp"
 #include "pinnquad/control/onboard/sine_answer.hpp"
 #include "pinnquad/control/onboard/sum_regression.hpp"
@@ -21,46 +22,8 @@
 
 namespace pinnquad {
 
-namespace detail {
-template <class Scalar>
-constexpr BiasSettings<Scalar> unknown_vehicle_bias() noexcept {
-  BiasSettings<Scalar> settings;
-  settings.most = {Scalar(2.4), Scalar(1), Scalar(1), Scalar(1)};
-  return settings;
-}
-}  // namespace detail
-
-/// Settings of an OnboardInverse.
-template <class Scalar>
-struct OnboardSettings {
-  std::uint32_t period_us = 20'000;
-  Scalar delay_s = Scalar(0.006);        ///< of a state beside the commands; what it lacks is learnt
-  std::uint32_t rows_of_candidate = 50;  ///< a candidate each second
-  std::uint32_t rows_of_gain = 100;      ///< is judged for two
-  RegressionSettings<Scalar> regression{};
-  BiasSettings<Scalar> bias = detail::unknown_vehicle_bias<Scalar>();
-  Scalar young_bias_s = Scalar(0.1);  ///< its time constants at first; its age is added until they are the bias' own
-  ExcitationSettings<Scalar> excitation{};
-  ProofSettings<Scalar> proof{};
-};
-
-/// Certificate of a signed sum as it flies.
-template <class Scalar>
-struct OnboardSum {
-  ForwardSum<Scalar> forward{};
-  bool proven = false;           ///< false: the start's
-  Scalar half_width{0};          ///< of the slope's interval, in its units; 0 of the start, which has none
-  Scalar terms_bound{0};         ///< most that the other terms ask for beside the start's, in units of the sum
-  Scalar left_square{0};         ///< mean square of its residual in the rows that it is of
-  Scalar gain{1};                ///< mean square of its forward residual over that of the sum that flew before
-  std::uint32_t proven_row = 0;  ///< the row after which it has flown
-  OnboardRule refused_last{OnboardRule::few_rows};  ///< it refused a candidate last; `none` once one flies
-};
-template <class Scalar>
-using OnboardCertificate = std::array<OnboardSum<Scalar>, 4>;
-
 /// A feed-forward policy (control/feed_forward.hpp) that learns in flight and knows of an acceleration across
-/// (control/adaptive_inverse.hpp). Commands are thrust fractions through the start's curves; its signs are what is
+/// (control/feed_forward.hpp). Commands are thrust fractions through the start's curves; its signs are what is
 /// known of the vehicle for sure.
 template <class Scalar>
 class OnboardInverse {
@@ -120,7 +83,7 @@ class OnboardInverse {
       return Status::not_finite;
     }
     const Accelerations<Scalar> added = sines(now_us);
-    const SumMotion<Scalar> motion = sum_motion(
+    const detail::SumMotion<Scalar> motion = detail::sum_motion(
         motion_inputs(state, {wanted.linear_m_s2 + added.linear_m_s2, wanted.angular_rad_s2 + added.angular_rad_s2}));
     SignedSums<Scalar> sums{};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -188,15 +151,15 @@ class OnboardInverse {
     return excited_ ? Scalar(1) : (unknown ? settings_.excitation.share_unknown : Scalar(0));
   }
   /// The middle of a row is a period ago.
-  void listen(std::uint64_t now_us, const SumMotion<Scalar>& motion) noexcept {
+  void listen(std::uint64_t now_us, const detail::SumMotion<Scalar>& motion) noexcept {
     std::array<Scalar, 4> amplitudes{};
     for (std::size_t k = 0; k < 4; ++k) {
       const Scalar slope = flown_[k].forward.slope();
-      amplitudes[k] = sine_amplitudes(settings_.excitation, k, slope, sine_share(k)).fast;
+      amplitudes[k] = detail::sine_amplitudes(settings_.excitation, k, slope, sine_share(k)).fast;
     }
     if (!begun_ || now_us - begun_us_ < settings_.period_us) return;
-    const Scalar t_s = sine_time_s<Scalar>(now_us - begun_us_ - settings_.period_us);
-    const AskedSines<Scalar> asked = asked_sines(t_s, settings_.excitation, amplitudes);
+    const Scalar t_s = detail::sine_time_s<Scalar>(now_us - begun_us_ - settings_.period_us);
+    const detail::AskedSines<Scalar> asked = detail::asked_sines(t_s, settings_.excitation, amplitudes);
     answer_.add(asked, motion, bank_, regression_.keep());
     second_.add(asked, motion, bank_, Scalar(1));
   }
@@ -204,7 +167,7 @@ class OnboardInverse {
   /// Two periods of flight.
   void row(std::uint64_t now_us) noexcept {
     const MotionInputs<Scalar>& flown = motion_.motion();
-    const SumMotion<Scalar> motion = sum_motion(flown);
+    const detail::SumMotion<Scalar> motion = detail::sum_motion(flown);
     SignedSums<Scalar> residual{};
     for (std::size_t k = 0; k < 4; ++k) residual[k] = lacking(k, flown_[k].forward, motion);
     Vector3<Scalar> across = SpecificForce::of<Scalar>(flown);
@@ -241,8 +204,8 @@ class OnboardInverse {
   }
 
   /// The sum that the rotors followed, less the one that the model says.
-  Scalar lacking(std::size_t k, const ForwardSum<Scalar>& sum, const SumMotion<Scalar>& motion) const noexcept {
-    const Followed<Scalar> own = bank_.at(k, sum.lag);
+  Scalar lacking(std::size_t k, const ForwardSum<Scalar>& sum, const detail::SumMotion<Scalar>& motion) const noexcept {
+    const detail::Followed<Scalar> own = bank_.at(k, sum.lag);
     return own.sum - sum.needed(k, motion, bank_.at(0, sum.lag).sum, own.rise_1_s);
   }
 
@@ -265,7 +228,7 @@ class OnboardInverse {
   }
 
   /// Forward residuals of what flies, of what flew before, and of the candidate.
-  void judge(const SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
+  void judge(const detail::SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
     const bool settled = judging_ && judged_ >= rows_to_settle;
     for (std::size_t k = 0; k < 4; ++k) {
       add(own_, k, residual[k], flown_[k].forward.slope(), settled);
@@ -292,18 +255,19 @@ class OnboardInverse {
 
   /// A candidate of each sum.
   void propose() noexcept {
-    const LagPlace<Scalar> lag = regression_.best_lag();
+    const detail::LagPlace<Scalar> lag = regression_.best_lag();
     judging_ = false;
     for (std::size_t k = 0; k < 4; ++k) {
-      const SumSolution<Scalar> solution = regression_.solution(k, lag, start_model_[k]);
+      const detail::SumSolution<Scalar> solution = regression_.solution(k, lag, start_model_[k]);
       OnboardSum<Scalar>& sum = candidate_[k];
       sum.forward = {solution.theta, lag};
-      sum.half_width = half_width(k, solution);
-      sum.terms_bound = terms_bound(k, sum.forward, start_model_[k]);
+      sum.half_width = detail::half_width(k, solution);
+      sum.terms_bound = detail::terms_bound(k, sum.forward, start_model_[k]);
       sum.left_square = solution.left_square;
-      const SineWitness<Scalar> sines{answer_.share(k), answer_.slope(k, sum.forward, settings_.excitation)};
-      sum.refused_last = refusal(k, sum.forward, start_model_[k], solution, regression_.rows(k),
-                                 candidate_[0].forward.slope(), sines, start_.propeller_diameter_m, settings_.proof);
+      const detail::SineWitness<Scalar> sines{answer_.share(k), answer_.slope(k, sum.forward, settings_.excitation)};
+      sum.refused_last =
+          detail::refusal(k, sum.forward, start_model_[k], solution, regression_.rows(k), candidate_[0].forward.slope(),
+                          sines, start_.propeller_diameter_m, settings_.proof);
     }
     const auto late = [this](std::size_t k) noexcept { return candidate_[k].refused_last == OnboardRule::lag_unknown; };
     const bool any_late = late(1) || late(2);  // samples that come late are of all sums
@@ -357,7 +321,7 @@ class OnboardInverse {
 
   /// A proven sum whose residual over two seconds is twice that of its first two flies no longer where the one before
   /// it has less.
-  void watch(const SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
+  void watch(const detail::SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
     for (std::size_t k = 0; k < 4; ++k) {
       if (!flown_[k].proven) continue;
       const Scalar said = lacking(k, before_[k].forward, motion) - past_.bias[k];
@@ -383,15 +347,15 @@ class OnboardInverse {
   OnboardSettings<Scalar> settings_;
   detail::SignedMix<Scalar> mix_;
   ForwardModel<Scalar> start_model_;
-  SumRegression<Scalar> regression_;
+  detail::SumRegression<Scalar> regression_;
   OnboardCertificate<Scalar> flown_{}, candidate_{}, before_{};
   Shadow own_{}, shadow_{}, past_{}, watched_{};
   std::array<Scalar, 4> first_square_{};  ///< of the first two seconds
   std::array<std::uint32_t, 4> watched_rows_{};
-  SineAnswer<Scalar> answer_{}, second_{};  ///< of the rows remembered, and of the last second
+  detail::SineAnswer<Scalar> answer_{}, second_{};  ///< of the rows remembered, and of the last second
   LateralDrag<Scalar> drag_{};
   FlownMotion<Scalar> motion_;
-  LagBank<Scalar> bank_;
+  detail::LagBank<Scalar> bank_;
   MotionBias<Scalar> bias_;
   detail::TickClock<Scalar> clock_;
   std::uint64_t begun_us_ = 0;

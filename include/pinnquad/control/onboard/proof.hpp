@@ -65,6 +65,8 @@ struct ProofSettings {
   std::array<Scalar, 4> most_by_terms{Scalar(1.2), Scalar(0.8), Scalar(0.8), Scalar(1.6)};
 };
 
+namespace detail {
+
 /// Error of a model of so few terms, as a share of the slope: rotors that differ, a curve that is another one, noise
 /// that feedback has answered. It does not fall with the rows, as the standard error does.
 template <class Scalar>
@@ -136,5 +138,7 @@ OnboardRule refusal(std::size_t k, const ForwardSum<Scalar>& sum, const ForwardS
   if (!(terms_bound(k, sum, start) <= settings.most_by_terms[k])) return OnboardRule::terms_large;
   return OnboardRule::none;
 }
+
+}  // namespace detail
 
 }  // namespace pinnquad

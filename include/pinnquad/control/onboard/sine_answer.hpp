@@ -10,7 +10,7 @@
 #include "pinnquad/control/onboard/excitation.hpp"
 #include "pinnquad/control/onboard/forward_model.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
 /// A complex number.
 template <class Scalar>
@@ -94,4 +94,4 @@ class SineAnswer {
   std::array<Scalar, 4> energy_{};
 };
 
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

@@ -40,6 +40,7 @@ struct LateralDrag {
   }
 };
 
+namespace detail {
 /// Least squares of all sums at all lags, row by row.
 template <class Scalar>
 class SumRegression {
@@ -207,5 +208,6 @@ class SumRegression {
   std::array<SumRow, 3> means_{};
   Triangle<Scalar, 3> drag_{};
 };
+}  // namespace detail
 
 }  // namespace pinnquad

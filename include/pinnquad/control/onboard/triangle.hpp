@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
 /// The rotation that turns an entry of a row into the diagonal of a triangle, which is kept by a share at once.
 template <class Scalar>
@@ -108,4 +108,4 @@ class SharedTriangle {
   std::array<Triangle<Scalar, own + 1>, variants> tails_{};
 };
 
-}  // namespace pinnquad
+}  // namespace pinnquad::detail
