@@ -4,7 +4,6 @@
 // examples/px4_module and examples/crazyflie_app fly it. NED, FRD, SI units; no clock of its own.
 #pragma once
 
-
 #include "pinnquad/control/autopilot/core_settings.hpp"
 #include "pinnquad/control/autopilot/inputs.hpp"
 #include "pinnquad/control/autopilot/learnt_vehicle.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an autopilot's core was given, state and set point, how old it is, and the point that it flies to.
+// State and set point that an autopilot's core was given, their ages, and the point that it flies to.
 #pragma once
 
 #include <cmath>
@@ -53,7 +53,7 @@ class StateSamples {
     held_yaw_rad_ += yaw_rad;
   }
 
-  /// What the samples' ages allow; StepReport::stale_inputs.
+  /// The reaction that the samples' ages allow; sets StepReport::stale_inputs.
   Reaction judge_ages(std::uint64_t now_us, const CoreSettings& settings, bool voltage_is_fresh,
                       StepReport& report) noexcept {
     const auto bit_if = [](bool stale, std::uint8_t bit) noexcept { return stale ? bit : std::uint8_t{0}; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an OnboardInverse is made with, and what it says of each signed sum that it flies.
+// Settings of an OnboardInverse, and its certificate of each signed sum that flies.
 #pragma once
 
 #include <array>
