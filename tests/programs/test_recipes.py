@@ -105,7 +105,7 @@ def test_slopes_under_noise(pinnquad, flown):
     errors = {}
     for flight, by in (quiet, "least squares"), (noisy, "smoothed rows"):
         folder = Path(by.split()[0])
-        said = pinnquad(f"train {words}", flight, "--out", folder).out
+        said = pinnquad(f"train {words} --verbose", flight, "--out", folder).flat
         report = report_of(folder)
         certificate = report["certificate"]
         assert certificate["proven"] is True and report["exported"] is True
