@@ -64,7 +64,8 @@ TEST_CASE("a solution is that of the normal equations with the prior") {
     with_output += row[7] * x;
   }
   const detail::Terms<double> mean{0, 1, 0, 0, 0, 0, 20}, deviations{5, 0.1, 1, 0.3, 1, 0.2, 10};
-  const detail::SumSolution<double> solution = detail::solved(triangle, rows, mean, deviations, repeats);
+  const detail::SumSolution<double> solution =
+      detail::solved(detail::SumTriangle<double>(triangle), rows, mean, deviations, repeats);
   for (int i = 0; i < 7; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const double weight = repeats * solution.left_square / (deviations[at] * deviations[at]);

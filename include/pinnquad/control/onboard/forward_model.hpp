@@ -130,8 +130,9 @@ struct SumSolution {
 
 /// Least squares with a prior, which is added here and is never forgotten: a term of which nothing is said any more
 /// goes back to it. `repeats`: so many of the rows say the same; the prior weighs against them as one of their number.
+/// The triangle is used up: a copy more would be the deepest of a core's stack.
 template <class Scalar>
-SumSolution<Scalar> solved(SumTriangle<Scalar> triangle, Scalar rows, const Terms<Scalar>& mean,
+SumSolution<Scalar> solved(SumTriangle<Scalar>&& triangle, Scalar rows, const Terms<Scalar>& mean,
                            const Terms<Scalar>& deviations, Scalar repeats) noexcept {
   using std::sqrt;
   SumSolution<Scalar> result;
