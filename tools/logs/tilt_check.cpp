@@ -74,11 +74,11 @@ std::optional<detail::Implausible> find_velocity_off_tilt(const Flight& flight, 
     most = so;
     best = text;
   };
-  for (std::size_t axes = 0; axes < axes_kinds; ++axes) {
-    judge({0, axes, 0}, "velocities in the world's axes");
-    judge({2, 0, axes}, "velocities in the body's axes");
-    if (axes > 0) judge({1, axes, 0}, "velocities in other axes of the body (x forward, y left, z up for FRD)");
-    if (axes > 0) judge({1, 0, axes}, "velocities in another world's axes (ENU for NED, or z up)");
+  for (std::size_t kind = 0; kind < axes_kinds; ++kind) {
+    judge({0, kind, 0}, "velocities in the world's axes");
+    judge({2, 0, kind}, "velocities in the body's axes");
+    if (kind > 0) judge({1, kind, 0}, "velocities in other axes of the body (x forward, y left, z up for FRD)");
+    if (kind > 0) judge({1, 0, kind}, "velocities in another world's axes (ENU for NED, or z up)");
   }
   if (best.empty()) return std::nullopt;
   return Implausible{0, velocity_field,
