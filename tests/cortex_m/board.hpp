@@ -31,15 +31,20 @@ inline SysTick& systick() { return *reinterpret_cast<SysTick*>(0xe000e010u); }
 /// Calls in a row, so that a tick's remainder is a fraction of an instruction per call.
 inline constexpr std::uint32_t calls = 400;
 
-/// Ticks that `calls` calls take.
-template <class Function>
-__attribute__((noinline)) std::uint32_t ticks(Function function) {
-  SysTick& timer = systick();
+/// Starts the timer on the processor's clock; returns its value.
+__attribute__((always_inline)) inline std::uint32_t started(SysTick& timer) {
   timer.control = 0;
   timer.reload = systick_range;
   timer.value = 0;
   timer.control = 5;  // processor clock, running
-  const std::uint32_t begin = timer.value;
+  return timer.value;
+}
+
+/// Ticks that `calls` calls take.
+template <class Function>
+__attribute__((noinline)) std::uint32_t ticks(Function function) {
+  SysTick& timer = systick();
+  const std::uint32_t begin = started(timer);
   for (std::uint32_t i = 0; i < calls; ++i) function();
   return (begin - timer.value) & systick_range;
 }
@@ -111,11 +116,7 @@ template <class Function>
 std::uint32_t once(const Function& function) {
 #if defined(__ARM_ARCH_7EM__)
   SysTick& timer = systick();
-  timer.control = 0;
-  timer.reload = systick_range;
-  timer.value = 0;
-  timer.control = 5;  // processor clock, running
-  const std::uint32_t begin = timer.value;
+  const std::uint32_t begin = started(timer);
   function();
   return ((begin - timer.value) & systick_range) * instructions_per_tick;
 #else

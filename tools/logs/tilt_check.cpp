@@ -10,7 +10,7 @@
 namespace pinnquad::logs {
 namespace {
 
-/// Of level flight: thrust along the body's z axis that bears the weight.
+/// The acceleration of level flight: thrust along the body's z axis bears the weight.
 Vector3<double> acceleration_of_tilt(const Sample& sample) {
   constexpr double least_upright = 0.4;  // nearly on edge nothing is level
   const Vector3<double> down = body_to_world<double>(attitude(sample), Vector3<double>(0, 0, 1));

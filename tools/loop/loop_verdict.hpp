@@ -19,7 +19,7 @@
 
 namespace programs {
 
-/// Of a flight of a model, the analytic inverse, and that without jerk: the answer of `loop --json`.
+/// The verdict of `loop --json`, from flights of the model, the analytic inverse, and that one without jerk.
 inline FlightVerdict loop_verdict(const nlohmann::json& report) {
   const nlohmann::json& model = report["model"];
   const auto centimetres = [](const nlohmann::json& who) { return 100 * who["rmse_m"].get<double>(); };

@@ -119,8 +119,8 @@ class NeuralController {
     jumped_ = true;
   }
 
-  /// Of the network's commands. What its network does not answer for it does not learn. Of the learner's, where it
-  /// answers.
+  /// The bias of the network's commands, which learns nothing where its network does not answer; the learner's bias
+  /// where that one answers.
   const MotionBias<float>& bias() const noexcept {
     if constexpr (has_onboard) {
       if (learns()) return learnt_.onboard().bias();
@@ -351,7 +351,7 @@ class NeuralController {
     if (outer == Status::ok) motion = motion_inputs(now, wanted);
     return outer;
   }
-  /// That of a vehicle that is learnt, which knows its drag.
+  /// The wanted motion of a vehicle that is learnt: it knows its drag.
   PINNQUAD_NOINLINE Status want_leaning(Reaction reaction, const State<float>& now,
                                         Accelerations<float>& wanted) noexcept {
     TrajectoryPoint<float> point = samples_.target(reaction, now);
