@@ -5,7 +5,7 @@
 //   constexpr int size;  constexpr std::array<const char*, size> names, units;
 //   constexpr int angular_acceleration                 place of p_dot in X, q_dot and r_dot behind it; -1: X has none
 //   template <class Scalar> Status check(const Inputs<Scalar>&) noexcept
-//   template <class Scalar> void extract(const Inputs<Scalar>&, Scalar* x) noexcept    fills x[0..size); inputs are checked
+//   template <class Scalar> void extract(const Inputs<Scalar>&, Scalar* x) noexcept    fills x[0..size)
 // An input that is not finite makes a feature that is not finite: a Guard without FiniteInputs relies on it.
 #pragma once
 
