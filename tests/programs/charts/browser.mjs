@@ -4,6 +4,7 @@
 // not go through the page.
 //   node browser.mjs <chromium> <report.html> <folder for screenshots> <report.json>
 import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 
 import {
   check,
@@ -19,6 +20,7 @@ import {
   run,
   screenshot,
   sleep,
+  url,
 } from '../watch/opened_page.mjs';
 
 const report = JSON.parse(readFileSync(given[0], 'utf8'));
@@ -167,8 +169,12 @@ async function chaptersDraw() {
   await drawn();
   check('on paper every chart is drawn', await evaluate(`[...document.querySelectorAll('.chart')].every((one) =>
     one.querySelector('canvas') && !one.querySelector('table'))`));
-  const canvases = await evaluate('document.querySelectorAll("canvas").length');
-  check('all panels', canvases >= 20, canvases);
+  const drawnPanels = await evaluate(`[...document.querySelectorAll('.chart')].map((one) => [...one.querySelectorAll('canvas')].map(
+    (canvas) => chartOf(canvas).data.datasets.map(({ label, data }) => ({ name: label, x: data.map(({ x }) => x), y: data.map(({ y }) => y) }))))`);
+  const held = [...readFileSync(fileURLToPath(url), 'utf8').matchAll(/<script type="application\/json">(.*?)<\/script>/g)].map(([, text]) =>
+    JSON.parse(text).panels.map((panel) => panel.series.map(({ name, x, y }) => ({ name, x, y }))));
+  check('at least ten charts of twenty panels', held.length >= 10 && held.flat().length >= 20, held.flat().length);
+  held.forEach((panels, i) => check(`chart ${i + 1} draws the data of the page`, JSON.stringify(panels) === JSON.stringify(drawnPanels[i])));
   const decades = await evaluate(`${chart('#response')}.scales.x.ticks.map(({ label }) => label).join()`);
   check('frequencies are of a logarithmic axis', /(^|,)1\.?0?,2/.test(decades), decades);
 }
@@ -176,6 +182,9 @@ async function chaptersDraw() {
 async function phonesAndSchemes() {
   for (const value of ['light', 'dark']) {
     await chromium.send('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value }] });
+    await sleep(0.2);
+    await drawn();
+    check(`${value}: an open page takes the scheme`, (await pixels(path(1), blue[value])) > 60);
     for (const width of [1280, 390]) {
       await resize(width, 844, { mobile: width === 390, deviceScaleFactor: 1 });
       await sleep(0.5);

@@ -21,7 +21,7 @@ export const sleep = (seconds) => new Promise((wake) => setTimeout(wake, 1000 * 
 
 const complaints = [];
 const requests = [];
-const url = pathToFileURL(resolve(page)).href;
+export const url = pathToFileURL(resolve(page)).href;
 export const chromium = new Chromium(program);
 chromium.on((method, p) => {
   if (method === 'Runtime.exceptionThrown')

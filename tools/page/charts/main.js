@@ -25,6 +25,8 @@ Chart.register(
 );
 
 const axisWidth = 58;
+/** Names of rows: each above its line, however long. */
+const above = { autoSkip: false, mirror: true, labelOffset: -13, padding: 0 };
 const marks = { dots: 'circle', pluses: 'cross', squares: 'rect', strokes: 'line' };
 
 const palette = getComputedStyle(document.documentElement);
@@ -70,13 +72,13 @@ function scale({ name, least, most, logarithmic, rows }, isX, values, ticks) {
     title: { display: name !== '', text: name, color: () => ink('muted'), align: 'end', padding: 2 },
     border: { display: false },
     grid: { color: () => ink('line') },
-    ticks: { color: () => ink('muted'), maxRotation: 0, autoSkip: rows.length === 0, autoSkipPadding: 12, includeBounds: false, maxTicksLimit: ticks },
+    ticks: { color: () => ink('muted'), maxRotation: 0, autoSkipPadding: 12, includeBounds: false, maxTicksLimit: rows.length || ticks, ...(rows.length > 0 && above) },
     afterBuildTicks: (axis) => {
       if (logarithmic) axis.ticks = axis.ticks.filter(({ value }) => /^[125]e/.test(value.toExponential()));
     },
     afterFit: (axis) => {
       if (isX) axis.height = 46;
-      else if (rows.length === 0) axis.width = axisWidth; // plots below each other begin together
+      else axis.width = rows.length > 0 ? 0 : axisWidth; // plots below each other begin together
     },
   };
 }
@@ -85,7 +87,7 @@ function scale({ name, least, most, logarithmic, rows }, isX, values, ticks) {
 function plot(panel) {
   const overX = panel.height > 0 && panel.y.rows.length === 0;
   const place = element('div', panel.height > 0 ? 'plot' : 'square plot');
-  if (panel.height > 0) place.style.height = `${60 + (panel.y.rows.length > 0 ? 28 * panel.y.rows.length : panel.height)}px`;
+  if (panel.height > 0) place.style.height = `${60 + (panel.y.rows.length > 0 ? 40 * panel.y.rows.length : panel.height)}px`;
   const canvas = place.appendChild(element('canvas', ''));
   const chart = new Chart(canvas, {
     type: 'scatter',
