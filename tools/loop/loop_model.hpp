@@ -32,10 +32,11 @@ struct LoopModel {
 
 inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
   add_model(line, options.model);
-  line.add_option("--column", options.columns, "hold a column of the model here, not at the middle of its envelope")
+  line.add_option("--column", options.columns,
+                  "constant value of an input column (default: the middle of its training range)")
       ->type_name("NAME=VALUE");
   line.add_option("--airframe", options.airframe,
-                  "what flies in place of the model's own airframe, its motors as there: see airframe list")
+                  "fly this vehicle, with the same motor order, instead of the model's: see airframe list")
       ->type_name("NAME|FILE.toml");
   add_battery(line, options.battery);
 }
