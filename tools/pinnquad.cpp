@@ -28,9 +28,7 @@ Command airframe_command(CLI::App& program);
 namespace {
 
 int run(int argument_count, char** arguments, std::string& name) {
-  CLI::App program(
-      "Learns a quadrotor's inverse dynamics from its flights, and exports the model as a C++ header that may fly",
-      name);
+  CLI::App program("Learns a quadrotor's inverse dynamics from flights and exports a C++ header that may fly", name);
   program.fallthrough();  // --config may stand anywhere
   const std::vector<programs::Command> commands = {
       programs::fly_command(program),     programs::import_command(program),   programs::identify_command(program),

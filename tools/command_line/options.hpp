@@ -94,8 +94,7 @@ inline CLI::Option* add_paths(CLI::App& app, const std::string& name, std::vecto
 inline void add_sources(CLI::App& app, std::vector<std::string>& flights, std::string& mapping,
                         const std::string& name = "flights") {
   add_paths(app, name, flights, "FLIGHTS", "recorded flights (CSV), a dataset of import, or logs");
-  app.add_option("--mapping", mapping,
-                 "meaning of the logs' columns, where import does not recognise them: see import --list")
+  app.add_option("--mapping", mapping, "meaning of logs' columns, if not recognised: see import --list")
       ->type_name("NAME|FILE.toml");
 }
 

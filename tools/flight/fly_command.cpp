@@ -345,9 +345,9 @@ void add_options(CLI::App& app, FlyOptions& options) {
            "fly this stick recording instead of the random pilot (docs/flights.md)");
   add_path(app, "--record-sticks", options.record_sticks, "FILE.csv", "write the pilot's set points to this file");
   add_number(app, "--stick-interval", options.stick_interval_ms, 0.0, 1000.0,
-             "least time between its rows, ms; 0: each control tick, which repeats the flight exactly");
+             "least ms between its rows; 0: each tick, which repeats the flight");
   add_number(app, "--statistics", options.statistics, std::size_t{1}, std::size_t{100000},
-             "fly this many seeds from --seed on; print speed, height, tilt and saturation")
+             "fly this many seeds from --seed on; print speed, height, tilt")
       ->default_str("");
   add_path(app, "--pictures", options.pictures, "DIR", "draw trajectory, correlation, ground effect and wind as SVG");
   add_path(app, "--watch", options.watch, "FILE.html", "page to watch the flight in 3D in a browser (docs/watch.md)");

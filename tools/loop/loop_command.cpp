@@ -278,8 +278,7 @@ Command loop_command(CLI::App& program) {
   }
   add_number(*line, "--seed", unknown.seed, std::uint64_t{0}, most_seed, "seed of vehicles, noise and wind")
       ->needs(vehicles);
-  line->add_option("--start", unknown.start,
-                   "the first guess: each number within 40 %, or estimated from mass and propeller")
+  line->add_option("--start", unknown.start, "first guess: numbers within 40 %, or by mass and propeller")
       ->capture_default_str()
       ->check(CLI::IsMember({"forty", "laws"}))
       ->needs(vehicles);

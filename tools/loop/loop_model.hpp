@@ -32,11 +32,9 @@ struct LoopModel {
 
 inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
   add_model(line, options.model);
-  line.add_option("--column", options.columns,
-                  "constant value of an input column (default: the middle of its training range)")
+  line.add_option("--column", options.columns, "value of an input column (default: middle of its training range)")
       ->type_name("NAME=VALUE");
-  line.add_option("--airframe", options.airframe,
-                  "fly this vehicle, with the same motor order, instead of the model's: see airframe list")
+  line.add_option("--airframe", options.airframe, "fly this vehicle, of the same motor order: see airframe list")
       ->type_name("NAME|FILE.toml");
   add_battery(line, options.battery);
 }

@@ -53,15 +53,13 @@ void add_kinds(CLI::App& app, TrainOptions& options, GivenWords& words) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");
-  app.add_option("--export", options.export_choice,
-                 "the best model of measured motion, of planned motion, or one by name")
+  app.add_option("--export", options.export_choice, "best model of measured motion, of planned motion, or a name")
       ->type_name("causal|centred|NAME");
-  app.add_option("--altitude", words.altitude,
-                 "use it as an input of the structured model (auto: where that lowers the error by 20 %)")
+  app.add_option("--altitude", words.altitude, "input of the structured model (auto: if the error falls by 20 %)")
       ->check(CLI::IsMember({"auto", "yes", "no"}))
       ->type_name("auto|yes|no")
       ->capture_default_str();
-  app.add_option("--slopes", words.slopes, "of commands over angular acceleration: from the flights, or the airframe's")
+  app.add_option("--slopes", words.slopes, "of commands over angular acceleration: flights', or airframe's")
       ->check(CLI::IsMember({"learned", "pinned"}))
       ->type_name("learned|pinned")
       ->capture_default_str();
@@ -95,7 +93,7 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
   app.add_flag("--verbose", options.verbose, "statistical tests, slopes, settings and times beside the verdict");
   app.add_flag("--allow-poor", options.allow_poor,
-               "export a model worse than the mean of the commands too; its header says so");
+               "export a model worse than the mean command too; its header says so");
 }
 
 /// Throws std::invalid_argument, one line, for options that do not go together.
