@@ -41,7 +41,15 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_FLAGS MATCHES "-march=|-ma
 endif()
 
 # Both, and the bodies that are compiled once.
-include(PinnquadCompiled)
+set(optimisation -O2) # it trains
+if(PINNQUAD_BUILD_TESTS AND NOT PINNQUAD_BUILD_TOOLS)
+  set(optimisation -O1) # for tests alone, which take longer to compile than to run
+endif()
+target_compile_options(pinnquad_compiled PRIVATE $<$<CONFIG:Release>:${optimisation}>)
+if(PINNQUAD_BUILD_TESTS)
+  target_compile_options(pinnquad_compiled PRIVATE -UNDEBUG) # tests want assertions, whatever the build type
+endif()
+target_link_libraries(pinnquad_compiled PRIVATE pinnquad_flags)
 add_library(pinnquad_development INTERFACE)
 target_link_libraries(pinnquad_development INTERFACE pinnquad_flags pinnquad_compiled)
 

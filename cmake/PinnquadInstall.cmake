@@ -22,6 +22,7 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/pinnquadConfigVersion.cm
 install(FILES
   "${PROJECT_BINARY_DIR}/pinnquadConfig.cmake"
   "${PROJECT_BINARY_DIR}/pinnquadConfigVersion.cmake"
+  cmake/pinnquadCompiled.cmake
   DESTINATION "${package_dir}")
 
 configure_file(cmake/pinnquad.pc.in "${PROJECT_BINARY_DIR}/pinnquad.pc" @ONLY)

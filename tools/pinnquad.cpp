@@ -28,7 +28,7 @@ Command airframe_command(CLI::App& program);
 namespace {
 
 int run(int argument_count, char** arguments, std::string& name) {
-  CLI::App program("Physics-informed inverse dynamics of quadrotors: from a flight to a network that may fly", name);
+  CLI::App program("Learns a quadrotor's inverse dynamics from flights and exports a C++ header that may fly", name);
   program.fallthrough();  // --config may stand anywhere
   const std::vector<programs::Command> commands = {
       programs::fly_command(program),     programs::import_command(program),   programs::identify_command(program),
@@ -41,8 +41,9 @@ int run(int argument_count, char** arguments, std::string& name) {
       "  pinnquad train d1.csv --out my_model                     my_model/model.hpp flies\n"
       "  pinnquad --config options.toml train                     options from a file\n"
       "pinnquad COMMAND --help says more.\n"
-      "Exit codes: 0 good; 1 it ran, but the answer is no; 2 bad input or a file that can't be read or written; 3 "
-      "undecided; 70 a fault of the program, to be reported; 130 interrupted. Each command says which of the others it "
+      "Exit codes: 0 success; 1 the result is negative (not exported, refuted, lost); 2 bad input or a file that can't "
+      "be read or written; 3 undecided; 70 an internal error: please report it; 130 interrupted. Each command says "
+      "which of the others it "
       "has.");
   const std::optional<int> code = programs::choose_command(program, argument_count, arguments, name,
                                                            "; the paper's study is the program pinnquad-study");

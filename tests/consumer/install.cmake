@@ -39,7 +39,7 @@ endif()
 file(GLOB_RECURSE installed RELATIVE "${PREFIX}" "${PREFIX}/*")
 foreach(file IN LISTS installed)
   if(NOT file MATCHES "^include/pinnquad/.*\\.hpp$" AND
-      NOT file MATCHES "^share/(cmake/pinnquad/pinnquad(Config|ConfigVersion|Targets)\\.cmake|pkgconfig/pinnquad\\.pc)$")
+      NOT file MATCHES "^share/(cmake/pinnquad/pinnquad(Config|ConfigVersion|Targets|Compiled)\\.cmake|pkgconfig/pinnquad\\.pc)$")
     message(FATAL_ERROR "installed, but neither a header nor a package file: ${file}")
   endif()
 endforeach()

@@ -114,7 +114,7 @@ Command airframe_command(CLI::App& program) {
   CLI::App* one = line->add_subcommand("check", "Says what an airframe is, or what is wrong with its file");
   one->footer(footer("  pinnquad airframe check mine.toml\n"));
   add_path(*one, "airframe", options->airframe, "NAME|FILE.toml", known)->required();
-  CLI::App* guess = line->add_subcommand("estimate", "Writes an airframe by what people know of a quadrotor");
+  CLI::App* guess = line->add_subcommand("estimate", "Estimates an airframe from mass, arm, propeller and motor");
   KnownOfAirframe& known_of = options->known;
   add_number(*guess, "--mass", known_of.mass_kg, 0.01, 100.0, "all-up weight, kg")->required();
   add_number(*guess, "--arm", known_of.arm_m, 0.01, 3.0, "from the centre to a motor, m")->required();
@@ -128,7 +128,7 @@ Command airframe_command(CLI::App& program) {
              "  pinnquad airframe estimate --mass 2 --arm 0.25 --propeller 10 --kv 920 --cells 4 --out mine.toml\n"));
   CLI::App* other = line->add_subcommand("convert", "Writes an airframe as a file (.toml) or as a C++ struct (.hpp)");
   add_path(*other, "airframe", options->airframe, "NAME|FILE.toml", known)->required();
-  add_path(*other, "--out", options->out, "FILE.toml|FILE.hpp", "what to write; its ending says as what")->required();
+  add_path(*other, "--out", options->out, "FILE.toml|FILE.hpp", "file to write: .toml or .hpp")->required();
   other->add_option("--name", options->struct_name, "name of the struct")->type_name("NAME")->capture_default_str();
   other->footer(
       footer("  pinnquad airframe convert racer_5_inch --out mine.toml      to begin one's own\n"

@@ -98,7 +98,7 @@ inline std::optional<int> choose_command(CLI::App& program, int argument_count, 
       .add_option_function<std::string>(
           "--config", [&program](const std::string& path) { take_settings(program, path); },
           "options from a file: a table per command, such as [" + program.get_subcommands({}).front()->get_name() +
-              "], an entry per option, such as seed = 3; what stands on the command line goes first")
+              "], an entry per option, such as seed = 3; the command line overrides the file")
       ->type_name("FILE.toml");
   read_before_required(program);
   program.allow_extras();

@@ -94,7 +94,7 @@ inline CLI::Option* add_paths(CLI::App& app, const std::string& name, std::vecto
 inline void add_sources(CLI::App& app, std::vector<std::string>& flights, std::string& mapping,
                         const std::string& name = "flights") {
   add_paths(app, name, flights, "FLIGHTS", "recorded flights (CSV), a dataset of import, or logs");
-  app.add_option("--mapping", mapping, "what the columns of logs mean, where their content does not tell: see import")
+  app.add_option("--mapping", mapping, "meaning of logs' columns, if not recognised: see import --list")
       ->type_name("NAME|FILE.toml");
 }
 
@@ -102,10 +102,9 @@ inline void add_sources(CLI::App& app, std::vector<std::string>& flights, std::s
 template <class Options>
 void add_time_range(CLI::App& app, Options& options) {
   constexpr double longest_s = 1e6;
-  add_number(app, "--from", options.from_s, 0.0, longest_s,
-             "of each log, s from its first row: rows before are left out")
+  add_number(app, "--from", options.from_s, 0.0, longest_s, "use each log from this time on, s after its first row")
       ->default_str("");
-  add_number(app, "--to", options.to_s, 0.0, longest_s, "and rows after")->default_str("");
+  add_number(app, "--to", options.to_s, 0.0, longest_s, "and until this time")->default_str("");
 }
 
 /// Throws std::invalid_argument, one line, for a part of what is no log, and for an empty one.

@@ -100,13 +100,14 @@ namespace programs {
 
 Command convert_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
-      "convert", "Makes a model of a network that was trained elsewhere, or a network for elsewhere of a model");
+      "convert",
+      "Converts a PyTorch, ONNX, flax or scikit-learn network to a model, or a model to ONNX or safetensors");
   const auto options = std::make_shared<ConvertOptions>();
   add_path(*line, "source", options->source, "FILE",
            "a network (.onnx, .safetensors), a model (.block, .hpp), or flights (.csv, a dataset)")
       ->required();
   add_path(*line, "--features", options->features, "FILE.toml",
-           "of a network: what its numbers mean (docs/convert.md)");
+           "names, units and ranges of the network's inputs and outputs (docs/convert.md)");
   add_path(*line, "--out", options->out, "DIR|FILE",
            "of a network the folder for model.hpp and model.block; of a model the network to write (.onnx, "
            ".safetensors); of flights the features file")
@@ -116,11 +117,11 @@ Command convert_command(CLI::App& program) {
                    "of flights: paper, physics or inverse, the features that the file begins with")
       ->type_name("SET")
       ->capture_default_str();
-  line->add_option("--prefix", options->prefix, "of tensors by name: only those that begin with it, such as actor.")
+  line->add_option("--prefix", options->prefix, "read only tensors whose names begin with this, such as actor.")
       ->type_name("TEXT");
-  line->add_option("--output", options->output, "of a network with several outputs: the one that makes the commands")
+  line->add_option("--output", options->output, "the output that makes the commands, of a network with several")
       ->type_name("NAME");
-  line->add_flag("--double", options->in_double, "numbers of the model in double, not in float");
+  line->add_flag("--double", options->in_double, "a model in double instead of float");
   line->footer(
       "Examples:\n"
       "  pinnquad convert flight.csv --out features.toml   to begin with: ranges of the flights\n"

@@ -24,7 +24,8 @@ inline void add_battery(CLI::App& line, BatteryOptions& options) {
   CLI::Option* const pack =
       line.add_option("--battery", options.pack, "of the vehicle, as 3x2200: three LiPo cells of 2200 mAh")
           ->type_name("CELLSxMAH");
-  add_number(line, "--battery-charge", options.charge_percent, 5.0, 100.0, "of it at the start, %")->needs(pack);
+  add_number(line, "--battery-charge", options.charge_percent, 5.0, 100.0, "charge of the battery at the start, %")
+      ->needs(pack);
 }
 
 /// None where none is asked for. Throws std::invalid_argument, one line.

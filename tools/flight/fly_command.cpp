@@ -336,16 +336,18 @@ void add_options(CLI::App& app, FlyOptions& options) {
                  "none, cheeseman-bennett or conyers (default: the flight's own)")
       ->type_name("MODEL");
   programs::add_battery(app, options.battery);
-  add_number(app, "--gyro-noise", options.gyro_noise_rad_s, 0.0, 10.0, "of the recording, standard deviation, rad/s");
-  add_number(app, "--latency", options.latency_ms, 0.0, 1000.0, "of the recorded commands, ms");
-  add_number(app, "--jitter", options.jitter_ms, 0.0, 1000.0, "and up to this much more, row by row, ms");
+  add_number(app, "--gyro-noise", options.gyro_noise_rad_s, 0.0, 10.0,
+             "gyro noise added to the recording, standard deviation, rad/s");
+  add_number(app, "--latency", options.latency_ms, 0.0, 1000.0, "delay of the recorded commands, ms");
+  add_number(app, "--jitter", options.jitter_ms, 0.0, 1000.0,
+             "additional random delay of each row's commands, at most, ms");
   add_path(app, "--sticks", options.sticks, "FILE.csv",
            "fly this stick recording instead of the random pilot (docs/flights.md)");
-  add_path(app, "--record-sticks", options.record_sticks, "FILE.csv", "write down what the pilot asks for");
+  add_path(app, "--record-sticks", options.record_sticks, "FILE.csv", "write the pilot's set points to this file");
   add_number(app, "--stick-interval", options.stick_interval_ms, 0.0, 1000.0,
-             "ms between its rows at least; 0: each control tick, the same flight again");
+             "least ms between its rows; 0: each tick, which repeats the flight");
   add_number(app, "--statistics", options.statistics, std::size_t{1}, std::size_t{100000},
-             "fly this many seeds from --seed on, and print what they reach")
+             "fly this many seeds from --seed on; print speed, height, tilt")
       ->default_str("");
   add_path(app, "--pictures", options.pictures, "DIR", "draw trajectory, correlation, ground effect and wind as SVG");
   add_path(app, "--watch", options.watch, "FILE.html", "page to watch the flight in 3D in a browser (docs/watch.md)");

@@ -132,8 +132,9 @@ int run(const IdentifyOptions& options) {
 namespace programs {
 
 Command identify_command(CLI::App& program) {
-  CLI::App* line = program.add_subcommand(
-      "identify", "Finds the vehicle that flew: thrust, turning, drag, lag, with intervals, and an airframe file");
+  CLI::App* line = program.add_subcommand("identify",
+                                          "Estimates the vehicle that flew: thrust, control effectiveness, drag and "
+                                          "lag with intervals; writes an airframe file");
   const auto options = std::make_shared<IdentifyOptions>();
   add_sources(*line, options->flights, options->mapping);
   add_number(*line, "--rate", options->rate_hz, 10.0, 2000.0, "rows per second of logs (default: see import)")
@@ -143,8 +144,9 @@ Command identify_command(CLI::App& program) {
                    "gives mass, arms, motor order and propeller; else 1 kg, 0.2 m, PX4's order: a file, or one of: " +
                        airframe_names())
       ->type_name("NAME|FILE.toml");
-  add_number(*line, "--mass", options->mass_kg, 1e-3, 1e3, "mass, kg: no flight tells it")->default_str("");
-  add_number(*line, "--arm", options->arm_m, 1e-3, 1e2, "of each rotor along x and y, m: no flight tells it")
+  add_number(*line, "--mass", options->mass_kg, 1e-3, 1e3, "mass, kg: flights cannot determine it")->default_str("");
+  add_number(*line, "--arm", options->arm_m, 1e-3, 1e2,
+             "distance of each rotor from the centre along x and y, m: flights cannot determine it")
       ->default_str("");
   const auto take_curve = [options](const std::string& text) {
     double curve = 0;

@@ -121,13 +121,13 @@ Command import_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("import", "Makes a dataset of flight logs: ULog, blackbox, DataFlash, CSV");
   const auto options = std::make_shared<ImportOptions>();
   add_paths(*line, "logs", options->logs, "LOG",
-            "ULog, blackbox, DataFlash and uSD logs, CSV tables, folders of them; told apart by content");
+            "ULog, blackbox, DataFlash and uSD logs, CSV tables, folders of them; recognised by content");
   line->add_option(
           "--mapping", options->mapping,
           "what the columns mean, where the content does not tell: " + pinnquad::logs::mapping_names() + ", or a file")
       ->type_name("NAME|FILE.toml");
   add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
-           "gives rotor speeds and thrusts their commands; the mapping may name one");
+           "converts logged rotor speeds or thrusts to commands; the mapping may name one");
   add_path(*line, "--out", options->out, "DATASET", "the folder to write; a dataset that is there is replaced");
   add_number(*line, "--rate", options->rate_hz, 1.0, 2000.0,
              "rows per second; else as the slowest of commands, body rates and force, at most 100");
@@ -139,8 +139,8 @@ Command import_command(CLI::App& program) {
       ->default_str("");
   add_time_range(*line, *options);
   add_number(*line, "--cut", options->cut_s, 1.0, 1e6,
-             "flights become parts of about so many s, of which train can hold one out");
-  line->add_flag("--hold", options->hold, "commands hold until their next row, instead of lines between rows");
+             "split flights into parts of about this many seconds, so that train can hold one out");
+  line->add_flag("--hold", options->hold, "hold the last command between rows instead of interpolating");
   line->add_flag("--json", options->json, "rows per step, flights and warnings as JSON, and nothing else, on stdout");
   line->add_flag("--list", options->list, "list the ready mappings");
   line->footer(

@@ -241,12 +241,12 @@ int loop(const LoopOptions& options) {
 namespace programs {
 
 Command loop_command(CLI::App& program) {
-  CLI::App* line =
-      program.add_subcommand("loop", "Flies a model in a closed loop in the simulator, or vehicles that nobody knows");
+  CLI::App* line = program.add_subcommand(
+      "loop", "Flies a model in the simulator beside other controllers; or random vehicles that are learnt in flight");
   const auto options = std::make_shared<LoopOptions>();
   add_loop_model(*line, *options);
   line->get_option("model")->required(false);  // of vehicles that nobody knows there is none
-  line->add_option("--trajectory", options->trajectory, "as large as airframe and envelope hold")
+  line->add_option("--trajectory", options->trajectory, "as large and fast as airframe and training range allow")
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>(loop_trajectories.begin(), loop_trajectories.end())));
   CLI::Option* guard =
@@ -276,15 +276,14 @@ Command loop_command(CLI::App& program) {
   for (const char* other : {"--column", "--airframe", "--battery", "--battery-charge", "--trajectory", "--guard"}) {
     vehicles->excludes(line->get_option(other));
   }
-  add_number(*line, "--seed", unknown.seed, std::uint64_t{0}, most_seed, "of vehicles, noise and wind")
+  add_number(*line, "--seed", unknown.seed, std::uint64_t{0}, most_seed, "seed of vehicles, noise and wind")
       ->needs(vehicles);
-  line->add_option("--start", unknown.start, "what is guessed: numbers within 40 %, or laws of mass and propeller")
+  line->add_option("--start", unknown.start, "first guess: numbers within 40 %, or by mass and propeller")
       ->capture_default_str()
       ->check(CLI::IsMember({"forty", "laws"}))
       ->needs(vehicles);
-  add_number(*line, "--frozen", unknown.frozen_s, 1.0, 3600.0, "a model learnt on board is frozen then, s")
-      ->needs(vehicles);
-  add_path(*line, "--out", unknown.out, "FOLDER", "where loop.json of these vehicles goes")->needs(vehicles);
+  add_number(*line, "--frozen", unknown.frozen_s, 1.0, 3600.0, "learning ends at this time, s")->needs(vehicles);
+  add_path(*line, "--out", unknown.out, "FOLDER", "folder for their loop.json")->needs(vehicles);
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(
       "Examples:\n"

@@ -32,10 +32,9 @@ struct LoopModel {
 
 inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
   add_model(line, options.model);
-  line.add_option("--column", options.columns, "hold a column of the model here, not at the middle of its envelope")
+  line.add_option("--column", options.columns, "value of an input column (default: middle of its training range)")
       ->type_name("NAME=VALUE");
-  line.add_option("--airframe", options.airframe,
-                  "what flies in place of the model's own airframe, its motors as there: see airframe list")
+  line.add_option("--airframe", options.airframe, "fly this vehicle, of the same motor order: see airframe list")
       ->type_name("NAME|FILE.toml");
   add_battery(line, options.battery);
 }

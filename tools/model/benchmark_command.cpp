@@ -223,10 +223,10 @@ int benchmark(const BenchmarkOptions& options) {
 namespace programs {
 
 Command benchmark_command(CLI::App& program) {
-  CLI::App* line =
-      program.add_subcommand("benchmark", "Rows of data sets: what train makes of them, and other methods");
+  CLI::App* line = program.add_subcommand(
+      "benchmark", "Prints a row of results per data set, with those of your own method beside them");
   const auto options = std::make_shared<BenchmarkOptions>();
-  add_paths(*line, "folders", options->folders, "DIR", "with dataset/, of import, and model/, of train on it")
+  add_paths(*line, "folders", options->folders, "DIR", "folders with dataset/ (from import) and model/ (from train)")
       ->required();
   add_path(
       *line, "--predictions", options->predictions, "FILE.csv|FOLDER",

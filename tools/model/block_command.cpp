@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Says what a model block holds: it describes itself (docs/blocks.md).
+// Lists what a model block contains: inputs, units, network, training, verdict (docs/blocks.md).
 //   pinnquad block my_model/model.block
 #include <cstdio>
 #include <memory>
@@ -134,7 +134,8 @@ int describe(const BlockOptions& options) {
 namespace programs {
 
 Command block_command(CLI::App& program) {
-  CLI::App* line = program.add_subcommand("block", "Says what a model block holds: it describes itself");
+  CLI::App* line =
+      program.add_subcommand("block", "Lists what a model block contains: inputs, units, network, training, verdict");
   const auto options = std::make_shared<BlockOptions>();
   add_model(*line, options->model);
   line->add_flag("--json", options->json, "all of it as JSON");

@@ -193,11 +193,12 @@ namespace programs {
 
 Command certify_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
-      "certify", "Proves that a model's commands follow the angular acceleration that is asked, or refutes it");
+      "certify",
+      "Proves that more demanded angular acceleration always commands more torque, or finds a counterexample");
   const auto options = std::make_shared<CertifyOptions>();
   add_model(*line, options->model);
   add_number(*line, "--seconds", options->seconds, 0.01, 3600.0,
-             "how long, in seconds of the processor, to search a counterexample where nothing is proven");
+             "CPU time of the search for a counterexample, s, if nothing is proven");
   add_number(*line, "--seed", options->seed, std::uint64_t{0}, most_seed, "of the search")->type_name("N");
   line->add_flag("--json", options->json, "what was found as JSON");
   line->footer(

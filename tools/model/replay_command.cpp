@@ -311,7 +311,7 @@ Command replay_command(CLI::App& program) {
       ->capture_default_str()
       ->check(CLI::IsMember({"flight_stack", "training"}));
   line->add_option("--set", options->settings,
-                   "a setting of the core other than the log's, to see what it would have done: --set tilt_1_s=7")
+                   "change a setting of the core, to see what it would have done: --set tilt_1_s=7")
       ->type_name("NAME=VALUE");
   add_number(*line, "--tolerance", options->tolerance, 0.0, 1.0,
              "largest difference of a command from the core's log that counts as the same");

@@ -147,7 +147,7 @@ programs::Command wrench_command(CLI::App& program) {
   options.airframe = PaperQuadrotor::name;
   options.model_name = "TrainedWrench";
   add_sources(*line, options.flights, options.mapping);
-  line->add_option("--hold-out", options.hold_out, "flights or trajectories that judge, held out together")
+  line->add_option("--hold-out", options.hold_out, "flights or trajectories kept for testing, all together")
       ->delimiter(',')
       ->type_name("NAME,...");
   line->add_option("--airframe", options.airframe, "what flew: a file FILE.toml, or one of: " + airframe_names())

@@ -29,11 +29,11 @@ struct GivenWords {
 
 void add_flights(CLI::App& app, TrainOptions& options) {
   programs::add_sources(app, options.flights, options.mapping);
-  app.add_option("--hold-out", options.hold_out, "flights or trajectories that judge, held out together")
+  app.add_option("--hold-out", options.hold_out, "flights or trajectories kept for testing, all together")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");
-  app.add_option("--hold-out-each", options.hold_out_each, "each in turn; the export is fitted to all")
+  app.add_option("--hold-out-each", options.hold_out_each, "each in turn; then the export is fitted to all")
       ->check(CLI::IsMember({"flight", "trajectory"}))
       ->type_name("flight|trajectory");
   app.add_option("--validate", options.validate, "flights or trajectories that choose what is exported (default: all)")
@@ -53,13 +53,13 @@ void add_kinds(CLI::App& app, TrainOptions& options, GivenWords& words) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");
-  app.add_option("--export", options.export_choice, "the best on measured motion, on planned motion, or one by name")
+  app.add_option("--export", options.export_choice, "best model of measured motion, of planned motion, or a name")
       ->type_name("causal|centred|NAME");
-  app.add_option("--altitude", words.altitude, "is the structured model shown it?")
+  app.add_option("--altitude", words.altitude, "input of the structured model (auto: if the error falls by 20 %)")
       ->check(CLI::IsMember({"auto", "yes", "no"}))
       ->type_name("auto|yes|no")
       ->capture_default_str();
-  app.add_option("--slopes", words.slopes, "of the structured model by angular acceleration")
+  app.add_option("--slopes", words.slopes, "of commands over angular acceleration: flights', or airframe's")
       ->check(CLI::IsMember({"learned", "pinned"}))
       ->type_name("learned|pinned")
       ->capture_default_str();
@@ -71,7 +71,7 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
       "Examples:\n"
       "  pinnquad train logs --hold-out flight7 --out my_model\n"
       "More: docs/train.md, docs/log_training.md.\n"
-      "Exit codes: 0; 1 nothing exported; 2 bad input; 130 interrupted: it goes on from there.");
+      "Exit codes: 0; 1 nothing exported; 2 bad input; 130 interrupted: the same command resumes.");
   add_flights(app, options);
   app.add_option("--airframe", words.airframe, "what flew: see airframe list")
       ->type_name("NAME|FILE.toml")
@@ -92,7 +92,8 @@ void add_options(CLI::App& app, TrainOptions& options, GivenWords& words) {
       ->type_name("N");
   add_number(app, "--threads", options.threads, 1u, 1024u, "trainings at once (default: all cores)")->default_str("");
   app.add_flag("--verbose", options.verbose, "statistical tests, slopes, settings and times beside the verdict");
-  app.add_flag("--allow-poor", options.allow_poor, "export what is worse than the mean of the commands too, marked");
+  app.add_flag("--allow-poor", options.allow_poor,
+               "export a model worse than the mean command too; its header says so");
 }
 
 /// Throws std::invalid_argument, one line, for options that do not go together.

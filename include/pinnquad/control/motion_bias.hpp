@@ -18,7 +18,7 @@
 
 namespace pinnquad {
 
-/// Of the signed sums: the sum of all commands, and those about roll, pitch and yaw (outputs/axis_command_outputs.hpp).
+/// A number per signed sum: all commands, then those of roll, pitch and yaw (outputs/axis_command_outputs.hpp).
 template <class Scalar>
 using SignedSums = std::array<Scalar, 4>;
 
@@ -72,7 +72,7 @@ constexpr BiasSettings<Scalar> bias_settings() noexcept {
     return {};
   }
 }
-/// The same of a block's facts: those of a ModelView, a RunTimeModel.
+/// Settings by a block's facts: those of a ModelView, a RunTimeModel.
 template <class Scalar>
 constexpr BiasSettings<Scalar> bias_settings(const ModelFacts& facts) noexcept {
   return facts.has_bias ? detail::bias_settings_of<Scalar>(facts.bias_time_constants_s) : BiasSettings<Scalar>{};

@@ -28,7 +28,7 @@ PINNQUAD_ALWAYS_INLINE bool is_finite(const float& value) noexcept {
   return (bits & 0x7f800000u) != 0x7f800000u;
 }
 
-/// The same of a double.
+/// True for a double that is neither infinite nor NaN.
 PINNQUAD_ALWAYS_INLINE bool is_finite(const double& value) noexcept {
   std::uint64_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);

@@ -24,7 +24,7 @@ namespace pinnquad {
 
 namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
-/// Of one register.
+/// Bytes of one register.
 inline constexpr int register_bytes =
     vector_unit == VectorUnit::avx512 ? 64 : (vector_unit == VectorUnit::avx2 ? 32 : 16);
 
@@ -65,7 +65,7 @@ struct LaneMask {
   PINNQUAD_ALWAYS_INLINE constexpr LaneMask(bool everywhere) noexcept : part{} {
     for (auto& truths : part) truths = typename Types::Truths{} - (everywhere ? 1 : 0);
   }
-  /// The same of lanes of another scalar.
+  /// The truths of lanes of another scalar.
   template <class Other>
   PINNQUAD_ALWAYS_INLINE explicit LaneMask(const LaneMask<Other, Count>& other) noexcept {
     for (int i = 0; i < Count; ++i) set_lane(i, other.lane(i));
@@ -323,7 +323,7 @@ PINNQUAD_ALWAYS_INLINE Eigen::Matrix<Lanes<Scalar, Count>, Rows, Columns, Option
   for (int i = 0; i < Rows * Columns; ++i) result.data()[i] = select(mask, yes.data()[i], no.data()[i]);
   return result;
 }
-/// The same of numbers of each rotor.
+/// Takes each lane of an array's numbers from `yes` or `no`.
 template <class Scalar, int Count, std::size_t Size>
 PINNQUAD_ALWAYS_INLINE std::array<Lanes<Scalar, Count>, Size> select(
     const detail::LaneMask<Scalar, Count>& mask, const std::array<Lanes<Scalar, Count>, Size>& yes,

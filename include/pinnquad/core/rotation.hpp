@@ -104,7 +104,7 @@ PINNQUAD_ALWAYS_INLINE Vector3<Scalar> world_down_axis(const Quaternion<Scalar>&
   return Vector3<Scalar>(q.x * z2 - q.w * y2, q.y * z2 + q.w * x2, Scalar(1) - (q.x * x2 + q.y * y2));
 }
 
-/// Of Euler angles ZYX, rad.
+/// Quaternion of Euler angles ZYX, rad.
 template <class Scalar>
 Quaternion<Scalar> from_euler(const EulerAngles<Scalar>& angles) noexcept {
   using std::cos;

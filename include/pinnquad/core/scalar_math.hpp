@@ -62,7 +62,7 @@ PINNQUAD_ALWAYS_INLINE Scalar logistic(const Scalar& v) noexcept {
 /// The bits of a float as an integer lie below this one for -0 to -infinity, and for no NaN: it is the least NaN with a
 /// sign.
 inline constexpr int above_negatives = -0x007fffff;
-/// The same of a double.
+/// That bound for the bits of a double.
 inline constexpr long long above_negatives_double = -0x000fffffffffffff;
 
 /// v < 0 ? 0 : v. NaN goes through.

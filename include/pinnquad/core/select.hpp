@@ -18,7 +18,7 @@ struct LaneTypes {
 };
 }  // namespace detail
 
-/// Of a comparison: bool, or one truth per lane.
+/// Result of a comparison: bool, or one truth per lane.
 template <class Scalar>
 using Mask = typename detail::LaneTypes<Scalar>::Mask;
 

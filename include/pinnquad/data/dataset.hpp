@@ -148,7 +148,7 @@ class Dataset {
   const std::deque<Flight>& flights() const noexcept { return flights_; }
   std::size_t size() const noexcept { return flights_.size(); }
   const Flight& operator[](std::size_t flight) const { return flights_[flight]; }
-  /// Of all flights.
+  /// Rows of all flights.
   std::size_t rows() const noexcept { return rows_; }
 
  private:

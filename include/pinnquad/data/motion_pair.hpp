@@ -40,7 +40,7 @@ struct MotionSums {
   void add(const MotionSums& other, double weight);
 };
 
-/// The same of a whole flight, by blocks of time that weigh alike.
+/// Sums of a whole flight, by blocks of time that weigh alike.
 struct MotionBlocks : MotionSums {
   std::vector<MotionSums> blocks;
 

@@ -47,7 +47,7 @@ class BlockModel {
   /// Reads a file. Throws InputError, one line: not readable, no block that describes itself, one that contradicts
   /// itself, one whose weights do not give its golden commands.
   explicit BlockModel(const std::string& path) : BlockModel(path, file_text(path)) {}
-  /// Of bytes; `path` is for messages.
+  /// Opens a block's bytes; `path` is for messages.
   template <class Bytes>
   BlockModel(const std::string& path, const Bytes& bytes) : path_(path), length_(bytes.size()) {
     bytes_.resize((length_ + 7) / 8);
@@ -78,7 +78,7 @@ class BlockModel {
   const Airframe<double>& airframe() const;
   std::uint64_t contents_hash() const;
   std::vector<std::string> feature_names() const;
-  /// Of a flight, beyond those that every flight has.
+  /// Columns that a flight needs beyond those that every flight has.
   std::vector<ColumnName> columns() const;
   /// A feature that shows the angular acceleration about an axis, at the present instant or at another tap of a window.
   struct AccelerationPlace {
@@ -97,7 +97,7 @@ class BlockModel {
   std::vector<double> golden_features(int vector) const;
   /// The largest difference of a golden command from what its weights give.
   double golden_difference() const;
-  /// Of a model with a structure that can be proven.
+  /// The certificate of a model whose structure can be proven.
   std::optional<Certificate> certificate() const;
   /// None: nothing is proven (which is no counterexample), or the model is asked no angular acceleration.
   std::optional<ProvenSigns> proven_signs() const;

@@ -57,7 +57,7 @@ class BoundSearch {
 /// rest evenly between. Throws std::invalid_argument where no row has features, or for fewer than two.
 std::vector<std::vector<double>> golden_features(const AskedModel& model, const RowSet& training,
                                                  std::size_t count = 8);
-/// The same of a model of types.
+/// Golden features of a model of types.
 template <class Model>
 std::vector<typename Model::FeatureVector> golden_features(const Model& model, const RowSet& training,
                                                            std::size_t count = 8) {

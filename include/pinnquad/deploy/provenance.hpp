@@ -53,7 +53,7 @@ struct Provenance {
   std::string beside{};        ///< its error beside those of others, as fitness
   bool airframe_known = true;  ///< false: slopes are not told over those of the airframe, which is another one
 
-  /// Of the bias that an inverse of this model learns in flight, sum by sum; 0: none of this sum.
+  /// Time constants of the bias that an inverse of this model learns in flight, one per sum; 0: that sum has none.
   std::optional<std::array<double, 4>> bias_time_constants_s = std::nullopt;
 };
 

@@ -48,8 +48,8 @@ struct StructuredFits {
 StructuredFits fit_structured(const StructuredSet& without_altitude, const StructuredSet* higher, const RowSplit& split,
                               const StructuredSettings& settings = {}, const FitWork& work = FitWork());
 
-/// The same of feature sets. `WithAltitude`: Features and the altitude, which the validation rows choose or do not;
-/// Features again where that was not measured.
+/// Fits on feature sets that are types. `WithAltitude`: Features and the altitude, which the validation rows choose or
+/// not; Features again where that was not measured.
 template <class Features = InverseFeatures, class WithAltitude = InverseFeaturesWithAltitude>
 StructuredFits fit_structured(const RowSplit& split, const GivenAirframe& airframe,
                               const StructuredSettings& settings = {}, const FitWork& work = FitWork()) {

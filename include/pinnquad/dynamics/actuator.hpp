@@ -106,7 +106,7 @@ template <class Scalar>
 constexpr Scalar clip_command(Scalar command) noexcept {
   return select(command < Scalar(0), Scalar(0), select(command > Scalar(1), Scalar(1), command));
 }
-/// All four.
+/// All four commands, each held between 0 and 1.
 template <class Scalar>
 constexpr Commands<Scalar> clipped(const Commands<Scalar>& commands) noexcept {
   return {clip_command(commands[0]), clip_command(commands[1]), clip_command(commands[2]), clip_command(commands[3])};
@@ -119,7 +119,7 @@ Scalar lag_factor(Scalar time_constant_s, Scalar step_s) noexcept {
   const Mask<Scalar> lags = time_constant_s > Scalar(0);
   return any_of(lags) ? select(lags, Scalar(exp(-step_s / time_constant_s)), Scalar(0)) : Scalar(0);
 }
-/// Of each rotor.
+/// Lag factor of each rotor.
 template <class Scalar>
 std::array<Scalar, rotor_count> lag_factor(const std::array<Scalar, rotor_count>& time_constants_s,
                                            Scalar step_s) noexcept {
@@ -153,8 +153,8 @@ constexpr ThrustFractions<Scalar> lagged(const ThrustFractions<Scalar>& filtered
   return result;
 }
 
-/// Of two values of each rotor the one for its way from `before` to the fraction wanted: thrust approaches what is held
-/// from one side, so that a rotor rises or falls all the step long.
+/// Each rotor's value for its way from `before` to the fraction wanted, of two: thrust approaches a held fraction from
+/// one side, so that a rotor rises or falls all the step long.
 template <class Scalar>
 constexpr std::array<Scalar, rotor_count> by_direction(const ThrustFractions<Scalar>& before,
                                                        const ThrustFractions<Scalar>& wanted,
@@ -172,7 +172,7 @@ template <class Scalar>
 constexpr std::array<Scalar, rotor_count> rise_time_constants_s(const Airframe<Scalar>& a) noexcept {
   return {a.rise_time_constant_s(0), a.rise_time_constant_s(1), a.rise_time_constant_s(2), a.rise_time_constant_s(3)};
 }
-/// And of falling thrust.
+/// Time constant of each rotor's falling thrust, s.
 template <class Scalar>
 constexpr std::array<Scalar, rotor_count> fall_time_constants_s(const Airframe<Scalar>& a) noexcept {
   return {a.fall_time_constant_s(0), a.fall_time_constant_s(1), a.fall_time_constant_s(2), a.fall_time_constant_s(3)};
@@ -193,7 +193,7 @@ constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before
                                            Scalar time_constant_s) noexcept {
   return select(time_constant_s > Scalar(0), before, end);
 }
-/// Of each rotor its own.
+/// Each rotor's fraction at the start of the step.
 template <class Scalar>
 constexpr ThrustFractions<Scalar> at_start(const ThrustFractions<Scalar>& before, const ThrustFractions<Scalar>& end,
                                            const std::array<Scalar, rotor_count>& time_constants_s) noexcept {

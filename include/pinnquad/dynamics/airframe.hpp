@@ -179,7 +179,7 @@ template <class Scalar>
 constexpr Mask<Scalar> plausible_or_zero(Scalar value) noexcept {
   return value >= Scalar(0) && value <= Scalar(1e9);
 }
-/// Of either sign.
+/// True if |value| is plausible; either sign.
 template <class Scalar>
 constexpr Mask<Scalar> bounded(Scalar value) noexcept {
   return plausible_or_zero(select(value < Scalar(0), -value, value));

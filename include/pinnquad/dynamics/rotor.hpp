@@ -69,7 +69,7 @@ class Rotors {
     }
     return result;
   }
-  /// The same of commands.
+  /// Wrench of commands.
   Wrench<Scalar> wrench(const Commands<Scalar>& u, Scalar scale) const noexcept {
     return wrench_of(fractions(u), scale);
   }

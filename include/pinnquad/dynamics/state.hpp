@@ -48,7 +48,7 @@ Wrench<Scalar> operator-(const Wrench<Scalar>& a, const Wrench<Scalar>& b) noexc
   return {a.force_N - b.force_N, a.torque_N_m - b.torque_N_m};
 }
 
-/// Of each lane its own.
+/// Takes each lane from `yes` or `no`, as its truth says.
 template <class Scalar, class = std::enable_if_t<!std::is_same_v<Mask<Scalar>, bool>>>
 PINNQUAD_ALWAYS_INLINE Wrench<Scalar> select(const Mask<Scalar>& mask, const Wrench<Scalar>& yes,
                                              const Wrench<Scalar>& no) noexcept {
@@ -75,7 +75,7 @@ Vector3<Scalar> body_derivative(const State<Scalar>& state, const Vector3<Scalar
          cross<Scalar>(state.body_rates_rad_s, body_velocity(state));
 }
 
-/// Of each lane its own.
+/// Takes each lane from `yes` or `no`, as its truth says.
 template <class Scalar, class = std::enable_if_t<!std::is_same_v<Mask<Scalar>, bool>>>
 PINNQUAD_ALWAYS_INLINE State<Scalar> select(const Mask<Scalar>& mask, const State<Scalar>& yes,
                                             const State<Scalar>& no) noexcept {

@@ -173,15 +173,15 @@ detail::PredictionErrors<Motors> prediction_errors(const std::vector<std::array<
 struct Verdict {
   double test_r_squared = 0;               ///< of the model
   double linear_regression_r_squared = 0;  ///< of evaluation/errors.hpp, fitted on the model's training rows
-  /// Of the model, the least of the motors; NaN if one is, or if nothing is said of it.
+  /// The model's least R^2 over the motors; NaN if one is NaN or none is known.
   double worst_motor_r_squared = std::numeric_limits<double>::quiet_NaN();
-  /// Of the test rows, those that the guard of its export lets it answer; NaN: not said.
+  /// Share of the test rows that the guard of its export lets it answer; NaN: not known.
   double answered_share = std::numeric_limits<double>::quiet_NaN();
 
   /// Answering always with the mean command would have been better; so too if R^2 is NaN. Such a model is not for
   /// flight.
   bool worse_than_mean() const noexcept { return !(is_finite(test_r_squared) && test_r_squared >= 0); }
-  /// The same of one motor: a good mean may hide it.
+  /// True if one motor's R^2 is below 0, which a good mean may hide.
   bool has_poor_motor() const noexcept { return is_finite(worst_motor_r_squared) && worst_motor_r_squared < 0; }
   /// False if the plain linear map predicts the commands as well or better: the network has learned nothing beyond it.
   bool beats_linear_regression() const noexcept {

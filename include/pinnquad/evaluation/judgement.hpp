@@ -59,7 +59,7 @@ Verdict verdict_on(const Model& model, const RowSet& training, const RowSet& tes
   return verdict_on(model_errors(model, test), bar.mean.r_squared);
 }
 
-/// Of roll, pitch and yaw.
+/// No figure of roll, pitch and yaw.
 inline constexpr std::array<double, 3> no_axis_figures = {not_a_number, not_a_number, not_a_number};
 
 /// One model on one set of rows; validation_error and verdict by judge(model, split) alone.

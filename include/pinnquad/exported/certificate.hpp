@@ -18,7 +18,7 @@ namespace pinnquad {
 /// tuned on the airframe has half its gain or less, and sinks twice as far under a load.
 inline constexpr double least_thrust_share = 0.5;
 
-/// Of a model with a structure that can be proven. All bounds hold for the real function of the stored numbers; where a
+/// Proven bounds of a model. All hold for the real function of the stored numbers; where a
 /// bound is rounded it is rounded to the safe side.
 struct Certificate {
   /// The slopes about the axes are above 0 and their floor, rounding does not hide them over the envelope, and the mix
@@ -158,8 +158,7 @@ constexpr void bound_rounding(const CertifiedNumbers<Scalar>& from, Certificate&
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// Of the structure u = A [base + residual], wherever it is known from: base and residual as AxisAligned and
-/// Saturated<Masked>.
+/// Certificate of the structure u = A [base + residual]: base as AxisAligned, residual as Saturated<Masked>.
 template <class Scalar>
 constexpr Certificate certificate_of(const detail::CertifiedNumbers<Scalar>& from) noexcept {
   Certificate certificate;
@@ -190,7 +189,7 @@ constexpr Certificate certificate_of(const detail::CertifiedNumbers<Scalar>& fro
   return certificate;
 }
 
-/// Of a model type with has_certificate. Proves nothing of another one.
+/// Certificate of a model type with has_certificate. Proves nothing of another one.
 template <class Shape>
 constexpr Certificate certificate_of(const detail::CertifiedVehicle<typename Shape::Scalar>& vehicle,
                                      const typename Shape::Scalar* parameters,
@@ -210,7 +209,7 @@ constexpr Certificate certificate_of(const detail::CertifiedVehicle<typename Sha
   }
 }
 
-/// Of a model that was trained (training/trained_model.hpp).
+/// Certificate of a model that was trained (training/trained_model.hpp).
 template <class Model>
 Certificate certificate_of_trained(const Model& model) noexcept {
   return certificate_of<Model>(
@@ -220,7 +219,7 @@ Certificate certificate_of_trained(const Model& model) noexcept {
        model.output.standard_deviation.data(), model.envelope_lower.data(), model.envelope_upper.data()});
 }
 
-/// Of an exported header.
+/// Certificate of an exported header.
 template <class Model>
 constexpr Certificate certificate_of() noexcept {
   constexpr auto vehicle = detail::certified_vehicle<typename Model::Outputs>(

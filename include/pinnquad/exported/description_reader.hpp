@@ -26,7 +26,7 @@ class DescriptionReader {
     rest_.remove_prefix(text.size());
     return true;
   }
-  /// The same of a name, where it ends there: Gelu is no GeluTanh.
+  /// Takes a name, where it ends there: Gelu is no GeluTanh.
   constexpr bool take_name(std::string_view name) noexcept {
     const DescriptionReader before = *this;
     if (!take(name)) return false;

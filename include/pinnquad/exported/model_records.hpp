@@ -34,7 +34,7 @@ constexpr detail::TorqueSigns motor_torque_signs(const Airframe<double>& airfram
   }
   return result;
 }
-/// Of an airframe that is a type.
+/// Torque signs of an airframe that is a type.
 template <class Vehicle>
 constexpr detail::TorqueSigns motor_torque_signs() noexcept {
   return motor_torque_signs(Vehicle::template value<double>());

@@ -132,7 +132,7 @@ class RunTimeFeatures {
     }
     return Status::ok;
   }
-  /// The same of the present instant alone, which a window may still lack.
+  /// Checks the present instant alone: a window may still lack its past.
   template <class Scalar>
   Status check_present(const RunTimeInputs<Scalar>& inputs) const noexcept {
     return check_tap(inputs, 0);

@@ -70,7 +70,7 @@ class RunTimeModel {
     saturate_columns(work);
     answer(x, work, u, work + size);
   }
-  /// The same of features that the caller has standardised; `work` has network().outputs() and its workspace().
+  /// Answers features that the caller has standardised; `work` has network().outputs() and its workspace().
   void answer(const Scalar* x, const Scalar* standardised, Scalar* u, Scalar* work) const noexcept {
     static_assert(sizeof(Values<Scalar, 1>) == sizeof(Scalar));
     using Entry = Values<Scalar, 1>;

@@ -25,7 +25,7 @@ struct Chosen {
   using Inputs = typename FeatureSet::template Inputs<Scalar>;
 
   static constexpr int size = int(sizeof...(Place));
-  /// Of all three, one after the other; else -1.
+  /// Place of the first of the three, where all three follow one another; else -1.
   static constexpr int angular_acceleration = [] {
     constexpr int places[] = {Place...};
     for (int i = 0; FeatureSet::angular_acceleration >= 0 && i + 2 < size; ++i) {

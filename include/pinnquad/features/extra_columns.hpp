@@ -15,8 +15,8 @@
 
 namespace pinnquad {
 
-/// Of the pack, under load: a column of your own is written the same way, in a file that flight code includes before
-/// the exported header, which names it.
+/// Voltage of the pack, under load. A column of your own is written the same way, in a file that flight code includes
+/// before the exported header, which names it.
 struct BatteryVoltage {
   static constexpr const char* name = "battery_voltage";
   static constexpr const char* unit = "V";
@@ -134,7 +134,7 @@ template <class Scalar>
 const Scalar* set_columns(MotionInputs<Scalar>& /*inputs*/, const Scalar* values) noexcept {
   return values;
 }
-/// Of inputs that have some.
+/// Sets the columns of inputs that have some.
 template <class Base, class Scalar, class... Column>
 const Scalar* set_columns(detail::InputsWithColumns<Base, Scalar, Column...>& inputs, const Scalar* values) noexcept {
   values = set_columns(static_cast<Base&>(inputs), values);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A feature set: the numbers X that a network is shown, made of raw inputs. Their count, names and order are said here,
-// once. Contract, all static: `Inputs<Scalar>` (raw, a named struct), `size`, `names`, `units`, `angular_acceleration`
-// (index of p_dot in X, -1 if X has none), `extract(inputs, x)` and `check(inputs)`, both noexcept. An input that is
-// not finite makes a feature that is not finite: a Guard without FiniteInputs relies on it.
+// A feature set: the numbers X that a network is shown, made of raw inputs. It alone states their count, names and
+// order. Contract, all static:
+//   template <class Scalar> Inputs                     the raw inputs, a named struct
+//   constexpr int size;  constexpr std::array<const char*, size> names, units;
+//   constexpr int angular_acceleration                 place of p_dot in X, q_dot and r_dot behind it; -1: X has none
+//   template <class Scalar> Status check(const Inputs<Scalar>&) noexcept
+//   template <class Scalar> void extract(const Inputs<Scalar>&, Scalar* x) noexcept    fills x[0..size)
+// An input that is not finite makes a feature that is not finite: a Guard without FiniteInputs relies on it.
 #pragma once
 
 #include <array>

@@ -166,7 +166,7 @@ constexpr int history_length(int taps) noexcept { return 8 * (taps - 1) + 4; }
 
 }  // namespace detail
 
-/// The same of a feature set.
+/// History length that a feature set needs.
 template <class Features>
 constexpr int default_history_length() noexcept {
   if constexpr (is_windowed<Features>) {
@@ -199,7 +199,7 @@ class InputHistory {
   Inputs inputs_{};
 };
 
-/// Of a causal window. Take the present inputs with their time in every tick; taps in between are interpolated.
+/// History of a causal window. Take the present inputs with their time in every tick; taps in between are interpolated.
 template <class Features, class Scalar, int MostSamples>
 class InputHistory<Features, Scalar, MostSamples, std::enable_if_t<is_windowed<Features>>> {
   using FeatureSet = typename Features::TapFeatures;

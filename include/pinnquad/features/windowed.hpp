@@ -94,7 +94,7 @@ constexpr auto make_tap_name() noexcept {
 template <class FeatureSet, int Offset, int Index>
 inline constexpr auto tap_name = make_tap_name<FeatureSet, Offset, Index>();
 
-/// Of entry `Entry` of a window's X.
+/// Name of entry `Entry` of a window's X.
 template <class FeatureSet, class Part, class Reach, int Taps, int Entry>
 constexpr const char* window_name() noexcept {
   if constexpr (Entry < FeatureSet::size) {

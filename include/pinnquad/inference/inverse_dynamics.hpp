@@ -87,7 +87,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   using Network = typename Model::Network;
   using Report = detail::GuardReport<Scalar, Features::size>;
 
-  /// Of an exported model: it and the guard are types alone. A model or fallback with values of its own must be given.
+  /// For an exported model: it and the guard are types alone. A model or fallback with values of its own must be given.
   InverseDynamics() = default;
   explicit InverseDynamics(const Model& model) noexcept : detail::Held<Model>(model) {}
   explicit InverseDynamics(const Guard& guard) noexcept : detail::Held<Guard>(guard) {}
@@ -96,7 +96,7 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
 
   const Model& model() const noexcept { return detail::Held<Model>::held(); }
   const Guard& guard() const noexcept { return detail::Held<Guard>::held(); }
-  /// Of a model that is opened at run time, in place: a new InverseDynamics would be on the stack beside the old.
+  /// Sets a model that is opened at run time, in place: a new InverseDynamics would be on the stack beside the old.
   void set_model(const Model& model) noexcept { detail::Held<Model>::hold(model); }
 
   /// Commands that make the motion asked for; not clipped to 0..1 unless the guard does (the rotor clips).

@@ -35,7 +35,7 @@ using DistributionMembers = std::void_t<decltype(Distribution::distribution_mean
                                         decltype(double{Distribution::squared_distance_limit})>;
 template <class Distribution>
 using ConstantDistanceLimit = std::bool_constant<(Distribution::squared_distance_limit > 0)>;
-/// Of a static member: a block's model has its hash at run time.
+/// Detects a hash that is a static member: a block's model has its hash at run time.
 template <class T>
 using StaticTrainingDataHash = std::enable_if_t<std::is_pointer_v<decltype(&T::training_data_hash)>>;
 

@@ -83,7 +83,7 @@ struct Pipeline {
   template <class Scalar>
   using Setting = decltype(Map::setting(std::declval<const Airframe<Scalar>&>()));
 
-  /// Of one sample: outputs in physical units, and the commands that they mean.
+  /// Runs one sample: outputs in physical units, and the commands that they mean.
   template <class Scalar, class Forward>
   static PINNQUAD_ALWAYS_INLINE void run(const Scales<Scalar>& scales, const Scalar* x, Scalar* outputs,
                                          Scalar* commands, const Forward& forward,

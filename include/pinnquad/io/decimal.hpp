@@ -102,7 +102,7 @@ inline char* print_number(char* buffer, double value) {
 
 #else
 
-/// Of a decimal number that from_chars finds out of range: whether it is too small for a double, not too large.
+/// True if a decimal number that from_chars finds out of range is too small for a double, not too large.
 inline bool is_tiny(const char* first, const char* last) noexcept {
   long long magnitude = 0;  // of the first digit that is not 0: its place before the point, or less 0 behind it
   bool behind_point = false, found = false;

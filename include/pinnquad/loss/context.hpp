@@ -57,7 +57,7 @@ GivenAirframe given_airframe() {
 }
 
 namespace detail {
-/// The same of an airframe that the compiler knows.
+/// An airframe that the compiler knows.
 template <class VehicleType>
 struct KnownAirframe {
   static_assert(is_airframe<VehicleType>,

@@ -46,7 +46,7 @@ constexpr bool threes_cover_acceleration(const int* places, int taps, int featur
   return true;
 }
 
-/// The same of the places `First...` among these features.
+/// True if the places `First...` of these features hold all three angular accelerations.
 template <class Features, int... First>
 constexpr bool covers_angular_acceleration() noexcept {
   constexpr int places[] = {First...};
@@ -128,7 +128,7 @@ constexpr ThrustPlaces<Features::size> thrust_places() noexcept {
 
 template <class Base, class Scalar>
 using ThrustSlopeOf = decltype(Base::least_thrust_slope(std::declval<const Airframe<Scalar>&>()));
-/// Of an output schema's base; 0 without one, -infinity of a base that does not say it.
+/// Thrust slope of an output schema's base: 0 without a base, -infinity for a base that declares none.
 template <class Base, class Scalar>
 constexpr double base_thrust_slope([[maybe_unused]] const Airframe<Scalar>& airframe) noexcept {
   if constexpr (is_detected<ThrustSlopeOf, Base, Scalar>) {

@@ -35,7 +35,7 @@ constexpr auto described() noexcept {
   }
 }
 
-/// Of a type: a text, a number, or a TemplateText.
+/// Description of a type: a text, a number, or a TemplateText.
 template <class T>
 inline constexpr auto description_of = described<T>();
 template <int Value>

@@ -110,7 +110,7 @@ constexpr Scalar saturated(const Scales<Scalar>& scales, int input, Scalar stand
   return standardised < least ? least : (most < standardised ? most : standardised);
 }
 
-/// Of an exported header.
+/// Means and standard deviations of an exported header.
 template <class Model>
 constexpr Scales<typename Model::Scalar> scales_in_header() noexcept {
   return {Model::input.mean.data(),     Model::input.standard_deviation.data(),

@@ -7,7 +7,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: clip of each output of the layer before. The formula is at the head of this file.
+/// Clip, y = v held between -3.5 and 3.5, of each output of the layer before.
 struct Clip {
   static constexpr const char* description = "pinnquad::Clip";
 

@@ -9,7 +9,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: ELU of each output of the layer before. The formula is at the head of this file.
+/// ELU, y = v > 0 ? v : exp(v) - 1, of each output of the layer before.
 struct Elu {
   static constexpr const char* description = "pinnquad::Elu";
 

@@ -8,7 +8,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: GELU of each output of the layer before. The formula is at the head of this file.
+/// GELU, y = v (1 + erf(v / sqrt 2)) / 2, of each output of the layer before.
 struct Gelu {
   static constexpr const char* description = "pinnquad::Gelu";
 

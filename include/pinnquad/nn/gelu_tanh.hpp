@@ -9,7 +9,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: GELU by tanh of each output of the layer before. The formula is at the head of this file.
+/// GELU by tanh, y = v (1 + tanh(sqrt(2 / pi) (v + 0.044715 v^3))) / 2, of each output of the layer before.
 struct GeluTanh {
   static constexpr const char* description = "pinnquad::GeluTanh";
 

@@ -8,7 +8,7 @@
 
 namespace pinnquad {
 
-/// `Count` numbers, each times the logistic function of another one. The formula is at the head of this file.
+/// GLU of `Count` numbers: y_i = x_i / (1 + exp(-x_(Count + i))).
 template <int Count>
 struct Glu {
   template <class ScalarType, int In>

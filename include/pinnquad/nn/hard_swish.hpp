@@ -7,7 +7,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: hard swish of each output of the layer before. The formula is at the head of this file.
+/// Hard swish, y = v min(max(v + 3, 0), 6) / 6, of each output of the layer before.
 struct HardSwish {
   static constexpr const char* description = "pinnquad::HardSwish";
 

@@ -66,7 +66,7 @@ PINNQUAD_ALWAYS_INLINE void pull_back_product(const Scalar* weight, const Scalar
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
-/// Of a dense layer: its weights, transposed.
+/// A dense layer's rule: its weights, transposed.
 template <class Scalar, int In, int Out, bool HasBias>
 struct PullBack<detail::DenseLayer<Scalar, In, Out, HasBias>> {
   template <class Pack, int Rows, int Stride, class Finish>

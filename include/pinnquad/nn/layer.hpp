@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: MIT
-// The contract of a layer. A spec (`Dense<25>`) names what is wanted; Bind<Scalar, Inputs> makes it a layer:
-//   using Scalar;  static constexpr int inputs, outputs, parameter_count;
-//   static void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept;
-// A spec may name itself for flash: `static constexpr const char* description` (model/description.hpp).
-// An activation derives from ElementwiseLayer (below) and has activate(v) and slope(y) or slope_from_input(v). It is
-// computed inside the layer before it where it has forms for a whole pack too (relu.hpp), or says that they are those
-// of each lane: `static constexpr bool lane_by_lane = true` (gelu.hpp). Layers are types without data: a network owns
-// all parameters in one flat array, as the exported header does. forward(), activate() and the slope are noexcept. They
-// see samples alone: a batch that is padded to whole packs repeats a sample.
-// Lanes past the last neuron may hold anything, NaN too: they are not read.
+// The contract of a layer. A spec (`Dense<25>`) names what is wanted; Bind<Scalar, Inputs> makes it a layer, a type
+// without data: a network owns all parameters in one flat array, as the exported header does. All are static:
+//   using Scalar;  constexpr int inputs, outputs, parameter_count;
+//   void forward(const Scalar* parameters, const Scalar* x, Scalar* y) noexcept;
+// Optional, each where it is needed:
+//   Jacobian (nn/jacobian.hpp), one row of gradients:
+//     void pull_back(const Scalar* parameters, const Scalar* x, const Scalar* by_output, Scalar* by_input) noexcept
+//   training (training/backward.hpp), beside pull_back() and where it has parameters:
+//     void add_gradient(const Scalar* x, const Scalar* dy, Scalar* parameter_gradient) noexcept
+//   a start (training/initialization.hpp), all parameters being 0 before:
+//     void initialise(Scalar* parameters, Engine&)
+//   flash (model/description.hpp), of the spec:
+//     constexpr const char* description
+// An activation derives from ElementwiseLayer (below) and has activate(v) and slope(y) or slope_from_input(v), all
+// noexcept. It is computed inside the layer before it where it has forms for a whole pack too, scaled(y, dy) or
+// scaled_from_input(v, dy) among them (relu.hpp), or says that they are those of each lane: `lane_by_lane = true`
+// (gelu.hpp). Packs see samples alone: a batch that is padded to whole packs repeats a sample. Their lanes behind the
+// last neuron may hold anything, NaN too: they are not read.
 //
 // A layer has no memory. A recurrent cell is a layer from [new inputs, state] to [outputs, next state]; forward()
 // stays a pure function. The caller owns the state: it feeds the outputs of one call into the next and sets them to
@@ -96,7 +104,7 @@ template <class Layer, class Pack>
 using PackScaledFromInputOf = decltype(Layer::scaled_from_input(std::declval<Pack>(), std::declval<Pack>()));
 }  // namespace detail
 
-/// True for a spec that fulfils the contract at the head of this file.
+/// True for a spec (`Dense<25>`) that fulfils the contract at the head of this file.
 template <class Spec, class Scalar = double, int In = 3>
 inline constexpr bool is_layer = is_detected<detail::LayerOf, Spec, Scalar, std::integral_constant<int, In>>;
 

@@ -95,7 +95,7 @@ struct NormLayer {
 
 }  // namespace detail
 
-/// Normalises the first `Count` numbers to a mean of 0 and a variance of 1. The formula is at the head of this file.
+/// Normalises the first `Count` numbers to a mean of 0 and a variance of 1.
 template <int Count>
 struct LayerNorm {
   template <class Scalar, int In>

@@ -8,7 +8,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: leaky ReLU of each output of the layer before. The formula is at the head of this file.
+/// Leaky ReLU, y = v < 0 ? 0.01 v : v, of each output of the layer before.
 struct LeakyRelu {
   static constexpr const char* description = "pinnquad::LeakyRelu";
 

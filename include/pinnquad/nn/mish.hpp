@@ -7,7 +7,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: Mish of each output of the layer before. The formula is at the head of this file.
+/// Mish, y = v tanh(log(1 + exp(v))), of each output of the layer before.
 struct Mish {
   static constexpr const char* description = "pinnquad::Mish";
 

@@ -7,7 +7,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: ReLU of each output of the layer before. The formula is at the head of this file.
+/// ReLU, y = v < 0 ? 0 : v, of each output of the layer before.
 struct Relu {
   static constexpr const char* description = "pinnquad::Relu";
 

@@ -8,7 +8,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: SiLU of each output of the layer before. The formula is at the head of this file.
+/// SiLU, y = v / (1 + exp(-v)), of each output of the layer before.
 struct Silu {
   static constexpr const char* description = "pinnquad::Silu";
 

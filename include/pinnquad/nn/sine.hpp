@@ -8,7 +8,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: sine of each output of the layer before. The formula is at the head of this file.
+/// Sine, y = sin(v), of each output of the layer before.
 struct Sine {
   static constexpr const char* description = "pinnquad::Sine";
 

@@ -8,7 +8,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: softplus of each output of the layer before. The formula is at the head of this file.
+/// Softplus, y = log(1 + exp(v)), of each output of the layer before.
 struct Softplus {
   static constexpr const char* description = "pinnquad::Softplus";
 

@@ -7,7 +7,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: softsign of each output of the layer before. The formula is at the head of this file.
+/// Softsign, y = v / (1 + |v|), of each output of the layer before.
 struct Softsign {
   static constexpr const char* description = "pinnquad::Softsign";
 

@@ -7,7 +7,7 @@
 
 namespace pinnquad {
 
-/// Activation of a network: tanh of each output of the layer before. The formula is at the head of this file.
+/// Hyperbolic tangent, y = tanh(v), of each output of the layer before.
 struct Tanh {
   static constexpr const char* description = "pinnquad::Tanh";
 

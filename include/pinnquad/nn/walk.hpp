@@ -58,9 +58,9 @@ struct Step {
   using Activation = typename LayerIf<fused, Network, Index + static_cast<int>(way)>::type;
 
   // constants, not calls: unoptimised code would emit a function of the network, for whatever instruction set
-  /// Of the layer's parameters among all.
+  /// Place of the layer's parameters among all.
   static constexpr int parameters_offset = Network::Sizes::offset(Index);
-  /// Of the layer's outputs among those of all layers, and of what the step gives on the way forward.
+  /// Place of the layer's outputs among those of all layers, and of the outputs that the step gives on the way forward.
   static constexpr int sums_offset = Network::Sizes::outputs_before(Index);
   static constexpr int outputs_offset = Network::Sizes::outputs_before(Index + length - 1);
 

@@ -221,7 +221,7 @@ struct OutputMap : detail::FullForm<Schema> {
   static constexpr auto setting(const Airframe<Scalar>& airframe) noexcept {
     return detail::output_setting<Form>(airframe);
   }
-  /// Of a linear schema without slopes(): g(x, e_k) - g(x, 0).
+  /// Slopes of a linear schema without slopes(): g(x, e_k) - g(x, 0).
   template <class Scalar, class Setting>
   static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar* x, const Scalar* outputs, const Setting& setting,
                                             Scalar* slopes) noexcept {

@@ -39,7 +39,7 @@ struct RotorMap {
   }
 };
 
-/// Of v = (thrust along -z, torque about x, y, z).
+/// Map of v = (thrust along -z, torque about x, y, z).
 template <class Scalar>
 constexpr RotorMap<Scalar> wrench_map(const Airframe<Scalar>& airframe) noexcept {
   RotorMap<Scalar> map{};
@@ -61,7 +61,7 @@ constexpr AllocationMatrix<Scalar> mass_matrix(const Airframe<Scalar>& airframe)
   return {{{airframe.mass_kg, none, none, none}, {none, x, xy, xz}, {none, xy, y, yz}, {none, xz, yz, z}}};
 }
 
-/// Of v = (acceleration along z, less `gravity_m_s2`: T = m (g - v_0); angular acceleration).
+/// Map of v = (acceleration along z, less `gravity_m_s2`: T = m (g - v_0); angular acceleration).
 template <class Scalar>
 constexpr RotorMap<Scalar> acceleration_map(const Airframe<Scalar>& airframe, Scalar gravity_m_s2) noexcept {
   RotorMap<Scalar> map = wrench_map(airframe);

@@ -51,7 +51,7 @@ class BlockSolution {
 
   /// An infinite interval where it is not told, and with fewer than three blocks.
   Estimate estimate(std::size_t unknown) const;
-  /// Of a function of the unknowns, all of which are told.
+  /// Estimate of a function of all unknowns.
   template <class Function>
   Estimate estimate_of(const Function& function) const {
     Estimate result;

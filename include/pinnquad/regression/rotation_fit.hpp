@@ -37,7 +37,7 @@ class InstrumentedFlights {
   /// The instant of an instrument.
   std::size_t before(std::size_t instant, std::size_t shift) const { return instant - first_shift_ - shift; }
 
-  /// Of all rotors, and signed about an axis.
+  /// Sum over all rotors, and signed about an axis.
   static double sum(const Fractions& s, std::size_t i) { return s[0][i] + s[1][i] + s[2][i] + s[3][i]; }
   double signed_sum(const Fractions& s, std::size_t axis, std::size_t i) const;
 
@@ -65,7 +65,7 @@ class RotationFit {
 
   RotationFit(const InstrumentedFlights& rows, double curve) : rows_(rows), curve_(curve) {}
 
-  /// Of a grid the response under which least squares leave least of roll, pitch and yaw: where to begin. The noise
+  /// The response of a grid under which least squares leave least of roll, pitch and yaw: where to begin. The noise
   /// that comes back through the controller is in it.
   RotorResponse nearest() const;
 

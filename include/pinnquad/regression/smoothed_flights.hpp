@@ -74,7 +74,7 @@ class SmoothedFlights {
   const Triple& kinematic_force() const noexcept { return kinematic_forces_; }
   const Triple& velocity() const noexcept { return velocities_; }       ///< body, m/s
   const Triple& squared_velocity() const noexcept { return squares_; }  ///< |v_i| v_i
-  /// Of the column `battery_voltage`; empty unless all flights have it.
+  /// The column `battery_voltage`; empty unless all flights have it.
   const Series& voltage() const noexcept { return voltage_; }
 
   /// Smoothed thrust fractions of rotors whose commands have this curve (thrust_fraction()).

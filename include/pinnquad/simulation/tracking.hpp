@@ -110,7 +110,7 @@ TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& nominal, World
   return result;
 }
 
-/// The same of a vehicle that is as its controller knows it.
+/// Tracks with a vehicle that is as its controller knows it.
 template <class Scalar, class... Effects, class Trajectory, class FeedForward>
 TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& quadrotor, const Trajectory& trajectory,
                              const FlightController<Scalar>& flight_controller, const FeedForward& feed_forward,

@@ -38,7 +38,7 @@ struct Resolution {
   double still_margin;        ///< how far a quantity that stood still may be from where it stood
 };
 
-/// Of a quantity with this unit (units of a feature set or an output schema) about `mean`:
+/// Smallest standard deviation by which a quantity with this unit (of a feature set or an output schema) is divided:
 ///   unit      m/s^2  rad/s^2  m/s   rad/s  rad    1       m     rev/s  V
 ///   smallest  0.01   0.01     0.01  0.001  0.001  0.0001  0.01  0.01   0.01
 ///   margin    0.2    0.5      0.1   0.05   0.05   0.05    0.2   0.5    0.5

@@ -29,7 +29,7 @@ template <class Base, class... Column>
 inline constexpr bool core_fills<pinnquad::detail::InputsWithColumns<Base, float, Column...>> =
     (StackMeasures<Column>::known && ...) && core_fills<Base>;
 
-/// Of a model with a column or a window.
+/// Inputs of a model with a column or a window.
 template <class Features, class = void>
 class ModelInputs {
   using History = InputHistory<Features, float>;

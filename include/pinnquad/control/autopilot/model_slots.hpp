@@ -63,7 +63,7 @@ class ModelSlots {
  private:
   static_assert(std::atomic<const Inverse*>::is_always_lock_free);
 
-  /// Of a block that was opened, so that its length is known.
+  /// Checksum of a block that was opened, so that its length is known.
   static std::uint32_t checksum_of(const void* block) noexcept {
     using Header = ModelBlockHeader;
     return number(block, number(block, Header::length) - Header::checksum_size);

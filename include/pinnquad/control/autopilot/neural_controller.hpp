@@ -100,7 +100,7 @@ class NeuralController {
     return samples_.set_point(time_us, wanted);
   }
 
-  /// Of the pack under load, for a model that asks for it: `not_finite`, or `out_of_range` for what is none.
+  /// Takes the voltage of the pack under load, for a model that asks for it. `not_finite`, `out_of_range`: refused.
   Status battery_voltage(std::uint64_t time_us, float volts) noexcept { return model_inputs_.voltage(time_us, volts); }
 
   /// Given before each step, by a stack that knows. Until then the commands drive nothing and the vehicle is in the
@@ -133,7 +133,7 @@ class NeuralController {
   Learning learning() const noexcept { return has_onboard ? situation_.learning : Learning::off; }
   /// CoreRecord::learnt.
   std::uint8_t learnt() const noexcept { return static_cast<std::uint8_t>(learnt_.bits()); }
-  /// Of the analytic inverse's commands; and the acceleration across the thrust, whoever answers.
+  /// Bias of the analytic inverse's commands, and the acceleration across the thrust, whoever answers.
   const MotionBias<float>& analytic_bias() const noexcept { return learner_.last(); }
   /// Share of the thrust that it uses, 0 to 1: below 1 at take-off and landing.
   float lift() const noexcept { return take_off_.lift(); }

@@ -25,7 +25,7 @@ PINNQUAD_ALWAYS_INLINE float multiply_add(float a, float b, float c) noexcept {
   }
 }
 
-/// The same of doubles.
+/// a b + c of doubles, in one rounding where the hardware has it.
 PINNQUAD_ALWAYS_INLINE double multiply_add(double a, double b, double c) noexcept {
   if constexpr (detail::fuses_double) {
     return __builtin_fma(a, b, c);

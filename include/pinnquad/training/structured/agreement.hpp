@@ -52,7 +52,7 @@ class Agreement {
   }
 
  private:
-  /// Of answer x truth, of the squares of either, and how many.
+  /// Sums of answer x truth and of the squares of either, and the number of rows.
   struct Sums {
     double product = 0, said = 0, truth = 0, rows = 0;
     double gain(double share) const { return (2 * product - share * said) * share; }

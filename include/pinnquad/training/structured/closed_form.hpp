@@ -83,10 +83,10 @@ RegressionSums regression_sums(
 /// Sums of standardised features and outputs.
 RegressionSums regression_sums(const FitContext& context, const RowSet& rows);
 
-/// The same of each group that has rows with all features.
+/// Sums of each group that has rows with all features.
 std::vector<RegressionSums> regression_sums(const FitContext& context, const std::vector<RowSet>& groups);
 
-/// The same of a context of types, for one set of rows or for groups.
+/// Sums for a context of types, of one set of rows or of groups.
 template <class ContextType, class Rows>
 auto regression_sums(const ContextType& context, const Rows& rows) {
   return regression_sums(fit_context(context), rows);
@@ -100,7 +100,7 @@ std::vector<bool> features_of_output(const FitContext& context, int output);
 /// The slope of a sum as a sum of factor x weight over all taps; that of the thrust is below 0.
 std::vector<std::pair<int, double>> slope_terms(const FitContext& context, int output);
 
-/// Of an axis command; of the sum of the commands where a window's is held. See fit_monotone_base().
+/// Bounds of an axis command's slopes; of the thrust's too where a window's is held. See fit_monotone_base().
 std::vector<WeightBound> slope_bounds(const FitContext& context, int output, const std::optional<AxisSlopes>& pinned,
                                       double held_thrust);
 

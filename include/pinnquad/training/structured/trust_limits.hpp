@@ -52,7 +52,7 @@ struct JointDistribution {
   }
 };
 
-/// Of the rows that have features. A feature that stands still is independent of the others, with the standard
+/// Takes the rows that have features. A feature that stands still is independent of the others, with the standard
 /// deviation 1 that the scalers give it. Throws std::invalid_argument for a share outside (0, 1] or too small, and for
 /// no more rows than features.
 JointDistribution fit_joint_distribution(const AskedModel& model, const RowSet& training, double shrinkage);
