@@ -79,12 +79,15 @@ class RotationFit {
 
   static double within_bounds(double value_s, const Part& part);
 
-  /// Slope of the fractions by a part of the response.
-  Fractions slope(const RotorResponse& at, const Part& part) const;
+  using Wanted = SmoothedFlights::Wanted;
+
+  /// Slope of the fractions by a part of the response; `wanted`: under its delay.
+  Fractions slope(const RotorResponse& at, const Part& part, const Wanted& wanted) const;
 
   /// The three axes, linear about `response`, each row by its axis' weight; `s`: fractions under it.
-  BlockRegression linearized(const Fractions& s, const RotorResponse& response, const std::vector<Part>& parts,
-                             const std::array<double, 3>& effectiveness, const std::array<double, 3>& weights) const;
+  BlockRegression linearized(const Fractions& s, const Wanted& wanted, const RotorResponse& response,
+                             const std::vector<Part>& parts, const std::array<double, 3>& effectiveness,
+                             const std::array<double, 3>& weights) const;
 
   void fill_axis(const Fractions& s, std::size_t axis, std::size_t i, double* x) const;
 

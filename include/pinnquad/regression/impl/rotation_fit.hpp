@@ -40,10 +40,12 @@ PINNQUAD_BODY RotorResponse RotationFit::nearest() const {
   constexpr int delays = 16;
   RotorResponse best{lags_s[1], lags_s[1], 0};
   double least = std::numeric_limits<double>::infinity();
-  for (const double lag_s : lags_s) {
-    for (int k = 0; k < delays; ++k) {
-      const RotorResponse at{lag_s, lag_s, first_delay_s + step_s * k};
-      const Fractions s = rows_.flights().thrust_fractions(curve_, at);
+  for (int k = 0; k < delays; ++k) {
+    const double delay_s = first_delay_s + step_s * k;
+    const Wanted wanted = rows_.flights().wanted(curve_, delay_s);
+    for (const double lag_s : lags_s) {
+      const RotorResponse at{lag_s, lag_s, delay_s};
+      const Fractions s = rows_.flights().followed(wanted, at);
       double left = 0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         BlockRegression regression(of_axis, 0, 1);
@@ -67,8 +69,9 @@ PINNQUAD_BODY BlockSolution RotationFit::converge(RotorResponse& response, const
   constexpr double close_s = 1e-6;
   std::array<double, 3> effectiveness{}, weights = {1, 1, 1};
   for (int step = 0; step < most_steps; ++step) {
-    const Fractions s = rows_.flights().thrust_fractions(curve_, response);
-    const BlockSolution found = linearized(s, response, parts, effectiveness, weights).solve(false);
+    const Wanted wanted = rows_.flights().wanted(curve_, response.delay_s);
+    const Fractions s = rows_.flights().followed(wanted, response);
+    const BlockSolution found = linearized(s, wanted, response, parts, effectiveness, weights).solve(false);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       effectiveness[axis] = found.values()[axis * of_axis];
       weights[axis] = 1 / deviation(s, axis, found, axis * of_axis);
@@ -85,8 +88,9 @@ PINNQUAD_BODY BlockSolution RotationFit::converge(RotorResponse& response, const
     }
     if (step >= least_steps && moved < close_s) break;
   }
-  const Fractions s = rows_.flights().thrust_fractions(curve_, response);
-  return linearized(s, response, parts, effectiveness, weights).solve();
+  const Wanted wanted = rows_.flights().wanted(curve_, response.delay_s);
+  const Fractions s = rows_.flights().followed(wanted, response);
+  return linearized(s, wanted, response, parts, effectiveness, weights).solve();
 }
 
 PINNQUAD_BODY double RotationFit::within_bounds(double value_s, const Part& part) {
@@ -94,36 +98,41 @@ PINNQUAD_BODY double RotationFit::within_bounds(double value_s, const Part& part
   return std::clamp(value_s, shortest_s, longest_s);
 }
 
-PINNQUAD_BODY RotationFit::Fractions RotationFit::slope(const RotorResponse& at, const Part& part) const {
+PINNQUAD_BODY RotationFit::Fractions RotationFit::slope(const RotorResponse& at, const Part& part,
+                                                        const Wanted& wanted) const {
   constexpr double delay_step_s = 0.001, lag_step = 0.02;
-  const double step_s = part.front() == &RotorResponse::delay_s ? delay_step_s : lag_step * at.*part.front();
+  const bool by_delay = part.front() == &RotorResponse::delay_s;
+  const double step_s = by_delay ? delay_step_s : lag_step * at.*part.front();
   RotorResponse ahead = at, behind = at;
   for (double RotorResponse::*const number : part) {
     ahead.*number += step_s;
     behind.*number -= step_s;
   }
-  Fractions result = rows_.flights().thrust_fractions(curve_, ahead);
-  const Fractions less = rows_.flights().thrust_fractions(curve_, behind);
+  const auto fractions = [&](const RotorResponse& response) {
+    return by_delay ? rows_.flights().thrust_fractions(curve_, response) : rows_.flights().followed(wanted, response);
+  };
+  Fractions result = fractions(ahead);
+  const Fractions less = fractions(behind);
   for (std::size_t k = 0; k < rotor_count; ++k) {
     for (std::size_t i = 0; i < result[k].size(); ++i) result[k][i] = (result[k][i] - less[k][i]) / (2 * step_s);
   }
   return result;
 }
 
-PINNQUAD_BODY BlockRegression RotationFit::linearized(const Fractions& s, const RotorResponse& response,
-                                                      const std::vector<Part>& parts,
+PINNQUAD_BODY BlockRegression RotationFit::linearized(const Fractions& s, const Wanted& wanted,
+                                                      const RotorResponse& response, const std::vector<Part>& parts,
                                                       const std::array<double, 3>& effectiveness,
                                                       const std::array<double, 3>& weights) const {
   std::vector<Fractions> slopes;
   slopes.reserve(parts.size());
-  for (const Part& part : parts) slopes.push_back(slope(response, part));
+  for (const Part& part : parts) slopes.push_back(slope(response, part, wanted));
   BlockRegression regression(of_response + parts.size(), 3 * instruments, rows_.blocks());
   std::vector<double> x(of_response + parts.size()), z(3 * instruments);
-  for (std::size_t place = 0; place < rows_.instants().size(); ++place) {
-    const std::size_t i = rows_.instants()[place];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::fill(x.begin(), x.end(), 0.0);
-      std::fill(z.begin(), z.end(), 0.0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::fill(x.begin(), x.end(), 0.0);
+    std::fill(z.begin(), z.end(), 0.0);
+    for (std::size_t place = 0; place < rows_.instants().size(); ++place) {
+      const std::size_t i = rows_.instants()[place];
       fill_axis(s, axis, i, &x[axis * of_axis]);
       fill_instruments(s, axis, i, &z[axis * instruments]);
       double y = rows_.flights().angular_acceleration()[axis][i];
