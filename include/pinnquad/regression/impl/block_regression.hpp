@@ -58,7 +58,10 @@ PINNQUAD_BODY void BlockRegression::take_waiting() {
     for (Eigen::Index first = range.first; first < range.end; first += step) {
       Eigen::Map<Columns> place(&to(k, first));
       Columns sum = place;
-      for (Eigen::Index i = 0; i < waiting_; ++i) sum += z_(i, k) * Eigen::Map<const Columns>(&rows(i, first));
+      const double *z = &z_(0, k), *x = &rows(0, first);
+      for (Eigen::Index i = 0; i < waiting_; ++i, z += z_.cols(), x += rows.cols()) {
+        sum += *z * Eigen::Map<const Columns>(x);
+      }
       place = sum;
     }
   };
