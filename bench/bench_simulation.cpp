@@ -106,8 +106,7 @@ void lanes_step(benchmark::State& state) {
   }
 }
 
-/// The divisions and square roots of a bare step in lanes, alone and independent of each other; the time is that of one
-/// vehicle.
+/// As many divisions as a bare step in lanes has, alone and independent of each other; the time is that of one vehicle.
 void step_divisions(benchmark::State& state) {
   using Wide = Lanes<double, native_lanes<double>>;
   constexpr int divisions = 26;
