@@ -106,6 +106,21 @@ void lanes_step(benchmark::State& state) {
   }
 }
 
+/// As many divisions as a bare step in lanes has, alone and independent of each other; the time is that of one vehicle.
+void step_divisions(benchmark::State& state) {
+  using Wide = Lanes<double, native_lanes<double>>;
+  constexpr int divisions = 26;
+  Wide over(3), by[divisions];
+  for (int i = 0; i < divisions; ++i) by[i] = Wide(1.0 + i);
+  while (state.KeepRunningBatch(Wide::count)) {
+    benchmark::DoNotOptimize(by);
+    benchmark::DoNotOptimize(over);
+    Wide quotient[divisions];
+    for (int i = 0; i < divisions; ++i) quotient[i] = over / by[i];
+    benchmark::DoNotOptimize(quotient);
+  }
+}
+
 void harder_step(benchmark::State& state) {
   std::mt19937_64 engine(1);
   steps_of(state, harder_vehicle(engine));
@@ -151,6 +166,7 @@ int main(int argc, char** argv) {
       simulation_step<double, StandardAtmosphere, QuadraticDrag, RotorDrag, Inflow, BladeFlapping, Wake>);
   benchmark::RegisterBenchmark("SimulationStep/harder", harder_step);
   benchmark::RegisterBenchmark("SimulationStep/lanes_bare", lanes_step<double>);
+  benchmark::RegisterBenchmark("Peak/step_divisions", step_divisions);
   benchmark::RegisterBenchmark("SimulationStep/lanes_bare_float", lanes_step<float>);
   benchmark::RegisterBenchmark(
       "SimulationStep/lanes_full",

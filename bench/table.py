@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""The Markdown table of a run of bench/run: one column per instruction set, medians of CPU time in ns, and the ratios that
-matter, each within one run.
+"""The Markdown tables of a run of bench/run: one column per instruction set, figures over their limit of the same run and
+what limits them, the other ratios that matter, and medians of CPU time in ns.
 
     bench/table.py DIR MACHINE...
 """
@@ -12,24 +12,39 @@ import sys
 PROGRAMS = ["bench_inference", "bench_rollout", "bench_model", "bench_training", "bench_fit", "bench_simulation",
             "bench_peers", "bench_torch"]
 OURS = {"Predict": "Predict/paper_network", "TrainEpoch": "TrainEpoch/vanilla"}  # in bench_peers, beside the peers
+
+
+def weight_bytes(inputs, layers, width, number=4):
+    return number * (inputs * width + width + (layers - 1) * (width + 1) * width + 4 * (width + 1))
+
+
+# (what, its time, its limit, program, the same without latency or None, bytes of weights)
+LIMITS = [
+    *((f"prediction, paper's network{words}", f"Predict/paper_network{suffix}", f"Peak/fma{suffix}", "bench_inference",
+       f"PredictThroughput/paper_network{suffix}", weight_bytes(16, 10, 25, number))
+      for words, suffix, number in (("", "", 4), (" in double", "_double", 8))),
+    *((f"prediction, {shape}", f"Shape/{name}", f"Peak/{name}", "bench_inference", f"ShapeThroughput/{name}",
+       weight_bytes(inputs, layers, width))
+      for shape, name, inputs, layers, width in (
+          ("2 layers of 32", "2x32", 16, 2, 32), ("3 of 25", "3x25", 16, 3, 25), ("3 of 64", "3x64", 16, 3, 64),
+          ("2 of 128", "2x128", 16, 2, 128), ("2 of 32, 60 inputs", "2x32_windowed", 60, 2, 32),
+          ("structured model with 2 of 32", "2x32_structured", 16, 2, 32))),
+    ("a sample of a batch of 256", "Batched/paper_network/256", "Peak/fma", "bench_rollout", None, 0),
+    ("training epoch", "TrainEpoch/vanilla", "Peak/TrainEpoch", "bench_training", None, 0),
+    ("bare simulation step in lanes, over its divisions", "SimulationStep/lanes_bare", "Peak/step_divisions",
+     "bench_simulation", None, 0),
+]
 # (what, numerator, denominator, program): a ratio of two medians of one run; "fastest:a|b" takes the smaller
 RATIOS = [
-    ("prediction, over the multiply-add peak", "Predict/paper_network", "Peak/fma", "bench_inference"),
     ("prediction in double, over one in float", "Predict/paper_network_double", "Predict/paper_network",
      "bench_inference"),
     ("naive Eigen (fastest order), over ours", "fastest:Predict/naive_eigen|Predict/naive_eigen_rowmajor",
      "Predict/paper_network", "bench_inference"),
-    *((f"prediction of {shape}, over its peak", f"Shape/{name}", f"Peak/{name}", "bench_inference")
-      for shape, name in (("2 layers of 32", "2x32"), ("3 of 25", "3x25"), ("3 of 64", "3x64"), ("2 of 128", "2x128"),
-                          ("2 of 32, 60 inputs", "2x32_windowed"),
-                          ("a structured model with 2 of 32", "2x32_structured"))),
-    ("batch of 256, per sample, over the peak", "Batched/paper_network/256", "Peak/fma", "bench_rollout"),
     ("batch of 256, Eigen over ours", "Batched/naive_eigen/256", "Batched/paper_network/256", "bench_rollout"),
     ("value and Jacobian, over one prediction", "Jacobian/paper_network", "Predict/paper_network", "bench_rollout"),
     ("predict() with named inputs, over predict_features()", "Model/predict", "Model/predict_features",
      "bench_model"),
     ("predict() of a block's view, over a header's", "Block/predict_view", "Model/predict", "bench_model"),
-    ("training epoch, over the multiply-add peak", "TrainEpoch/vanilla", "Peak/TrainEpoch", "bench_training"),
     ("training epoch, naive Eigen over ours", "TrainEpoch/naive_eigen", "TrainEpoch/vanilla", "bench_training"),
     ("training epoch, physics-informed over vanilla", "TrainEpoch/physics_informed", "TrainEpoch/vanilla",
      "bench_training"),
@@ -62,6 +77,38 @@ def pick(found, name):
     return found[name]["median"]
 
 
+def limited_by(over, without_latency, weights, cache, limit):
+    """What keeps a figure, at `over` times its limit, from it: "units", the limit itself, within a quarter; "memory",
+    weights that the nearest cache does not hold; "latency", if the same work without it is faster by a seventh; else
+    "others": instructions beside those that are counted."""
+    if over < 1.25:
+        return "divisions" if "divisions" in limit else "units"
+    if cache and weights > cache:
+        return "memory"
+    return "latency" if without_latency and without_latency < over / 1.15 else "others"
+
+
+def nearest_cache(context):
+    """Bytes of the data cache nearest to the processor, 0 where the run does not say."""
+    return min((c["size"] for c in context.get("caches", []) if c["level"] == 1 and c["type"] != "Instruction"), default=0)
+
+
+def against_limits(runs, machines):
+    """Rows of the table of limits: the words, and a cell per machine."""
+    for what, time, limit, program, throughput, weights in LIMITS:
+        cells = []
+        for machine in machines:
+            context, found = runs.get((machine, program), ({}, {}))
+            if time not in found or limit not in found:
+                cells.append("")
+                continue
+            peak = found[limit]["median"]
+            over = found[time]["median"] / peak
+            free = found[throughput]["median"] / peak if throughput in found else None
+            cells.append(f"{over:.2f} {limited_by(over, free, weights, nearest_cache(context), limit)}")
+        yield what, cells
+
+
 def of_peers(runs):
     """A ratio for each benchmark of a peer: its time over ours, of the same run."""
     names = sorted({name for (_, program), (_, found) in runs.items() if program == "bench_peers" for name in found})
@@ -87,7 +134,14 @@ def main():
           f"CPU time.\n")
     head = "| | " + " | ".join(f"{kinds[m]} (`-march={m}`)" for m in machines) + " |\n" + "|---" * (1 + len(machines)) + "|"
 
-    print("Ratios, each within one run:\n\n" + head)
+    print("Over the multiply-adds alone, or over what is named, each within one run, and what limits it: units (the limit "
+          "itself,\nwithin a quarter), divisions (the same), latency (independent inputs are faster), memory (weights "
+          "exceed the nearest\ncache), others (instructions beside those that are counted).\n\n" + head)
+    for what, cells in against_limits(runs, machines):
+        if any(cells):
+            print(f"| {what} | " + " | ".join(cells) + " |")
+
+    print("\nOther ratios, each within one run:\n\n" + head)
     for what, above, below, program in RATIOS + of_peers(runs):
         cells = []
         for machine in machines:

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <stdexcept>
 #include <string>
+
+#include <unsupported/Eigen/FFT>
 
 #include "pinnquad/core/scalar_math.hpp"
 
@@ -235,14 +238,14 @@ PowerSpectrum power_spectrum(const std::vector<double>& series, const std::vecto
   const auto rows = static_cast<double>(length);
   spectrum.step_Hz = 1 / (rows * period_s);
   spectrum.power.assign(half + 1, 0.0);
-  std::vector<double> cosine(length), sine(length), window(length), piece(length);
+  std::vector<double> window(length), piece(length);
   double window_power = 0;
   for (std::size_t i = 0; i < length; ++i) {
-    cosine[i] = std::cos(2 * pi * static_cast<double>(i) / rows);
-    sine[i] = std::sin(2 * pi * static_cast<double>(i) / rows);
-    window[i] = 0.5 - 0.5 * cosine[i];
+    window[i] = 0.5 - 0.5 * std::cos(2 * pi * static_cast<double>(i) / rows);
     window_power += window[i] * window[i];
   }
+  Eigen::FFT<double> transform;
+  std::vector<std::complex<double>> waves;
   for (const IndexRange& segment : segments) {
     for (std::size_t first = segment.begin; first + length <= segment.end; first += half) {
       double mean = 0, slope = 0;
@@ -254,16 +257,10 @@ PowerSpectrum power_spectrum(const std::vector<double>& series, const std::vecto
       for (std::size_t i = 0; i < length; ++i) {
         piece[i] = window[i] * (series[first + i] - mean - slope * (static_cast<double>(i) - (rows - 1) / 2));
       }
+      transform.fwd(waves, piece);
       for (std::size_t bin = 0; bin <= half; ++bin) {
-        double real = 0, imaginary = 0;
-        for (std::size_t i = 0, phase = 0; i < length; ++i) {
-          real += piece[i] * cosine[phase];
-          imaginary += piece[i] * sine[phase];
-          phase += bin;
-          if (phase >= length) phase -= length;
-        }
         const double sides = bin == 0 || bin == half ? 1 : 2;
-        spectrum.power[bin] += sides * (real * real + imaginary * imaginary) / (rows * window_power);
+        spectrum.power[bin] += sides * std::norm(waves[bin]) / (rows * window_power);
       }
       spectrum.pieces += 1;
     }

@@ -85,20 +85,24 @@ class BlockRegression {
   void add(std::size_t block, const double* regressors, double y, const double* instruments = nullptr);
 
   /// Without intervals, and so without blocks, where they are not wanted: the blocks are most of the work.
-  BlockSolution solve(bool with_intervals = true) const;
+  BlockSolution solve(bool with_intervals = true);
 
  private:
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  /// Rows of matrices that are summed up: beyond their columns so many more, which are not read.
+  static constexpr Eigen::Index step = 8;
   struct Sums {
-    RowMajor zx;
-    Eigen::VectorXd zy;
+    RowMajor zx;  ///< z x', and z y
     RowMajor zz;  ///< lower triangle
     std::size_t rows = 0;
   };
   struct Range {
-    Eigen::Index first, count;
+    Eigen::Index first, end;
   };
   static Range without_zeros(const double* values, Eigen::Index count) noexcept;
+
+  /// Adds the rows that wait to the sums of their block: together, and each sum in their order.
+  void take_waiting();
   /// a theta = b, symmetric; `scale` brings the diagonal of a to 1, or 0 where it is 0.
   struct Normal {
     Eigen::MatrixXd a;
@@ -118,6 +122,11 @@ class BlockRegression {
   Eigen::Index unknowns_, instruments_;
   bool by_instruments_;
   std::vector<Sums> blocks_;
+  // rows of one block that wait, x with y behind it, and where they are not zero
+  RowMajor x_, z_;
+  Eigen::Index waiting_ = 0;
+  std::size_t block_ = 0;
+  Range of_x_{0, 0}, of_z_{0, 0};
 };
 
 }  // namespace pinnquad

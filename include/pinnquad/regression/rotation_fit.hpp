@@ -51,6 +51,7 @@ class InstrumentedFlights {
 /// Unknowns: B, C, D, G, F of roll, of pitch, of yaw; then the free parts of the rotors' response.
 class RotationFit {
  public:
+  using Series = InstrumentedFlights::Series;
   using Fractions = InstrumentedFlights::Fractions;
   static constexpr std::size_t of_axis = 5;
   static constexpr std::size_t of_response = 3 * of_axis;  ///< the first unknown of the response
@@ -79,19 +80,34 @@ class RotationFit {
 
   static double within_bounds(double value_s, const Part& part);
 
-  /// Slope of the fractions by a part of the response.
-  Fractions slope(const RotorResponse& at, const Part& part) const;
+  using Wanted = SmoothedFlights::Wanted;
+
+  /// Slope of the fractions by a part of the response; `wanted`: under its delay.
+  Fractions slope(const RotorResponse& at, const Part& part, const Wanted& wanted) const;
 
   /// The three axes, linear about `response`, each row by its axis' weight; `s`: fractions under it.
-  BlockRegression linearized(const Fractions& s, const RotorResponse& response, const std::vector<Part>& parts,
-                             const std::array<double, 3>& effectiveness, const std::array<double, 3>& weights) const;
+  BlockRegression linearized(const Fractions& s, const Wanted& wanted, const RotorResponse& response,
+                             const std::vector<Part>& parts, const std::array<double, 3>& effectiveness,
+                             const std::array<double, 3>& weights) const;
 
-  void fill_axis(const Fractions& s, std::size_t axis, std::size_t i, double* x) const;
+  /// Sums of the fractions at each instant: signed about an axis, and of all rotors.
+  struct Turning {
+    Series about, sum;
+  };
+  Turning turning_of(const Fractions& s, std::size_t axis) const;
 
-  void fill_instruments(const Fractions& s, std::size_t axis, std::size_t i, double* z) const;
+  void fill_axis(const Turning& turning, std::size_t axis, std::size_t i, double* x) const;
 
-  /// Root mean square of what the unknowns of an axis, from the `first` on, leave, rad/s^2.
-  double deviation(const Fractions& s, std::size_t axis, const BlockSolution& solution, std::size_t first) const;
+  void fill_instruments(const Turning& turning, std::size_t axis, std::size_t i, double* z) const;
+
+  /// Root mean square of what is left of an axis, rad/s^2, of this sum of squares.
+  double root_mean_square(double squares) const;
+
+  /// The same of what least squares leave, by sums of products.
+  double left_by_least_squares(const Turning& turning, std::size_t axis) const;
+
+  /// The same of what the unknowns of an axis, from the `first` on, leave.
+  double deviation(const Turning& turning, std::size_t axis, const BlockSolution& solution, std::size_t first) const;
 
   const InstrumentedFlights& rows_;
   double curve_;

@@ -77,12 +77,20 @@ class SmoothedFlights {
   /// The column `battery_voltage`; empty unless all flights have it.
   const Series& voltage() const noexcept { return voltage_; }
 
-  /// Smoothed thrust fractions of rotors whose commands have this curve (thrust_fraction()).
+  /// Thrust fractions that commands of this curve (thrust_fraction()) ask for, of all rotors at once: at the begin of
+  /// each stretch, then in the middle of each of the rotors' steps.
+  class Wanted;
+  Wanted wanted(double curve, double delay_s) const;
+  /// The smoothed fractions of rotors that follow; the delay is in `wanted`.
+  std::array<Series, rotor_count> followed(const Wanted& wanted, const RotorResponse& response) const;
   std::array<Series, rotor_count> thrust_fractions(double curve, const RotorResponse& response) const;
 
  private:
   /// A number of each rotor, and of none in the lanes that are left.
   using AllRotors = Lanes<double, std::max(static_cast<int>(rotor_count), native_lanes<double>)>;
+
+  /// Steps of the rotors from row to row.
+  std::size_t steps_per_row() const noexcept;
 
   struct Stretch {
     std::vector<AllRotors> commands;
@@ -117,6 +125,11 @@ class SmoothedFlights {
   Triple rates_, derivatives_, products_, forces_, kinematic_forces_, velocities_, squares_;
   Series voltage_;
   bool has_voltage_ = true;
+};
+
+class SmoothedFlights::Wanted {
+  friend class SmoothedFlights;
+  std::vector<std::vector<AllRotors>> stretches_;
 };
 
 }  // namespace pinnquad::detail

@@ -25,32 +25,58 @@ PINNQUAD_BODY BlockRegression::BlockRegression(std::size_t unknowns, std::size_t
   if (unknowns == 0 || blocks == 0 || (instruments > 0 && instruments < unknowns)) {
     throw std::invalid_argument("block regression: expected an unknown, a block, an instrument per unknown");
   }
+  constexpr Eigen::Index rows = 16;
   const Eigen::Index zz = by_instruments_ ? instruments_ : 0;
-  blocks_.assign(blocks, {RowMajor::Zero(instruments_, unknowns_), Eigen::VectorXd::Zero(instruments_),
-                          RowMajor::Zero(zz, zz), 0});
+  x_ = RowMajor::Zero(rows, unknowns_ + 1 + step);
+  z_ = RowMajor::Zero(rows, instruments_ + step);
+  blocks_.assign(blocks, {RowMajor::Zero(instruments_, x_.cols()), RowMajor::Zero(zz, zz + step), 0});
 }
 
 PINNQUAD_BODY void BlockRegression::add(std::size_t block, const double* regressors, double y,
                                         const double* instruments) {
-  Sums& sums = blocks_.at(block);
+  ++blocks_.at(block).rows;
   const double* const z = by_instruments_ ? instruments : regressors;
   const Range of_x = without_zeros(regressors, unknowns_), of_z = without_zeros(z, instruments_);
-  const Eigen::Map<const Eigen::RowVectorXd> x(regressors + of_x.first, of_x.count), all_z(z, instruments_);
-  for (Eigen::Index k = of_z.first; k < of_z.first + of_z.count; ++k) {
-    sums.zx.row(k).segment(of_x.first, of_x.count) += z[k] * x;
-    sums.zy[k] += z[k] * y;
-    if (!by_instruments_) continue;
-    const Eigen::Index count = k - of_z.first + 1;
-    sums.zz.row(k).segment(of_z.first, count) += z[k] * all_z.segment(of_z.first, count);
+  if (waiting_ == x_.rows() || block != block_ || of_x.first != of_x_.first || of_z.first != of_z_.first) {
+    take_waiting();
+    block_ = block;
+    of_x_ = of_x;
+    of_z_ = of_z;
   }
-  ++sums.rows;
+  of_x_.end = unknowns_ + 1;
+  of_z_.end = std::max(of_z_.end, of_z.end);
+  std::copy_n(regressors, unknowns_, x_.row(waiting_).data());
+  x_(waiting_, unknowns_) = y;
+  std::copy_n(z, instruments_, z_.row(waiting_).data());
+  ++waiting_;
 }
 
-PINNQUAD_BODY BlockSolution BlockRegression::solve(bool with_intervals) const {
+PINNQUAD_BODY void BlockRegression::take_waiting() {
+  using Columns = Eigen::Array<double, 1, step>;
+  Sums& sums = blocks_[block_];
+  const auto sum_up = [this](RowMajor& to, Eigen::Index k, const RowMajor& rows, const Range& range) {
+    for (Eigen::Index first = range.first; first < range.end; first += step) {
+      Eigen::Map<Columns> place(&to(k, first));
+      Columns sum = place;
+      const double *z = &z_(0, k), *x = &rows(0, first);
+      for (Eigen::Index i = 0; i < waiting_; ++i, z += z_.cols(), x += rows.cols()) {
+        sum += *z * Eigen::Map<const Columns>(x);
+      }
+      place = sum;
+    }
+  };
+  for (Eigen::Index k = of_z_.first; k < of_z_.end; ++k) {
+    sum_up(sums.zx, k, x_, of_x_);
+    if (by_instruments_) sum_up(sums.zz, k, z_, {of_z_.first, k + 1});
+  }
+  waiting_ = 0;
+}
+
+PINNQUAD_BODY BlockSolution BlockRegression::solve(bool with_intervals) {
+  take_waiting();
   Sums all = blocks_.front();
   for (std::size_t i = 1; i < blocks_.size(); ++i) {
     all.zx += blocks_[i].zx;
-    all.zy += blocks_[i].zy;
     all.zz += blocks_[i].zz;
   }
   const std::vector<bool> told = told_apart(normal_of(all, {}));
@@ -59,7 +85,6 @@ PINNQUAD_BODY BlockSolution BlockRegression::solve(bool with_intervals) const {
     if (block.rows == 0 || !with_intervals) continue;
     Sums others = all;
     others.zx -= block.zx;
-    others.zy -= block.zy;
     others.zz -= block.zz;
     left_out.push_back(solved(normal_of(others, told)));
   }
@@ -70,7 +95,7 @@ PINNQUAD_BODY BlockRegression::Range BlockRegression::without_zeros(const double
   Eigen::Index first = 0;
   while (first < count && values[first] == 0) ++first;
   while (count > first && values[count - 1] == 0) --count;
-  return {first, count - first};
+  return {first, count};
 }
 
 PINNQUAD_BODY Eigen::VectorXd BlockRegression::inverse_roots(const Eigen::VectorXd& diagonal) {
@@ -82,17 +107,19 @@ PINNQUAD_BODY Eigen::VectorXd BlockRegression::inverse_roots(const Eigen::Vector
 PINNQUAD_BODY BlockRegression::Normal BlockRegression::normal_of(const Sums& sums,
                                                                  const std::vector<bool>& told) const {
   Normal normal;
+  const Eigen::MatrixXd zx = sums.zx.leftCols(unknowns_);
+  const Eigen::VectorXd zy = sums.zx.col(unknowns_);
   if (by_instruments_) {
-    const Eigen::VectorXd roots = inverse_roots(sums.zz.diagonal());
-    Eigen::MatrixXd zz = sums.zz;
-    zz.triangularView<Eigen::StrictlyUpper>() = sums.zz.transpose();
+    Eigen::MatrixXd zz = sums.zz.leftCols(instruments_);
+    const Eigen::VectorXd roots = inverse_roots(zz.diagonal());
+    zz.triangularView<Eigen::StrictlyUpper>() = zz.transpose().eval();
     zz = (roots.asDiagonal() * zz * roots.asDiagonal()).eval();
-    const Eigen::MatrixXd weights = roots.asDiagonal() * detail::solve_symmetric(zz, roots.asDiagonal() * sums.zx);
-    normal.a = detail::matrix_product(weights.transpose(), sums.zx);
-    normal.b = detail::matrix_product(weights.transpose(), sums.zy);
+    const Eigen::MatrixXd weights = roots.asDiagonal() * detail::solve_symmetric(zz, roots.asDiagonal() * zx);
+    normal.a = detail::matrix_product(weights.transpose(), zx);
+    normal.b = detail::matrix_product(weights.transpose(), zy);
   } else {
-    normal.a = sums.zx;
-    normal.b = sums.zy;
+    normal.a = zx;
+    normal.b = zy;
   }
   for (std::size_t i = 0; i < told.size(); ++i) {
     if (told[i]) continue;

@@ -40,20 +40,14 @@ PINNQUAD_BODY RotorResponse RotationFit::nearest() const {
   constexpr int delays = 16;
   RotorResponse best{lags_s[1], lags_s[1], 0};
   double least = std::numeric_limits<double>::infinity();
-  for (const double lag_s : lags_s) {
-    for (int k = 0; k < delays; ++k) {
-      const RotorResponse at{lag_s, lag_s, first_delay_s + step_s * k};
-      const Fractions s = rows_.flights().thrust_fractions(curve_, at);
+  for (int k = 0; k < delays; ++k) {
+    const double delay_s = first_delay_s + step_s * k;
+    const Wanted wanted = rows_.flights().wanted(curve_, delay_s);
+    for (const double lag_s : lags_s) {
+      const RotorResponse at{lag_s, lag_s, delay_s};
+      const Fractions s = rows_.flights().followed(wanted, at);
       double left = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        BlockRegression regression(of_axis, 0, 1);
-        std::array<double, of_axis> x{};
-        for (const std::size_t i : rows_.instants()) {
-          fill_axis(s, axis, i, x.data());
-          regression.add(0, x.data(), rows_.flights().angular_acceleration()[axis][i]);
-        }
-        left += std::log(deviation(s, axis, regression.solve(false), 0));
-      }
+      for (std::size_t axis = 0; axis < 3; ++axis) left += std::log(left_by_least_squares(turning_of(s, axis), axis));
       if (!(left < least)) continue;
       least = left;
       best = at;
@@ -67,11 +61,12 @@ PINNQUAD_BODY BlockSolution RotationFit::converge(RotorResponse& response, const
   constexpr double close_s = 1e-6;
   std::array<double, 3> effectiveness{}, weights = {1, 1, 1};
   for (int step = 0; step < most_steps; ++step) {
-    const Fractions s = rows_.flights().thrust_fractions(curve_, response);
-    const BlockSolution found = linearized(s, response, parts, effectiveness, weights).solve(false);
+    const Wanted wanted = rows_.flights().wanted(curve_, response.delay_s);
+    const Fractions s = rows_.flights().followed(wanted, response);
+    const BlockSolution found = linearized(s, wanted, response, parts, effectiveness, weights).solve(false);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       effectiveness[axis] = found.values()[axis * of_axis];
-      weights[axis] = 1 / deviation(s, axis, found, axis * of_axis);
+      weights[axis] = 1 / deviation(turning_of(s, axis), axis, found, axis * of_axis);
     }
     if (step == 0) continue;  // without an effectiveness there was no slope
     double moved = 0;
@@ -85,8 +80,9 @@ PINNQUAD_BODY BlockSolution RotationFit::converge(RotorResponse& response, const
     }
     if (step >= least_steps && moved < close_s) break;
   }
-  const Fractions s = rows_.flights().thrust_fractions(curve_, response);
-  return linearized(s, response, parts, effectiveness, weights).solve();
+  const Wanted wanted = rows_.flights().wanted(curve_, response.delay_s);
+  const Fractions s = rows_.flights().followed(wanted, response);
+  return linearized(s, wanted, response, parts, effectiveness, weights).solve();
 }
 
 PINNQUAD_BODY double RotationFit::within_bounds(double value_s, const Part& part) {
@@ -94,41 +90,49 @@ PINNQUAD_BODY double RotationFit::within_bounds(double value_s, const Part& part
   return std::clamp(value_s, shortest_s, longest_s);
 }
 
-PINNQUAD_BODY RotationFit::Fractions RotationFit::slope(const RotorResponse& at, const Part& part) const {
+PINNQUAD_BODY RotationFit::Fractions RotationFit::slope(const RotorResponse& at, const Part& part,
+                                                        const Wanted& wanted) const {
   constexpr double delay_step_s = 0.001, lag_step = 0.02;
-  const double step_s = part.front() == &RotorResponse::delay_s ? delay_step_s : lag_step * at.*part.front();
+  const bool by_delay = part.front() == &RotorResponse::delay_s;
+  const double step_s = by_delay ? delay_step_s : lag_step * at.*part.front();
   RotorResponse ahead = at, behind = at;
   for (double RotorResponse::*const number : part) {
     ahead.*number += step_s;
     behind.*number -= step_s;
   }
-  Fractions result = rows_.flights().thrust_fractions(curve_, ahead);
-  const Fractions less = rows_.flights().thrust_fractions(curve_, behind);
+  const auto fractions = [&](const RotorResponse& response) {
+    return by_delay ? rows_.flights().thrust_fractions(curve_, response) : rows_.flights().followed(wanted, response);
+  };
+  Fractions result = fractions(ahead);
+  const Fractions less = fractions(behind);
   for (std::size_t k = 0; k < rotor_count; ++k) {
     for (std::size_t i = 0; i < result[k].size(); ++i) result[k][i] = (result[k][i] - less[k][i]) / (2 * step_s);
   }
   return result;
 }
 
-PINNQUAD_BODY BlockRegression RotationFit::linearized(const Fractions& s, const RotorResponse& response,
-                                                      const std::vector<Part>& parts,
+PINNQUAD_BODY BlockRegression RotationFit::linearized(const Fractions& s, const Wanted& wanted,
+                                                      const RotorResponse& response, const std::vector<Part>& parts,
                                                       const std::array<double, 3>& effectiveness,
                                                       const std::array<double, 3>& weights) const {
   std::vector<Fractions> slopes;
   slopes.reserve(parts.size());
-  for (const Part& part : parts) slopes.push_back(slope(response, part));
+  for (const Part& part : parts) slopes.push_back(slope(response, part, wanted));
   BlockRegression regression(of_response + parts.size(), 3 * instruments, rows_.blocks());
   std::vector<double> x(of_response + parts.size()), z(3 * instruments);
-  for (std::size_t place = 0; place < rows_.instants().size(); ++place) {
-    const std::size_t i = rows_.instants()[place];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::fill(x.begin(), x.end(), 0.0);
-      std::fill(z.begin(), z.end(), 0.0);
-      fill_axis(s, axis, i, &x[axis * of_axis]);
-      fill_instruments(s, axis, i, &z[axis * instruments]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Turning turning = turning_of(s, axis);
+    std::vector<Series> about;
+    for (const Fractions& slope_of_part : slopes) about.push_back(turning_of(slope_of_part, axis).about);
+    std::fill(x.begin(), x.end(), 0.0);
+    std::fill(z.begin(), z.end(), 0.0);
+    for (std::size_t place = 0; place < rows_.instants().size(); ++place) {
+      const std::size_t i = rows_.instants()[place];
+      fill_axis(turning, axis, i, &x[axis * of_axis]);
+      fill_instruments(turning, axis, i, &z[axis * instruments]);
       double y = rows_.flights().angular_acceleration()[axis][i];
       for (std::size_t k = 0; k < parts.size(); ++k) {
-        x[of_response + k] = effectiveness[axis] * rows_.signed_sum(slopes[k], axis, i);
+        x[of_response + k] = effectiveness[axis] * about[k][i];
         y += x[of_response + k] * response.*parts[k].front();
       }
       for (double& value : x) value *= weights[axis];
@@ -139,20 +143,31 @@ PINNQUAD_BODY BlockRegression RotationFit::linearized(const Fractions& s, const 
   return regression;
 }
 
-PINNQUAD_BODY void RotationFit::fill_axis(const Fractions& s, std::size_t axis, std::size_t i, double* x) const {
-  x[0] = rows_.signed_sum(s, axis, i);
-  x[1] = InstrumentedFlights::sum(s, i);
+PINNQUAD_BODY RotationFit::Turning RotationFit::turning_of(const Fractions& s, std::size_t axis) const {
+  const std::size_t count = s[0].size();
+  Turning turning{Series(count), Series(count)};
+  for (std::size_t i = 0; i < count; ++i) {
+    turning.about[i] = rows_.signed_sum(s, axis, i);
+    turning.sum[i] = InstrumentedFlights::sum(s, i);
+  }
+  return turning;
+}
+
+PINNQUAD_BODY void RotationFit::fill_axis(const Turning& turning, std::size_t axis, std::size_t i, double* x) const {
+  x[0] = turning.about[i];
+  x[1] = turning.sum[i];
   x[2] = -rows_.flights().rates()[axis][i];
   x[3] = rows_.flights().rate_products()[axis][i];
   x[4] = rows_.flights().velocity()[across[axis]][i];
 }
 
-PINNQUAD_BODY void RotationFit::fill_instruments(const Fractions& s, std::size_t axis, std::size_t i, double* z) const {
+PINNQUAD_BODY void RotationFit::fill_instruments(const Turning& turning, std::size_t axis, std::size_t i,
+                                                 double* z) const {
   const SmoothedFlights& flights = rows_.flights();
   for (std::size_t k = 0; k < shifts; ++k) {
     const std::size_t before = rows_.before(i, k);
-    *z++ = rows_.signed_sum(s, axis, before);
-    *z++ = InstrumentedFlights::sum(s, before);
+    *z++ = turning.about[before];
+    *z++ = turning.sum[before];
     *z++ = flights.rates()[axis][before];
     *z++ = flights.rate_products()[axis][before];
     *z++ = flights.angular_acceleration()[axis][before];
@@ -161,18 +176,38 @@ PINNQUAD_BODY void RotationFit::fill_instruments(const Fractions& s, std::size_t
   *z = 1;
 }
 
-PINNQUAD_BODY double RotationFit::deviation(const Fractions& s, std::size_t axis, const BlockSolution& solution,
-                                            std::size_t first) const {
+PINNQUAD_BODY double RotationFit::root_mean_square(double squares) const {
   constexpr double least = 1e-6;  // exact rows of a law leave nothing
+  return std::max(least, std::sqrt(std::max(0.0, squares) / static_cast<double>(rows_.instants().size())));
+}
+
+PINNQUAD_BODY double RotationFit::left_by_least_squares(const Turning& turning, std::size_t axis) const {
+  constexpr int unknowns = static_cast<int>(of_axis), columns = unknowns + 1;
+  Eigen::Matrix<double, columns, columns> sums = Eigen::Matrix<double, columns, columns>::Zero();
+  Eigen::Matrix<double, columns, 1> row;
+  for (const std::size_t i : rows_.instants()) {
+    fill_axis(turning, axis, i, row.data());
+    row[unknowns] = rows_.flights().angular_acceleration()[axis][i];
+    sums.noalias() += row * row.transpose();
+  }
+  Eigen::VectorXd scale(unknowns);
+  for (int k = 0; k < unknowns; ++k) scale[k] = sums(k, k) > 0 ? 1 / std::sqrt(sums(k, k)) : 0;
+  const Eigen::MatrixXd a = scale.asDiagonal() * sums.topLeftCorner<unknowns, unknowns>() * scale.asDiagonal();
+  const Eigen::VectorXd b = scale.asDiagonal() * sums.col(unknowns).head<unknowns>();
+  return root_mean_square(sums(unknowns, unknowns) - b.dot(Eigen::VectorXd(solve_symmetric(a, b))));
+}
+
+PINNQUAD_BODY double RotationFit::deviation(const Turning& turning, std::size_t axis, const BlockSolution& solution,
+                                            std::size_t first) const {
   double squares = 0;
   std::array<double, of_axis> x{};
   for (const std::size_t i : rows_.instants()) {
-    fill_axis(s, axis, i, x.data());
+    fill_axis(turning, axis, i, x.data());
     double left = rows_.flights().angular_acceleration()[axis][i];
     for (std::size_t k = 0; k < of_axis; ++k) left -= x[k] * solution.values()[first + k];
     squares += left * left;
   }
-  return std::max(least, std::sqrt(squares / static_cast<double>(rows_.instants().size())));
+  return root_mean_square(squares);
 }
 
 }  // namespace pinnquad::detail

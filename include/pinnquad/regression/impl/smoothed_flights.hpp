@@ -42,12 +42,39 @@ PINNQUAD_BODY SmoothedFlights::SmoothedFlights(const RowSet& rows, double window
   if (std::none_of(velocities_.begin(), velocities_.end(), moves)) kinematic_forces_ = {};
 }
 
-PINNQUAD_BODY std::array<SmoothedFlights::Series, rotor_count> SmoothedFlights::thrust_fractions(
-    double curve, const RotorResponse& response) const {
-  std::array<Series, rotor_count> result;
+PINNQUAD_BODY std::size_t SmoothedFlights::steps_per_row() const noexcept {
   constexpr double longest_step_s = 0.005;
-  const auto parts = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(period_s_ / longest_step_s - 1e-9)));
+  return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(period_s_ / longest_step_s - 1e-9)));
+}
+
+PINNQUAD_BODY SmoothedFlights::Wanted SmoothedFlights::wanted(double curve, double delay_s) const {
+  const std::size_t parts = steps_per_row();
   const double step = 1 / static_cast<double>(parts);  // in rows
+  const double late = delay_s / period_s_;
+  Wanted result;
+  for (const Stretch& stretch : stretches_) {
+    const auto wanted_at = [&](double row) {
+      return thrust_fraction(AllRotors(curve), clip_command(at_row(stretch.commands, row - late)));
+    };
+    const std::size_t rows = stretch.commands.size() - 1;
+    std::vector<AllRotors>& all = result.stretches_.emplace_back();
+    all.reserve(1 + rows * parts);
+    all.push_back(wanted_at(0));
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t part = 0; part < parts; ++part) {
+        all.push_back(wanted_at(static_cast<double>(row) + (static_cast<double>(part) + 0.5) * step));
+      }
+    }
+  }
+  return result;
+}
+
+PINNQUAD_BODY std::array<SmoothedFlights::Series, rotor_count> SmoothedFlights::followed(
+    const Wanted& wanted_fractions, const RotorResponse& response) const {
+  std::array<Series, rotor_count> result;
+  for (Series& of_rotor : result) of_rotor.reserve(size());
+  const std::size_t parts = steps_per_row();
+  const double step = 1 / static_cast<double>(parts);
   // what is left of a distance at the end of a step, and in the mean over it
   struct Approach {
     AllRotors end, mean;
@@ -57,23 +84,21 @@ PINNQUAD_BODY std::array<SmoothedFlights::Series, rotor_count> SmoothedFlights::
     return Approach{AllRotors(end), AllRotors((1 - end) * lag_s / step_s)};
   };
   const Approach rise = approach(response.rise_s), fall = approach(response.fall_s);
-  const double late = response.delay_s / period_s_;
   std::vector<AllRotors> thrust;
-  for (const Stretch& stretch : stretches_) {
-    const auto wanted_at = [&](double row) {
-      return thrust_fraction(AllRotors(curve), clip_command(at_row(stretch.commands, row - late)));
-    };
+  for (std::size_t k = 0; k < stretches_.size(); ++k) {
+    const Stretch& stretch = stretches_[k];
+    const AllRotors* next = wanted_fractions.stretches_[k].data();
     thrust.resize(stretch.commands.size() - 1);
-    AllRotors now = wanted_at(0);
-    for (std::size_t row = 0; row < thrust.size(); ++row) {
+    AllRotors now = *next++;
+    for (AllRotors& of_row : thrust) {
       AllRotors sum(0);
       for (std::size_t part = 0; part < parts; ++part) {
-        const AllRotors wanted = wanted_at(static_cast<double>(row) + (static_cast<double>(part) + 0.5) * step);
+        const AllRotors wanted = *next++;
         const auto rising = wanted >= now;
         sum += wanted + select(rising, rise.mean, fall.mean) * (now - wanted);
         now = wanted + select(rising, rise.end, fall.end) * (now - wanted);
       }
-      thrust[row] = sum * AllRotors(step);
+      of_row = sum * AllRotors(step);
     }
     smooth(thrust, stretch.instants, stretch.first, [&result](const AllRotors& fractions) {
       for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
@@ -82,6 +107,11 @@ PINNQUAD_BODY std::array<SmoothedFlights::Series, rotor_count> SmoothedFlights::
     });
   }
   return result;
+}
+
+PINNQUAD_BODY std::array<SmoothedFlights::Series, rotor_count> SmoothedFlights::thrust_fractions(
+    double curve, const RotorResponse& response) const {
+  return followed(wanted(curve, response.delay_s), response);
 }
 
 PINNQUAD_BODY SmoothedFlights::AllRotors SmoothedFlights::at_row(const std::vector<AllRotors>& u, double row) noexcept {
