@@ -110,7 +110,7 @@ Terms<Scalar> prior_deviations(std::size_t k, const ForwardSum<Scalar>& start) n
     return {Scalar(5), Scalar(0.5), Scalar(0.05), Scalar(0.05), Scalar(0.05), delay_s * slope, slope};
   }
   const Scalar product = k == 3 ? Scalar(0.25) : Scalar(0.7);  // (J_x - J_y) / J_z, J_z about J_x + J_y
-  return {Scalar(20), Scalar(1), product, Scalar(1), Scalar(0.2) * slope, delay_s * slope, slope};
+  return {Scalar(20), Scalar(2.5), product, Scalar(1), Scalar(0.2) * slope, delay_s * slope, slope};
 }
 
 /// Columns: the terms, then the acceleration that they explain.

@@ -241,12 +241,12 @@ class OnboardInverse {
     if (judging_) ++judged_;
     watch(motion, residual);
   }
-  /// Yaw's are those of its rows: means.
+  /// Those of torques are of their rows: means.
   void add(Shadow& of, std::size_t k, Scalar residual, Scalar slope, bool settled) const noexcept {
     const Scalar beside = residual - of.bias[k];
     of.bias[k] += period_s() / (period_s() + settings_.bias.time_constants_s[k]) * beside;
     if (!settled) return;
-    const std::uint32_t rows = k == 3 ? settings_.regression.rows_of_yaw : 1;
+    const std::uint32_t rows = k == 0 ? 1 : settings_.regression.rows_of_torque;
     of.left[k] += beside * slope;
     if ((judged_ - rows_to_settle + 1) % rows != 0) return;
     of.square[k] += of.left[k] * of.left[k] / Scalar(rows);
@@ -255,7 +255,7 @@ class OnboardInverse {
 
   /// A candidate of each sum.
   void propose() noexcept {
-    const detail::LagPlace<Scalar> lag = regression_.best_lag();
+    const detail::LagPlace<Scalar> lag = regression_.best_lag(start_model_[0].lag.seconds());
     judging_ = false;
     for (std::size_t k = 0; k < 4; ++k) {
       const detail::SumSolution<Scalar> solution = regression_.solution(k, lag, start_model_[k]);

@@ -24,7 +24,10 @@ struct RegressionSettings {
   /// beside this share of their running means, so long, which the wind is in too; not of yaw.
   std::array<Scalar, 3> wind_s{Scalar(0.15), Scalar(0.3), Scalar(0.3)};
   Scalar wind_share = Scalar(0.9);
-  std::uint32_t rows_of_yaw = 4;  ///< are one of yaw, their mean: feedback answers gyro noise that is quicker
+  /// So many are one row of roll, pitch or yaw, their mean. Gyro noise, which feedback answers, cancels in rows that
+  /// follow each other.
+  std::uint32_t rows_of_torque = 5;
+  Scalar lag_spread = Scalar(0.7);  ///< standard deviation of log(lag / the start's)
 };
 
 /// Drag across the thrust over the mass: a = -(linear + quadratic |v|) v of the two axes across, FRD.
@@ -50,7 +53,7 @@ class SumRegression {
     using std::exp;
     const Scalar period_s = Scalar(1e-6) * static_cast<Scalar>(period_us);
     root_keep_ = exp(-period_s / (Scalar(2) * settings.forget_s));
-    root_keep_yaw_ = exp(-Scalar(settings.rows_of_yaw) * period_s / (Scalar(2) * settings.forget_s));
+    root_keep_torque_ = exp(-Scalar(settings.rows_of_torque) * period_s / (Scalar(2) * settings.forget_s));
     for (std::size_t k = 0; k < 3; ++k) follows_[k] = period_s / (period_s + settings.wind_s[k]);
     root_keep_drag_ = exp(-period_s / (Scalar(4) * settings.forget_drag_s));  // two rows a period
   }
@@ -58,7 +61,7 @@ class SumRegression {
   /// Forgets all rows: they are of no flight.
   void forget() noexcept {
     triangles_ = {};
-    rows_ = rows_of_yaw_ = rows_of_drag_ = Scalar(0);
+    rows_ = means_of_torque_ = rows_of_drag_ = Scalar(0);
     drag_ = {};
     mean_ = {};
   }
@@ -66,29 +69,46 @@ class SumRegression {
   /// A row: the motion, the thrusts that the rotors of each lag would have followed, and the specific force, FRD.
   void teach(std::uint64_t now_us, const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank,
              const Vector3<Scalar>& force_m_s2) noexcept {
-    for (std::size_t k = 0; k < 3; ++k) {
-      SumRow row = row_of(k, motion, bank);
-      if (!(rows_ > Scalar(0))) means_[k] = row;
-      put_beside(row, means_[k], follows_[k], settings_.wind_share);
-      triangles_[k].turn_in(row.shared, row.owns, root_keep_);
-    }
-    rows_ = keep() * rows_ + Scalar(1);
     // rows of one mean follow each other
     if (now_us / period_us_ - row_us_ / period_us_ > 1) mean_ = {};
     row_us_ = now_us;
-    teach_yaw(row_of(3, motion, bank));
+    ++mean_.rows;
+    for (std::size_t k = 0; k < 4; ++k) {
+      SumRow row = row_of(k, motion, bank);
+      if (k < 3) {
+        if (!(rows_ > Scalar(0))) running_[k] = row;
+        put_beside(row, running_[k], follows_[k], settings_.wind_share);
+      }
+      if (k == 0) {
+        triangles_[0].turn_in(row.shared, row.owns, root_keep_);
+      } else {
+        teach_torque(k, row);
+      }
+    }
+    rows_ = keep() * rows_ + Scalar(1);
+    if (mean_.rows == settings_.rows_of_torque) {
+      means_of_torque_ = root_keep_torque_ * root_keep_torque_ * means_of_torque_ + Scalar(1);
+      mean_ = {};
+    }
     teach_drag(motion.velocity_m_s, force_m_s2);
   }
 
   /// Share of the rows before that is kept.
   Scalar keep() const noexcept { return root_keep_ * root_keep_; }
   /// Rows of a sum that are remembered.
-  Scalar rows(std::size_t k) const noexcept { return k == 3 ? rows_of_yaw_ * Scalar(settings_.rows_of_yaw) : rows_; }
+  Scalar rows(std::size_t k) const noexcept {
+    return k == 0 ? rows_ : means_of_torque_ * Scalar(settings_.rows_of_torque);
+  }
 
   /// The lag that leaves least of the angular accelerations, between those of the bank by the parabola through the best
-  /// one and its neighbours; yaw counts a third.
-  LagPlace<Scalar> best_lag() const noexcept {
+  /// one and its neighbours; yaw counts a third. `start_s`: a prior, which decides where noise leaves it open.
+  LagPlace<Scalar> best_lag(Scalar start_s) const noexcept {
     using std::log;
+    const Scalar weight = settings_.repeats / (means_of_torque_ + Scalar(1));
+    const auto apart = [this, weight, start_s](std::size_t lag) noexcept {
+      const Scalar deviations = log(lag_bank_s<Scalar>[lag] / start_s) / settings_.lag_spread;
+      return weight * deviations * deviations;
+    };
     std::array<std::array<Scalar, 3>, lag_count> left{};
     std::array<Scalar, lag_count> sum{};
     std::size_t best = 0;
@@ -98,12 +118,13 @@ class SumRegression {
         left[lag][axis] = root * root + Scalar(1e-12);
         sum[lag] += weights[axis] * log(left[lag][axis]);
       }
+      sum[lag] += apart(lag);
       if (sum[lag] < sum[best]) best = lag;
     }
     const Scalar at = lag_bank_s<Scalar>[best];
     if (best == 0 || best + 1 == lag_count) return lag_place(at);
     const Scalar low = lag_bank_s<Scalar>[best - 1] - at, high = lag_bank_s<Scalar>[best + 1] - at;
-    Scalar by_low(0), by_high(0);
+    Scalar by_low = (apart(best - 1) - apart(best)) / low, by_high = (apart(best + 1) - apart(best)) / high;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       by_low += weights[axis] * (left[best - 1][axis] / left[best][axis] - Scalar(1)) / low;
       by_high += weights[axis] * (left[best + 1][axis] / left[best][axis] - Scalar(1)) / high;
@@ -118,7 +139,8 @@ class SumRegression {
                                const ForwardSum<Scalar>& start) const noexcept {
     const Terms<Scalar> deviations = prior_deviations(k, start);
     const auto at = [&](std::size_t place) noexcept {
-      return solved(triangles_[k].of(place), k == 3 ? rows_of_yaw_ : rows_, start.theta, deviations, settings_.repeats);
+      return solved(triangles_[k].of(place), k == 0 ? rows_ : means_of_torque_, start.theta, deviations,
+                    settings_.repeats);
     };
     SumSolution<Scalar> result = at(lag.lower);
     const SumSolution<Scalar> next = at(lag.lower + 1u);
@@ -173,16 +195,14 @@ class SumRegression {
       for (std::size_t i = 0; i < row.owns[lag].size(); ++i) beside(row.owns[lag][i], means.owns[lag][i]);
     }
   }
-  void teach_yaw(const SumRow& row) noexcept {
-    const Scalar share = Scalar(1) / Scalar(settings_.rows_of_yaw);
-    for (std::size_t i = 0; i < row.shared.size(); ++i) mean_.of.shared[i] += share * row.shared[i];
+  void teach_torque(std::size_t k, const SumRow& row) noexcept {
+    const Scalar share = Scalar(1) / Scalar(settings_.rows_of_torque);
+    SumRow& mean = mean_.of[k - 1];
+    for (std::size_t i = 0; i < row.shared.size(); ++i) mean.shared[i] += share * row.shared[i];
     for (std::size_t lag = 0; lag < lag_count; ++lag) {
-      for (std::size_t j = 0; j < row.owns[lag].size(); ++j) mean_.of.owns[lag][j] += share * row.owns[lag][j];
+      for (std::size_t j = 0; j < row.owns[lag].size(); ++j) mean.owns[lag][j] += share * row.owns[lag][j];
     }
-    if (++mean_.rows < settings_.rows_of_yaw) return;
-    triangles_[3].turn_in(mean_.of.shared, mean_.of.owns, root_keep_yaw_);
-    rows_of_yaw_ = root_keep_yaw_ * root_keep_yaw_ * rows_of_yaw_ + Scalar(1);
-    mean_ = {};
+    if (mean_.rows == settings_.rows_of_torque) triangles_[k].turn_in(mean.shared, mean.owns, root_keep_torque_);
   }
   void teach_drag(const Vector3<Scalar>& velocity_m_s, const Vector3<Scalar>& force_m_s2) noexcept {
     using std::sqrt;
@@ -196,16 +216,16 @@ class SumRegression {
 
   RegressionSettings<Scalar> settings_;
   std::uint32_t period_us_;
-  Scalar root_keep_{0}, root_keep_yaw_{0}, root_keep_drag_{0};
+  Scalar root_keep_{0}, root_keep_torque_{0}, root_keep_drag_{0};
   std::array<Scalar, 3> follows_{};
   std::uint64_t row_us_ = 0;
   std::array<SumTriangles<Scalar>, 4> triangles_{};
-  Scalar rows_{0}, rows_of_yaw_{0}, rows_of_drag_{0};  ///< each as often as it is still remembered
+  Scalar rows_{0}, means_of_torque_{0}, rows_of_drag_{0};  ///< each as often as it is still remembered
   struct {
-    SumRow of;
+    std::array<SumRow, 3> of{};
     std::uint32_t rows = 0;
-  } mean_{};  ///< of yaw, until it is whole
-  std::array<SumRow, 3> means_{};
+  } mean_{};                         ///< of roll, pitch and yaw, until it is whole
+  std::array<SumRow, 3> running_{};  ///< means, of thrust, roll and pitch
   Triangle<Scalar, 3> drag_{};
 };
 }  // namespace detail
