@@ -208,6 +208,10 @@ int fly_unknown(const LoopOptions& options) {
   unknown.controllers = programs::names_or(options.controllers, programs::vehicle_controllers());
   unknown.conditions = programs::names_or(options.conditions, {"calm"});
   unknown.json = options.json;
+  if (unknown.drawn >= unknown.vehicles) {
+    throw std::invalid_argument("--draw: expected a vehicle from 0 to " + std::to_string(unknown.vehicles - 1) +
+                                ", found " + std::to_string(unknown.drawn));
+  }
   return programs::fly_vehicles(unknown);
 }
 
@@ -284,7 +288,11 @@ Command loop_command(CLI::App& program) {
       ->needs(vehicles);
   add_number(*line, "--frozen", unknown.frozen_s, 1.0, 3600.0, "a model learnt on board is frozen then, s")
       ->needs(vehicles);
-  add_path(*line, "--out", unknown.out, "FOLDER", "where loop.json of these vehicles goes")->needs(vehicles);
+  add_number(*line, "--draw", unknown.drawn, std::size_t{0}, std::size_t{9'999},
+             "the vehicle whose slopes, as onboard learns them, are drawn, from 0 on")
+      ->needs(vehicles);
+  add_path(*line, "--out", unknown.out, "FOLDER", "where loop.json and slopes_*.svg of these vehicles go")
+      ->needs(vehicles);
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(
       "Examples:\n"

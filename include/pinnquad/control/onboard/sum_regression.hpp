@@ -57,7 +57,8 @@ class SumRegression {
 
   /// Forgets all rows: they are of no flight.
   void forget() noexcept {
-    triangles_ = {};
+    thrust_ = {};
+    turns_ = {};
     rows_ = rows_of_yaw_ = rows_of_drag_ = Scalar(0);
     drag_ = {};
     mean_ = {};
@@ -66,17 +67,13 @@ class SumRegression {
   /// A row: the motion, the thrusts that the rotors of each lag would have followed, and the specific force, FRD.
   void teach(std::uint64_t now_us, const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank,
              const Vector3<Scalar>& force_m_s2) noexcept {
-    for (std::size_t k = 0; k < 3; ++k) {
-      SumRow row = row_of(k, motion, bank);
-      if (!(rows_ > Scalar(0))) means_[k] = row;
-      put_beside(row, means_[k], follows_[k], settings_.wind_share);
-      triangles_[k].turn_in(row.shared, row.owns, root_keep_);
-    }
+    teach_beside(thrust_, thrust_mean_, 0, motion, bank);
+    for (std::size_t k = 1; k < 3; ++k) teach_beside(turns_[k - 1], means_[k - 1], k, motion, bank);
     rows_ = keep() * rows_ + Scalar(1);
     // rows of one mean follow each other
     if (now_us / period_us_ - row_us_ / period_us_ > 1) mean_ = {};
     row_us_ = now_us;
-    teach_yaw(row_of(3, motion, bank));
+    teach_yaw(row_of<turn_terms>(3, motion, bank));
     teach_drag(motion.velocity_m_s, force_m_s2);
   }
 
@@ -85,8 +82,9 @@ class SumRegression {
   /// Rows of a sum that are remembered.
   Scalar rows(std::size_t k) const noexcept { return k == 3 ? rows_of_yaw_ * Scalar(settings_.rows_of_yaw) : rows_; }
 
-  /// The lag that leaves least of the angular accelerations, between those of the bank by the parabola through the best
-  /// one and its neighbours; yaw counts a third.
+  /// The lag that leaves least of the angular accelerations, between those of the bank by the parabola of the logarithms
+  /// through the best one and its neighbours: where two of the bank are as good, it lies in their middle either way.
+  /// Yaw counts a third.
   LagPlace<Scalar> best_lag() const noexcept {
     using std::log;
     std::array<std::array<Scalar, 3>, lag_count> left{};
@@ -94,19 +92,21 @@ class SumRegression {
     std::size_t best = 0;
     for (std::size_t lag = 0; lag < lag_count; ++lag) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Scalar root = triangles_[axis + 1].left(lag);
+        const Scalar root = turns_[axis].left(lag);
         left[lag][axis] = root * root + Scalar(1e-12);
         sum[lag] += weights[axis] * log(left[lag][axis]);
       }
       if (sum[lag] < sum[best]) best = lag;
     }
+    if (best + 1 == lag_count) return lag_place(lag_bank_s<Scalar>[best]);
+    if (best == 0) best = 1;
     const Scalar at = lag_bank_s<Scalar>[best];
-    if (best == 0 || best + 1 == lag_count) return lag_place(at);
     const Scalar low = lag_bank_s<Scalar>[best - 1] - at, high = lag_bank_s<Scalar>[best + 1] - at;
     Scalar by_low(0), by_high(0);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      by_low += weights[axis] * (left[best - 1][axis] / left[best][axis] - Scalar(1)) / low;
-      by_high += weights[axis] * (left[best + 1][axis] / left[best][axis] - Scalar(1)) / high;
+    for (std::size_t axis = 0; axis < 3;
+         ++axis) {  // of quotients: a float has no digits left of logarithms' differences
+      by_low += weights[axis] * log(left[best - 1][axis] / left[best][axis]) / low;
+      by_high += weights[axis] * log(left[best + 1][axis] / left[best][axis]) / high;
     }
     const Scalar curvature = (by_high - by_low) / (high - low);
     const Scalar beside = curvature > Scalar(0) ? (curvature * low - by_low) / (Scalar(2) * curvature) : Scalar(0);
@@ -118,7 +118,8 @@ class SumRegression {
                                const ForwardSum<Scalar>& start) const noexcept {
     const Terms<Scalar> deviations = prior_deviations(k, start);
     const auto at = [&](std::size_t place) noexcept {
-      return solved(triangles_[k].of(place), k == 3 ? rows_of_yaw_ : rows_, start.theta, deviations, settings_.repeats);
+      return solved(k == 0 ? thrust_.of(place) : turns_[k - 1].of(place), k == 3 ? rows_of_yaw_ : rows_, start.theta,
+                    deviations, settings_.repeats);
     };
     SumSolution<Scalar> result = at(lag.lower);
     const SumSolution<Scalar> next = at(lag.lower + 1u);
@@ -148,22 +149,41 @@ class SumRegression {
  private:
   static constexpr std::array<Scalar, 3> weights{Scalar(1), Scalar(1), Scalar(0.3)};
 
+  static constexpr std::size_t thrust_terms = lag_terms(0), turn_terms = lag_terms(1);
+
+  template <std::size_t shared_terms>
   struct SumRow {
-    typename SumTriangles<Scalar>::Row shared{};
-    typename SumTriangles<Scalar>::Owns owns{};
+    typename SumTriangles<Scalar, shared_terms>::Row shared{};
+    typename SumTriangles<Scalar, shared_terms>::Owns owns{};
   };
-  static SumRow row_of(std::size_t k, const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank) noexcept {
-    SumRow row;
+  template <std::size_t shared_terms>
+  static SumRow<shared_terms> row_of(std::size_t k, const SumMotion<Scalar>& motion,
+                                     const LagBank<Scalar>& bank) noexcept {
+    SumRow<shared_terms> row;
     const Terms<Scalar> x = terms_of(k, motion, Scalar(0), {});
-    for (std::size_t i = 0; i < lag_terms; ++i) row.shared[i] = x[i];
-    row.shared[lag_terms] = motion.accelerations[k];
+    for (std::size_t i = 0; i < shared_terms; ++i) row.shared[i] = x[i];
+    row.shared[shared_terms] = motion.accelerations[k];
     for (std::size_t lag = 0; lag < lag_count; ++lag) {
       const Followed<Scalar> own = bank.at(k, lag);
-      row.owns[lag] = {k == 0 ? x[lag_terms] : bank.at(0, lag).sum, own.rise_1_s, own.sum};
+      if constexpr (shared_terms == thrust_terms) {
+        row.owns[lag] = {own.rise_1_s, own.sum};
+      } else {
+        row.owns[lag] = {bank.at(0, lag).sum, own.rise_1_s, own.sum};
+      }
     }
     return row;
   }
-  static void put_beside(SumRow& row, SumRow& means, Scalar follows, Scalar share) noexcept {
+  template <std::size_t shared_terms>
+  void teach_beside(SumTriangles<Scalar, shared_terms>& triangles, SumRow<shared_terms>& means, std::size_t k,
+                    const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank) noexcept {
+    SumRow<shared_terms> row = row_of<shared_terms>(k, motion, bank);
+    if (!(rows_ > Scalar(0))) means = row;
+    put_beside(row, means, follows_[k], settings_.wind_share);
+    triangles.turn_in(row.shared, row.owns, root_keep_);
+  }
+  template <std::size_t shared_terms>
+  static void put_beside(SumRow<shared_terms>& row, SumRow<shared_terms>& means, Scalar follows,
+                         Scalar share) noexcept {
     const auto beside = [=](Scalar& value, Scalar& mean) noexcept {
       mean += follows * (value - mean);
       value -= share * mean;
@@ -173,14 +193,14 @@ class SumRegression {
       for (std::size_t i = 0; i < row.owns[lag].size(); ++i) beside(row.owns[lag][i], means.owns[lag][i]);
     }
   }
-  void teach_yaw(const SumRow& row) noexcept {
+  void teach_yaw(const SumRow<turn_terms>& row) noexcept {
     const Scalar share = Scalar(1) / Scalar(settings_.rows_of_yaw);
     for (std::size_t i = 0; i < row.shared.size(); ++i) mean_.of.shared[i] += share * row.shared[i];
     for (std::size_t lag = 0; lag < lag_count; ++lag) {
       for (std::size_t j = 0; j < row.owns[lag].size(); ++j) mean_.of.owns[lag][j] += share * row.owns[lag][j];
     }
     if (++mean_.rows < settings_.rows_of_yaw) return;
-    triangles_[3].turn_in(mean_.of.shared, mean_.of.owns, root_keep_yaw_);
+    turns_[2].turn_in(mean_.of.shared, mean_.of.owns, root_keep_yaw_);
     rows_of_yaw_ = root_keep_yaw_ * root_keep_yaw_ * rows_of_yaw_ + Scalar(1);
     mean_ = {};
   }
@@ -199,13 +219,15 @@ class SumRegression {
   Scalar root_keep_{0}, root_keep_yaw_{0}, root_keep_drag_{0};
   std::array<Scalar, 3> follows_{};
   std::uint64_t row_us_ = 0;
-  std::array<SumTriangles<Scalar>, 4> triangles_{};
+  SumTriangles<Scalar, thrust_terms> thrust_{};
+  std::array<SumTriangles<Scalar, turn_terms>, 3> turns_{};
   Scalar rows_{0}, rows_of_yaw_{0}, rows_of_drag_{0};  ///< each as often as it is still remembered
   struct {
-    SumRow of;
+    SumRow<turn_terms> of;
     std::uint32_t rows = 0;
   } mean_{};  ///< of yaw, until it is whole
-  std::array<SumRow, 3> means_{};
+  SumRow<thrust_terms> thrust_mean_{};
+  std::array<SumRow<turn_terms>, 2> means_{};
   Triangle<Scalar, 3> drag_{};
 };
 }  // namespace detail
