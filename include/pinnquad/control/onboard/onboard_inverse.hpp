@@ -37,7 +37,10 @@ class OnboardInverse {
         bank_(settings.period_us, settings.delay_s),
         bias_(start, settings.bias) {
     const ForwardModel<Scalar> model = forward_model(start);
-    for (std::size_t k = 0; k < 4; ++k) flown_[k].forward = before_[k].forward = model[k];
+    for (std::size_t k = 0; k < 4; ++k) {
+      flown_[k].forward = before_[k].forward = model[k];
+      start_terms_[k] = {model[k].theta[2], model[k].slope()};
+    }
   }
 
   /// Gentle sines on what is asked for, from the next tick on; without them only where a sum is unknown, fainter.
@@ -133,12 +136,11 @@ class OnboardInverse {
   /// The start with the slopes that fly, for limits and desaturation: thrust by coefficient, torques by inertia.
   Airframe<Scalar> airframe() const noexcept {
     Airframe<Scalar> flown = start_;
-    const ForwardModel<Scalar> start = forward_model(start_);
-    const Scalar thrust = flown_[0].forward.slope() / start[0].slope();
+    const Scalar thrust = flown_[0].forward.slope() / start_terms_[0].slope;
     flown.thrust_coefficient *= thrust;
     flown.power_coefficient *= thrust;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      flown.inertia_kg_m2[axis] *= thrust * start[axis + 1].slope() / flown_[axis + 1].forward.slope();
+      flown.inertia_kg_m2[axis] *= thrust * start_terms_[axis + 1].slope / flown_[axis + 1].forward.slope();
     }
     return flown;
   }
@@ -273,18 +275,20 @@ class OnboardInverse {
   /// A candidate of each sum.
   void propose() noexcept {
     const detail::LagPlace<Scalar> lag = regression_.best_lag();
-    const ForwardModel<Scalar> start = forward_model(start_);
     judging_ = false;
     for (std::size_t k = 0; k < 4; ++k) {
-      const detail::SumSolution<Scalar> solution = regression_.solution(k, lag, start[k]);
+      ForwardSum<Scalar> start{};
+      start.theta[2] = start_terms_[k].second;
+      start.theta[detail::own_term] = start_terms_[k].slope;
+      const detail::SumSolution<Scalar> solution = regression_.solution(k, lag, start);
       OnboardSum<Scalar>& sum = candidate_[k];
       sum.forward = {solution.theta, lag};
       sum.half_width = detail::half_width(k, solution);
-      sum.terms_bound = detail::terms_bound(k, sum.forward, start[k]);
+      sum.terms_bound = detail::terms_bound(k, sum.forward, start);
       sum.left_square = solution.left_square;
       const detail::SineWitness<Scalar> sines{answer_.share(k), answer_.slope(k, sum.forward, settings_.excitation)};
       sum.refused_last =
-          detail::refusal(k, sum.forward, start[k], solution, regression_.rows(k), candidate_[0].forward.slope(), sines,
+          detail::refusal(k, sum.forward, start, solution, regression_.rows(k), candidate_[0].forward.slope(), sines,
                           start_.propeller_diameter_m, settings_.proof);
     }
     const auto late = [this](std::size_t k) noexcept { return candidate_[k].refused_last == OnboardRule::lag_unknown; };
@@ -361,7 +365,13 @@ class OnboardInverse {
     }
   }
 
+  /// Terms of the start's sums that are not 0: of drag along z or the product of body rates, and the own.
+  struct StartTerms {
+    Scalar second, slope;
+  };
+
   Airframe<Scalar> start_;
+  std::array<StartTerms, 4> start_terms_{};
   OnboardSettings<Scalar> settings_;
   detail::SumRegression<Scalar> regression_;
   OnboardCertificate<Scalar> flown_{}, candidate_{}, before_{};

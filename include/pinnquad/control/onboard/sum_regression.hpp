@@ -11,6 +11,7 @@
 #include "pinnquad/control/onboard/forward_model.hpp"
 #include "pinnquad/control/onboard/lag_bank.hpp"
 #include "pinnquad/control/onboard/triangle.hpp"
+#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/finite.hpp"
 
 namespace pinnquad {
@@ -73,7 +74,7 @@ class SumRegression {
     // rows of one mean follow each other
     if (now_us / period_us_ - row_us_ / period_us_ > 1) mean_ = {};
     row_us_ = now_us;
-    teach_yaw(row_of<turn_terms>(3, motion, bank));
+    teach_yaw(motion, bank);
     teach_drag(motion.velocity_m_s, force_m_s2);
   }
 
@@ -173,9 +174,11 @@ class SumRegression {
     }
     return row;
   }
+  /// Out of line: its row is on the stack once.
   template <std::size_t shared_terms>
-  void teach_beside(SumTriangles<Scalar, shared_terms>& triangles, SumRow<shared_terms>& means, std::size_t k,
-                    const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank) noexcept {
+  PINNQUAD_NOINLINE void teach_beside(SumTriangles<Scalar, shared_terms>& triangles, SumRow<shared_terms>& means,
+                                      std::size_t k, const SumMotion<Scalar>& motion,
+                                      const LagBank<Scalar>& bank) noexcept {
     SumRow<shared_terms> row = row_of<shared_terms>(k, motion, bank);
     if (!(rows_ > Scalar(0))) means = row;
     put_beside(row, means, follows_[k], settings_.wind_share);
@@ -193,7 +196,8 @@ class SumRegression {
       for (std::size_t i = 0; i < row.owns[lag].size(); ++i) beside(row.owns[lag][i], means.owns[lag][i]);
     }
   }
-  void teach_yaw(const SumRow<turn_terms>& row) noexcept {
+  PINNQUAD_NOINLINE void teach_yaw(const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank) noexcept {
+    const SumRow<turn_terms> row = row_of<turn_terms>(3, motion, bank);
     const Scalar share = Scalar(1) / Scalar(settings_.rows_of_yaw);
     for (std::size_t i = 0; i < row.shared.size(); ++i) mean_.of.shared[i] += share * row.shared[i];
     for (std::size_t lag = 0; lag < lag_count; ++lag) {
