@@ -83,7 +83,7 @@ class SumRegression {
   /// Rows of a sum that are remembered.
   Scalar rows(std::size_t k) const noexcept { return k == 3 ? rows_of_yaw_ * Scalar(settings_.rows_of_yaw) : rows_; }
 
-  /// The lag that leaves least of the angular accelerations, between those of the bank by the parabola of the logarithms
+  /// The lag that leaves least of the angular accelerations, between those of the bank by the parabola of logarithms
   /// through the best one and its neighbours: where two of the bank are as good, it lies in their middle either way.
   /// Yaw counts a third.
   LagPlace<Scalar> best_lag() const noexcept {
