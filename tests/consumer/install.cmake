@@ -44,7 +44,7 @@ foreach(file IN LISTS installed)
   endif()
 endforeach()
 file(GLOB_RECURSE installed_with_tests RELATIVE "${TREES}/prefix" "${TREES}/prefix/*")
-set(of_programs share/pinnquad/watch.json) # by npm
+set(of_programs share/pinnquad/watch.json share/pinnquad/charts.json) # by npm
 foreach(program IN ITEMS pinnquad pinnquad-study)
   set(always bin/${program} share/bash-completion/completions/${program})
   list(APPEND of_programs ${always} share/man/man1/${program}.1) # the last by help2man

@@ -4,12 +4,13 @@ taken up again; the vehicle that it is trained for."""
 import json
 import lzma
 import math
+import os
 import re
 import shutil
 from pathlib import Path
 
 import pytest
-from conftest import column, edited, ended, listing, no_partial_files, replaced, report_of, until
+from conftest import Program, column, edited, ended, listing, no_partial_files, replaced, report_of, until
 
 FLIGHTS = [f"flight{seed}" for seed in range(1, 8)]
 TRAIN = "train logs --airframe paper_quadrotor"
@@ -107,6 +108,29 @@ def held_out(report, page, header):
     slopes = [report["certificate"]["slope"][axis] / report["certificate"]["airframe_slope"][axis]
               for axis in ("roll", "pitch", "yaw")]
     assert "PROVEN: each signed sum" in comment and "roll {:.2f}, pitch {:.2f}, yaw {:.2f}.".format(*slopes) in comment
+
+
+def test_page_without_npm(pinnquad, logs):
+    """Tables in place of charts, which say the same; a bundle beside the program is put in."""
+    os.makedirs("alone/bin")
+    shutil.copy(pinnquad, "alone/bin/pinnquad")
+    alone = Program("alone/bin/pinnquad")
+    command = f"{TRAIN} {HELD} --models constant,linear --seeds 1 --out alone/out"
+    alone(command)
+    page = Path("alone/out/report.html").read_text()
+    assert "Tables in place of charts: this program was built without Node.js and npm." in page and "Chart.js" not in page
+    largest = 100 * report_of("alone/out")["closed_loop"]["model"]["largest_error_m"]
+    row = re.search(r"<tr><td>Distance from the path</td><td>cm</td><td>with the model</td>.*<td class=\"n\">(.*)</td></tr>", page)
+    assert 0.95 * largest < float(row.group(1)) <= largest + 1e-3
+    os.makedirs("alone/share/pinnquad")
+    parts = {"style": ".drawn{}", "body": "<p>{{licence}}</p>", "script": "let drawn = 1"}
+    Path("alone/share/pinnquad/charts.json").write_text(json.dumps(parts))
+    alone(command)
+    page = Path("alone/out/report.html").read_text()
+    assert all(part in page for part in parts.values()) and "Tables in place" not in page
+    Path("alone/share/pinnquad/charts.json").write_text('{"style": "cut')
+    alone(command)
+    assert "Tables in place" in Path("alone/out/report.html").read_text()
 
 
 def test_one_flight_cannot_decide(pinnquad, logs):

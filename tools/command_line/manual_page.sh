@@ -96,6 +96,9 @@ beside the program's folder bin: the page that
 and
 .B pinnquad train
 fill.
+.TP
+.I share/pinnquad/charts.json
+beside it: what draws the charts of a training's page; without it they are tables.
 TEXT
   fi
   cat <<TEXT

@@ -2,8 +2,13 @@
 #include "page/chart.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
+
+#include <nlohmann/json.hpp>
 
 #include "page/page.hpp"
 #include "page/text.hpp"
@@ -12,7 +17,7 @@
 namespace programs {
 namespace {
 
-constexpr double wide = 640, narrow = 360, least_panel = 190, letter = 6.9, line_height = 17, row_height = 25;
+constexpr double wide = 640, letter = 6.9, line_height = 17;
 
 /// A coordinate: a tenth of a unit is finer than the eye.
 std::string at(double value) {
@@ -57,12 +62,8 @@ std::string rectangle(double x, double y, double width, double height, const std
 /// From values to coordinates, with ticks at 1, 2 or 5 times a power of ten.
 struct Scale {
   double least = 0, most = 1, from = 0, to = 1;
-  bool logarithmic = false;
 
-  double measure(double value) const { return logarithmic ? std::log10(value) : value; }
-  double operator()(double value) const {
-    return from + (measure(value) - measure(least)) / (measure(most) - measure(least)) * (to - from);
-  }
+  double operator()(double value) const { return from + (value - least) / (most - least) * (to - from); }
   bool holds(double value) const {
     const double slack = 1e-9 * (most - least);
     return value >= least - slack && value <= most + slack;
@@ -76,22 +77,13 @@ struct Scale {
   }
   std::vector<double> ticks(double wanted) const {
     std::vector<double> list;
-    if (!logarithmic) {
-      const double by = step(wanted);
-      for (double k = std::ceil(least / by - 1e-9); k * by <= most + 1e-9 * by; k += 1) list.push_back(k * by + 0.0);
-      return list;
-    }
-    const bool close = std::log10(most / least) * 3 <= wanted;
-    for (double power = std::pow(10.0, std::floor(std::log10(least))); power <= most; power *= 10) {
-      for (const double factor : {1.0, 2.0, 5.0}) {
-        if (holds(factor * power) && (close || factor == 1)) list.push_back(factor * power);
-      }
-    }
+    const double by = step(wanted);
+    for (double k = std::ceil(least / by - 1e-9); k * by <= most + 1e-9 * by; k += 1) list.push_back(k * by + 0.0);
     return list;
   }
   /// As many decimals as the step needs.
   std::string number(double tick, double wanted) const {
-    const double by = logarithmic ? tick : step(wanted);
+    const double by = step(wanted);
     const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(by) - 1e-9)));
     return shown::number(std::abs(tick) < by / 2 ? 0 : tick, decimals);
   }
@@ -104,12 +96,6 @@ double ticks_along(double length, bool across) {
 /// The ends of an axis: its own, or those of the series with a margin.
 Scale scale_of(const Panel& panel, const Axis& axis, bool is_x, bool right) {
   Scale scale;
-  scale.logarithmic = axis.logarithmic;
-  if (!axis.rows.empty()) {
-    scale.least = -0.5;
-    scale.most = static_cast<double>(axis.rows.size()) - 0.5;
-    return scale;
-  }
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (const Series& series : panel.series) {
     if (!is_x && series.right != right) continue;
@@ -120,7 +106,7 @@ Scale scale_of(const Panel& panel, const Axis& axis, bool is_x, bool right) {
       most = std::max(most, value);
     }
   }
-  if (!(least <= most)) least = axis.logarithmic ? 1 : 0, most = axis.logarithmic ? 10 : 1;
+  if (!(least <= most)) least = 0, most = 1;
   if (least == most) {
     const double half = least != 0 ? std::abs(least) / 2 : 1;
     least -= half;
@@ -128,8 +114,8 @@ Scale scale_of(const Panel& panel, const Axis& axis, bool is_x, bool right) {
   }
   const bool over_time = is_x && !panel.series.empty() && panel.series.front().shape == Shape::line;
   const double margin = over_time ? 0 : 0.05 * (most - least);
-  scale.least = std::isfinite(axis.least) ? axis.least : axis.logarithmic ? least / 1.15 : least - margin;
-  scale.most = std::isfinite(axis.most) ? axis.most : axis.logarithmic ? most * 1.15 : most + margin;
+  scale.least = std::isfinite(axis.least) ? axis.least : least - margin;
+  scale.most = std::isfinite(axis.most) ? axis.most : most + margin;
   return scale;
 }
 
@@ -137,7 +123,7 @@ Scale scale_of(const Panel& panel, const Axis& axis, bool is_x, bool right) {
 struct Layout {
   Scale x, y, right;
   double margin_left = 0, margin_right = 12, above = 0, height = 0, below = 0;
-  bool has_right = false, names_above = false;
+  bool has_right = false;
 };
 
 double numbers_width(const Scale& scale, double wanted) {
@@ -152,14 +138,7 @@ Layout layout_of(const Panel& panel, double width) {
   l.y = scale_of(panel, panel.y, false, false);
   for (const Series& series : panel.series) l.has_right = l.has_right || series.right;
   l.height = panel.height;
-  if (!panel.y.rows.empty()) {
-    for (const std::string& name : panel.y.rows) l.margin_left = std::max(l.margin_left, text_width(name) + 10);
-    l.names_above = l.margin_left > 0.4 * width;
-    if (l.names_above) l.margin_left = 8;
-    l.height = static_cast<double>(panel.y.rows.size()) * (row_height + (l.names_above ? 15 : 0));
-  } else if (!panel.y.hidden) {
-    l.margin_left = 10 + numbers_width(l.y, ticks_along(l.height > 0 ? l.height : width, false));
-  }
+  if (!panel.y.hidden) l.margin_left = 10 + numbers_width(l.y, ticks_along(l.height, false));
   if (l.has_right) {
     l.right = scale_of(panel, panel.right, false, true);
     l.margin_right = 10 + numbers_width(l.right, ticks_along(l.height, false));
@@ -176,14 +155,7 @@ Layout layout_of(const Panel& panel, double width) {
 }
 
 /// A mark about a point, after "Mx y".
-const char* mark_of(Shape shape) {
-  switch (shape) {
-    case Shape::pluses: return "m-2.5 0h5m-2.5-2.5v5";
-    case Shape::squares: return "m-4-4h8v8h-8z";
-    case Shape::strokes: return "m0-8v16";
-    default: return "h0";
-  }
-}
+const char* mark_of(Shape shape) { return shape == Shape::squares ? "m-4-4h8v8h-8z" : "h0"; }
 
 std::string attributes_of(const Series& series) {
   std::string more = series.shape == Shape::line ? " stroke-linejoin=\"round\"" : "";
@@ -221,13 +193,7 @@ std::string drawn_axes(const Panel& panel, const Layout& l) {
                  ? ""
                  : text(x.to, bottom + (panel.x.numbered ? 31 : 15), panel.x.name, colour::muted, "end");
   }
-  for (std::size_t row = 0; row < panel.y.rows.size(); ++row) {
-    const double middle = y(static_cast<double>(row));
-    grid += "M" + at(x.from) + " " + at(middle) + "H" + at(x.to);
-    words += l.names_above ? text(x.from, middle - 15, panel.y.rows[row], colour::text, "start")
-                           : text(x.from - 10, middle + 4, panel.y.rows[row], colour::text, "end");
-  }
-  if (!panel.y.hidden && panel.y.rows.empty()) {
+  if (!panel.y.hidden) {
     for (const double tick : y.ticks(up)) {
       grid += "M" + at(x.from) + " " + at(y(tick)) + "H" + at(x.to);
       words += text(x.from - 6, y(tick) + 4, y.number(tick, up), colour::muted, "end");
@@ -264,11 +230,6 @@ std::string drawn_panel(const Panel& panel, Layout l, double left, double top, d
   const double first = top + l.above, last = first + l.height;
   l.y.from = l.right.from = last;
   l.y.to = l.right.to = first;
-  if (!panel.y.rows.empty()) {
-    const double lower = l.names_above ? 8 : 0;  // marks stand under their row's name
-    l.y.from = first + lower;
-    l.y.to = last + lower;
-  }
   for (const Band& band : panel.bands) {
     const double from = l.x(std::max(band.from, l.x.least)), to = l.x(std::min(band.to, l.x.most));
     drawn += rectangle(from, first, to - from, last - first, band.colour, 0.13);
@@ -315,8 +276,7 @@ std::string legend(const Chart& chart, double width, double& y) {
 /// The contents of a picture of this width, from `y` on; `y` goes to its end.
 std::string drawn_chart(const Chart& chart, double width, double& y) {
   std::string drawn = legend(chart, width, y);
-  const std::size_t columns =
-      width >= least_panel * chart.columns ? static_cast<std::size_t>(chart.columns) : std::size_t{1};
+  const auto columns = static_cast<std::size_t>(chart.columns);
   constexpr double gap = 14;
   std::vector<double> left(columns), right(columns), widths(columns);
   double shares = 0;
@@ -336,9 +296,8 @@ std::string drawn_chart(const Chart& chart, double width, double& y) {
       Layout& l = layouts[i + c];
       l.margin_left = left[c];
       l.margin_right = right[c];
-      if (l.height <= 0) l.height = widths[c] - left[c] - right[c];
       drawn += drawn_panel(chart.panels[i + c], l, x, y, widths[c]);
-      tallest = std::max(tallest, l.above + l.height + l.below + (l.names_above ? 4 : 0));
+      tallest = std::max(tallest, l.above + l.height + l.below);
       x += widths[c] + gap;
     }
     y += tallest + 10;
@@ -346,42 +305,105 @@ std::string drawn_chart(const Chart& chart, double width, double& y) {
   return drawn;
 }
 
-std::string named_svg(const Chart& chart, const std::string& attributes, double left, double width, double height,
-                      const std::string& content) {
-  return "<svg " + attributes + " role=\"img\" viewBox=\"" + at(-left) + " 0 " + at(width + 2 * left) + " " +
-         at(height) +
-         "\" font-family=\"Inter,Helvetica Neue,Helvetica,Arial,Liberation Sans,DejaVu Sans,sans-serif\" "
-         "font-size=\"12\">\n<title>" +
-         html_text(chart.title) + "</title>\n<desc>" + html_text(chart.description) + "</desc>\n" + content +
-         "</svg>\n";
+/// Seven digits: finer than the eye, and half the page.
+nlohmann::json rounded(const std::vector<double>& values) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const double value : values) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.7g", value);
+    list.push_back(std::strtod(text, nullptr));  // what is not finite is null in JSON
+  }
+  return list;
+}
+
+nlohmann::json axis_json(const Axis& axis) {
+  return {{"name", axis.name},
+          {"least", axis.least},
+          {"most", axis.most},
+          {"logarithmic", axis.logarithmic},
+          {"rows", axis.rows}};
+}
+
+/// Data for charts/main.js. Nothing in it can end the element that holds it.
+std::string json_of(const Chart& chart) {
+  constexpr std::array<const char*, 5> shapes = {"line", "dots", "pluses", "squares", "strokes"};
+  nlohmann::json panels = nlohmann::json::array();
+  for (const Panel& panel : chart.panels) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const Series& series : panel.series) {
+      all.push_back({{"name", series.name},
+                     {"shape", shapes[static_cast<std::size_t>(series.shape)]},
+                     {"colour", series.colour},
+                     {"x", rounded(series.x)},
+                     {"y", rounded(series.y)},
+                     {"width", series.width},
+                     {"opacity", series.opacity},
+                     {"dashed", series.dashed}});
+    }
+    panels.push_back({{"title", panel.title},
+                      {"note", panel.note},
+                      {"x", axis_json(panel.x)},
+                      {"y", axis_json(panel.y)},
+                      {"height", panel.height},
+                      {"series", all}});
+  }
+  const nlohmann::json json = {{"description", chart.description}, {"columns", chart.columns}, {"panels", panels}};
+  std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  for (std::size_t place; (place = text.find('<')) != std::string::npos;) text.replace(place, 1, "\\u003c");
+  return text;
+}
+
+/// Least, mean and largest of each series.
+std::string table_of(const Chart& chart) {
+  std::string rows;
+  for (const Panel& panel : chart.panels) {
+    const bool named = !panel.y.rows.empty();
+    const std::string& quantity = named ? panel.x.name : panel.y.name;
+    for (const Series& series : panel.series) {
+      double least = HUGE_VAL, most = -HUGE_VAL, sum = 0, count = 0;
+      for (const double value : named ? series.x : series.y) {
+        if (!std::isfinite(value)) continue;
+        least = std::min(least, value);
+        most = std::max(most, value);
+        sum += value;
+        ++count;
+      }
+      if (series.name.empty() || count == 0) continue;
+      rows += "<tr><td>" + html_text(panel.title) + "</td><td>" + html_text(quantity) + "</td><td>" +
+              html_text(series.name) + "</td>";
+      for (const double value : {least, sum / count, most})
+        rows += "<td class=\"n\">" + shown::number(value, 3) + "</td>";
+      rows += "</tr>\n";
+    }
+  }
+  return "<div class=\"wide\"><table class=\"plain\"><thead><tr><th></th><th></th><th></th><th class=\"n\">least</th>"
+         "<th class=\"n\">mean</th><th class=\"n\">largest</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table></div>";
 }
 
 }  // namespace
 
-std::string inline_svg(const Chart& chart) {
+std::string inline_chart(const Chart& chart) {
   if (chart.panels.empty()) return "";
-  std::string both;
-  for (const double width : {wide, narrow}) {
-    double height = 0;
-    const std::string drawn = drawn_chart(chart, width, height);
-    both +=
-        named_svg(chart, width == wide ? "class=\"wide-chart\"" : "class=\"narrow-chart\"", 2, width, height, drawn);
-  }
-  return both;
+  return "<div class=\"chart\"><script type=\"application/json\">" + json_of(chart) + "</script>" + table_of(chart) +
+         "</div>";
 }
 
 void write_svg(const std::string& path, const Chart& chart) {
-  constexpr double edge = 14;
+  constexpr double edge = 14, width = wide + 2 * edge;
   double y = 34;
   const std::string drawn = drawn_chart(chart, wide, y);
-  const std::string size = "width=\"" + at(wide + 2 * edge) + "\" height=\"" + at(y) + "\"";
-  const std::string ground =
-      "<rect" + ink(colour::ground) + " fill=\"currentColor\" x=\"" + at(-edge) + "\" " + size + "/>\n";
+  const std::string size = "width=\"" + at(width) + "\" height=\"" + at(y) + "\"";
   pinnquad::AtomicFile file(path);
-  file.stream() << named_svg(
-      chart, "xmlns=\"http://www.w3.org/2000/svg\" " + size, edge, wide, y,
-      "<style>\n" + std::string(page_file("palette.css")) + "</style>\n" + ground +
-          text(0, 22, chart.title, colour::text, "start", " font-size=\"14\" font-weight=\"600\"") + drawn);
+  file.stream() << "<svg xmlns=\"http://www.w3.org/2000/svg\" " << size << " role=\"img\" viewBox=\"" << at(-edge)
+                << " 0 " << at(width) << " " << at(y)
+                << "\" font-family=\"Inter,Helvetica Neue,Helvetica,Arial,Liberation Sans,DejaVu Sans,sans-serif\" "
+                   "font-size=\"12\">\n<title>"
+                << html_text(chart.title) << "</title>\n<desc>" << html_text(chart.description) << "</desc>\n<style>\n"
+                << page_file("palette.css") << "</style>\n<rect" << ink(colour::ground) << " fill=\"currentColor\" x=\""
+                << at(-edge) << "\" " << size << "/>\n"
+                << text(0, 22, chart.title, colour::text, "start", " font-size=\"14\" font-weight=\"600\"") << drawn
+                << "</svg>\n";
   file.commit();
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Charts as values, and as SVG: panels with axes and series. The bytes depend on the values alone.
+// Charts as values: panels with axes and series. A page draws them with Chart.js (charts/main.js); a file is an SVG.
+// The bytes depend on the values alone.
 #pragma once
 
 #include <limits>
@@ -15,7 +16,7 @@ inline constexpr const char *text = "text", *muted = "muted", *grid = "line", *g
                             *red = "series-5", *violet = "series-6";
 }  // namespace colour
 
-/// A series is a line through its points, or a mark on each.
+/// A series is a line through its points, or a mark on each; pluses and strokes in pages alone.
 enum class Shape { line, dots, pluses, squares, strokes };
 
 /// Points over each other. In a panel whose y axis names rows, the y of a point is its row's number.
@@ -35,10 +36,10 @@ struct Axis {
   std::string name{};  ///< quantity and unit: "speed, m/s"
   double least = std::numeric_limits<double>::quiet_NaN();
   double most = std::numeric_limits<double>::quiet_NaN();
-  bool logarithmic = false;
-  bool hidden = false;
+  bool logarithmic = false;         ///< in pages alone
+  std::vector<std::string> rows{};  ///< names instead of numbers, from the top; in pages alone
+  bool hidden = false;              ///< in SVG files alone, as bands, labels, right axes and shares
   bool numbered = true;
-  std::vector<std::string> rows{};  ///< names instead of numbers, from the top
 };
 
 /// A shaded range of x, named along the upper edge.
@@ -58,7 +59,7 @@ struct Panel {
   std::string title{}, note{};
   Axis x{}, y{}, right{};
   std::vector<Series> series{};
-  double height = 130;  ///< of its plot; 0: as wide. Rows have a height of their own
+  double height = 130;  ///< of its plot; 0: as wide, in pages alone. Rows have a height of their own
   double share = 1;     ///< of the width of its line of panels
   std::vector<Band> bands{};
   std::vector<Label> labels{};
@@ -71,8 +72,9 @@ struct Chart {
   int columns = 1;
 };
 
-/// For a page, twice: for wide and for narrow windows, of which the style shows one. Nothing without panels.
-std::string inline_svg(const Chart& chart);
+/// A part of a page: a table of least, mean and largest, in whose place charts/main.js draws the chart. Nothing without
+/// panels.
+std::string inline_chart(const Chart& chart);
 
 /// A file of its own, with title, ground and style; whole or not at all. Throws OutputError.
 void write_svg(const std::string& path, const Chart& chart);

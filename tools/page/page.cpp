@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "page/page.hpp"
 
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
 #include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
@@ -42,8 +46,30 @@ std::string whole_page(const std::string& title, const std::string& style, const
                 {{"title", title}, {"style", page_file("palette.css") + style}, {"body", body}});
 }
 
-std::string text_page(const std::string& body, const nlohmann::json& content) {
-  return whole_page(content.at("title"), page_file("text.css"), filled(page_file(body), content));
+std::string bundle_path(const std::string& name) {
+  std::error_code ignored;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  return (program.parent_path().parent_path() / "share/pinnquad" / (name + ".json")).string();
+}
+
+nlohmann::json read_bundle(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const nlohmann::json bundle = file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
+  for (const char* part : {"style", "body", "script"}) {
+    if (!bundle.is_object() || !bundle.contains(part) || !bundle[part].is_string()) return nullptr;
+  }
+  return bundle;
+}
+
+std::string text_page(const std::string& body, nlohmann::json content) {
+  const nlohmann::json charts = read_bundle(bundle_path("charts"));
+  content["charts"] = !charts.is_null();
+  std::string style = page_file("text.css"), text = filled(page_file(body), content);
+  if (!charts.is_null()) {
+    style += charts["style"].get<std::string>();
+    text += charts["body"].get<std::string>() + "<script>" + charts["script"].get<std::string>() + "</script>";
+  }
+  return whole_page(content.at("title"), style, text);
 }
 
 }  // namespace programs

@@ -6,14 +6,12 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 #include <type_traits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
-#include "page/page.hpp"
 #include "page/text.hpp"
 #include "pinnquad/core/finite.hpp"
 #include "pinnquad/io/atomic_file.hpp"
@@ -61,12 +59,6 @@ std::string digits(double value) {
 
 }  // namespace
 
-std::string WatchPage::built_bundle() {
-  std::error_code ignored;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  return (program.parent_path().parent_path() / "share/pinnquad/watch.json").string();
-}
-
 bool WatchPage::available(const std::string& bundle) {
   std::error_code ignored;
   return std::filesystem::is_regular_file(bundle, ignored);
@@ -99,11 +91,8 @@ void WatchPage::add(const pinnquad::VehicleState<double>& vehicle, const pinnqua
 
 void WatchPage::write(const std::string& path) const {
   check_rows(path);
-  std::ifstream file(bundle_, std::ios::binary);
-  const nlohmann::json bundle = file ? nlohmann::json::parse(file, nullptr, false) : nlohmann::json();
-  for (const char* part : {"style", "body", "script"}) {
-    if (!bundle.is_object() || !bundle.contains(part)) throw pinnquad::OutputError(path, unavailable);
-  }
+  const nlohmann::json bundle = read_bundle(bundle_);
+  if (bundle.is_null()) throw pinnquad::OutputError(path, unavailable);
   const auto part = [&bundle](const char* name) { return bundle[name].get<std::string>(); };
   pinnquad::AtomicFile page(path);
   page.stream() << whole_page(title_, part("style"),

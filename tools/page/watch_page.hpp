@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "page/page.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 #include "pinnquad/vehicle/quadrotor.hpp"
 
@@ -23,16 +24,14 @@ namespace programs {
 /// flights up to 32 m/s), quaternion (16 bit, 0.003 deg), commands (16 bit). A screen needs no more.
 class WatchPage {
  public:
-  /// The bundle: share/pinnquad/watch.json beside the folder of the program, in a build tree and in an installed one.
-  static std::string built_bundle();
-  static bool available(const std::string& bundle = built_bundle());
+  static bool available(const std::string& bundle = bundle_path("watch"));
 
   /// Throws OutputError, one line that says what is missing, when write(path) could not work for lack of the bundle.
-  static void require_available(const std::string& path, const std::string& bundle = built_bundle());
+  static void require_available(const std::string& path, const std::string& bundle = bundle_path("watch"));
 
   /// `title` is any text, e.g. airframe and seed. Ground level as in Site::ground_z_m, NED.
   WatchPage(std::string title, const pinnquad::Airframe<double>& airframe, double ground_z_m,
-            std::string bundle = built_bundle());
+            std::string bundle = bundle_path("watch"));
 
   /// One row. Commands are those in force up to this instant; shown clipped, as the rotors clip them.
   void add(const pinnquad::VehicleState<double>& vehicle, const pinnquad::Commands<double>& commands);

@@ -118,7 +118,7 @@ inline Panel errors_over_panel(const JudgedKinds& judged, const std::vector<std:
   panel.height = 190;
   for (std::size_t kind = 0; kind < over.error.size(); ++kind) {
     Series root{judged.kinds[shown[kind]].kind.title, Shape::line, colour_of_shown[kind]}, mean = root;
-    mean.name.clear();
+    mean.name += ", mean";
     mean.dashed = true;
     for (std::size_t part = 0; part < parts; ++part) {
       const std::size_t begin = part * order.size() / parts, end = (part + 1) * order.size() / parts;
@@ -180,7 +180,6 @@ inline Chart moment_chart(const WorstMoment& moment, const pinnquad::FlightRows&
                                 : (*predictions[i - 1])[moment.held_out + row - moment.row][moment.motor]);
     }
   }
-  panel.bands = {{"", colour::muted, at_s - 0.02, at_s + 0.02}};
   return {"Command of motor u" + std::to_string(moment.motor + 1) + " about the moment",
           "As flown, and as predicted by " +
               listed(shown, [&judged](std::size_t k) { return judged.kinds[k].kind.title; }) + ".",
@@ -197,8 +196,7 @@ inline Chart stretch_chart(const HeldOutStretch& stretch, const std::string& mod
     Panel panel;
     panel.title = sum_names[sum];
     panel.height = 95;
-    panel.x.numbered = sum + 1 == signs.size();
-    if (panel.x.numbered) panel.x.name = "time, s";
+    panel.x.name = "time, s";
     Series flown{"flown", Shape::line, colour::muted, {}, {}, 3, 0.55},
         predicted{model, Shape::line, colour_of_shown[0]};
     for (std::size_t i = 0; i < stretch.size; ++i) {
@@ -254,22 +252,19 @@ inline Chart response_chart(const HeldOutDynamics& dynamics) {
   const double bound_db = bound_for(most_db, {6, 12, 24}), bound_deg = bound_for(most_deg, {45, 90, 180});
   std::array<Panel, 3> panels;
   for (Panel& panel : panels) {
-    panel.x = {"", from, to, true};
-    panel.x.numbered = false;
+    panel.x = {"frequency, Hz", from, to, true};
     panel.height = 150;
   }
   panels[0].y = {"gain, dB", -bound_db, bound_db};
   panels[1].y = {"phase, °", -bound_deg, bound_deg};
   panels[2].y = {"coherence", 0, 1};
-  panels[2].x.numbered = true;
-  panels[2].x.name = "frequency, Hz";
   panels[0].series = {detail::level_line(from, to, 0)};
   panels[1].series = {detail::level_line(from, to, 0)};
   panels[2].series = {detail::level_line(from, to, FollowedRange::least_coherence)};
   for (std::size_t sum = 0; sum < sum_names.size(); ++sum) {
     for (std::size_t figure = 0; figure < panels.size(); ++figure) {
       double before = pinnquad::not_a_number;
-      Series clear{figure == 0 ? sum_names[sum] : "", Shape::line, colours[sum]}, weak{"", Shape::line, colours[sum]};
+      Series clear{sum_names[sum], Shape::line, colours[sum]}, weak = clear;
       weak.opacity = faint;
       for (const SpectralBand& band : dynamics.sums[sum]) {
         const double coherence = band.coherence();

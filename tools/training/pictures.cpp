@@ -36,7 +36,7 @@ Chart ellipses_chart(const std::vector<EllipsesOf>& models) {
       }
       panel.series = {target, predicted};
       const auto ellipse = [&](const std::string& name, const char* colour, const pinnquad::ConfidenceEllipse& e) {
-        Series outline{name, Shape::line, colour}, major{"", Shape::line, colour};
+        Series outline{name, Shape::line, colour}, major = outline;
         major.dashed = true;
         const auto add = [](Series& series, const auto& point) {
           series.x.push_back(point[0]);
@@ -45,7 +45,7 @@ Chart ellipses_chart(const std::vector<EllipsesOf>& models) {
         for (const auto& p : pinnquad::ellipse_outline(e, 91)) add(outline, p);
         const auto tips = pinnquad::ellipse_outline(e, 3);
         for (const std::size_t tip : {std::size_t{0}, std::size_t{1}}) add(major, tips[tip]);
-        panel.series.insert(panel.series.end(), {outline, major});
+        panel.series.insert(panel.series.end(), {major, outline});
       };
       ellipse("target, 3 σ", colour::blue, c.target_standardized);
       ellipse("prediction, 3 σ", colour::orange, c.predicted_standardized);

@@ -255,7 +255,7 @@ inline nlohmann::json moments_json(const TrainingPage& in, const std::vector<std
       for (const std::size_t k : shown) predictions.push_back(shown_predictions(in, k)[moment.fold]);
       for (const pinnquad::FlightRows& piece : in.plan.folds[moment.fold].split.test.pieces()) {
         if (piece.flight == moment.flight) {
-          one["drawing"] = inline_svg(moment_chart(moment, piece, in.judged, shown, predictions));
+          one["drawing"] = inline_chart(moment_chart(moment, piece, in.judged, shown, predictions));
         }
       }
     }
@@ -345,8 +345,8 @@ inline nlohmann::json dynamics_told(const TrainingPage& in) {
     const auto predictions = predictions_of_seed(in.plan, in.fits, dynamics.kind, dynamics.seed);
     told["stretch"] = {{"flight", typical.flight->name},
                        {"from", shown::number((*typical.flight)[typical.row].time_s, 1)},
-                       {"drawing", inline_svg(stretch_chart(typical, model, *predictions[typical.fold],
-                                                            signs_of_sums(in.plan.airframe)))}};
+                       {"drawing", inline_chart(stretch_chart(typical, model, *predictions[typical.fold],
+                                                              signs_of_sums(in.plan.airframe)))}};
   }
   if (!dynamics.has_spectra()) return told;
   nlohmann::json sums = nlohmann::json::array(), motors = nlohmann::json::array();
@@ -371,8 +371,8 @@ inline nlohmann::json dynamics_told(const TrainingPage& in) {
                       {"noise", shown::number(1e3 * std::sqrt(ceiling.density[motor] * 0.5 / dynamics.period_s), 1)},
                       {"model", in.judged.kinds[ceiling.kind[motor]].kind.title}});
   }
-  told["spectra"] = {{"response", inline_svg(response_chart(dynamics))},
-                     {"residual", inline_svg(residual_chart(dynamics, model))},
+  told["spectra"] = {{"response", inline_chart(response_chart(dynamics))},
+                     {"residual", inline_chart(residual_chart(dynamics, model))},
                      {"sums", sums},
                      {"motors", motors},
                      {"ceiling", shown::number(mean_over_motors(ceiling.r2), 3)},
@@ -440,7 +440,7 @@ inline nlohmann::json flown_path(const TrainingPage& in) {
   const nlohmann::json& flown = in.report["closed_loop"];
   if (in.traces == nullptr || in.traces->model.time_s.empty() || !flown.contains("model")) return false;
   const auto centimetres = [&](const char* who) { return shown::number(100 * flown[who]["rmse_m"].get<double>(), 1); };
-  return {{"drawing", inline_svg(path_chart(*in.traces))},
+  return {{"drawing", inline_chart(path_chart(*in.traces))},
           {"with", centimetres("model")},
           {"without", centimetres("without_jerk")},
           {"answered", shown::number(100 * flown["model"]["answered_share"].get<double>(), 1)}};
@@ -553,9 +553,9 @@ inline std::string training_page(const TrainingPage& in) {
     }
     page["shown"] = {
         {"name", in.judged.kinds[shown.front()].kind.title},
-        {"flights", inline_svg(flights_chart(in.judged, shown))},
-        {"over", detail::or_false(inline_svg(errors_over_chart(in.judged, shown, detail::errors_over(in, shown))))},
-        {"ellipses", inline_svg(ellipses_chart(ellipses))}};
+        {"flights", inline_chart(flights_chart(in.judged, shown))},
+        {"over", detail::or_false(inline_chart(errors_over_chart(in.judged, shown, detail::errors_over(in, shown))))},
+        {"ellipses", inline_chart(ellipses_chart(ellipses))}};
     page["moments"] = detail::moments_json(in, shown);
   }
   return text_page("training_page.html", page);

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: MIT
-# Looks at charts from outside: named, whole, inside their ground, legible in light and dark, true to their values.
+# Looks at charts from outside: files named, whole, inside their ground, legible in light and dark, true to their values; the chart
+# of a page as the script that draws it reads it, and as the table that is there without.
 # Luminance and contrast as WCAG 2.2 defines them.
 #   check.py <folder of the pictures> <source folder>
+import html
+import json
+import math
 import pathlib
 import re
 import sys
@@ -74,10 +78,7 @@ def words(root):
 
 
 pictures = {path.stem: look(path) for path in sorted(folder.glob("*.svg"))}
-require(len(pictures) == 3, f"pictures: {list(pictures)}")
-for name in pictures:
-    page = (folder / f"{name}.html").read_text(encoding="utf-8")
-    require(page.count("<svg ") == page.count("<title>") - 1 == 2, f"{name}.html has not a chart for wide and one for narrow windows")
+require(list(pictures) == ["slow_trajectory", "trajectory"], f"pictures: {list(pictures)}")
 
 # half a metre per second each, as lines and as the scale that explains them
 for name, steps in (("trajectory", 16), ("slow_trajectory", 6)):
@@ -90,6 +91,29 @@ anchors = re.compile(r"[\[{](\d+), (\d+), (\d+)[\]}]")
 stops = [anchors.findall((project / f"tools/page/{f}").read_text()) for f in ("viridis.hpp", "watch/src/ramp.js")]
 require(stops[0] == stops[1] and len(stops[0]) == 10, "charts and the page to watch a flight colour speed differently")
 
-for word in ("target", "prediction", "target, 3 σ", "prediction, 3 σ", "a & b, roll", "dp/dt, std. dev."):
-    require(word in words(pictures["ellipses"]), f"ellipses.svg does not name: {word}")
-require("a & b" in pictures["ellipses"].find(svg + "desc").text, "the description of ellipses.svg lost a model's name")
+page = (folder / "ellipses.html").read_text(encoding="utf-8")
+data, table = re.fullmatch('<div class="chart"><script type="application/json">([^<]*)</script>(.*)</div>', page, re.S).groups()
+chart = json.loads(data)
+require("a & b </script> pitch" in chart["description"], f"the description lost a model's name: {chart['description']}")
+require(chart["columns"] == len(chart["panels"]) == 3, "not a panel an axis, beside each other")
+roll = chart["panels"][0]
+require(roll["title"] == "a & b </script>, roll" and roll["x"]["name"] == "dp/dt, std. dev." and roll["height"] == 0, f"{roll}"[:300])
+require(roll["x"]["most"] == -roll["x"]["least"] == 4.9 and not roll["x"]["rows"] and roll["y"]["logarithmic"] is False, f"{roll['x']}")
+shapes = {series["name"]: series["shape"] for series in roll["series"]}
+require(shapes == {"target": "dots", "prediction": "pluses", "target, 3 σ": "line", "prediction, 3 σ": "line"}, f"{shapes}")
+# the driver's own cloud, in standard deviations
+cloud = [(0.05 * (i % 60), 0.61 * i) for i in range(400)]
+for name, key, values in (("target", "x", [40 * r * math.cos(a) for r, a in cloud]),
+                          ("target", "y", [0.1 * r * math.cos(a + 0.2) for r, a in cloud])):
+    deviation = math.sqrt(sum((v - sum(values) / 400) ** 2 for v in values) / 400)
+    drawn = next(series for series in roll["series"] if series["name"] == name)[key]
+    require(len(drawn) == 400, f"{name}: {len(drawn)} points")
+    require(all(abs(d - v / deviation) < 5e-3 for d, v in zip(drawn, values)), f"{name} {key} is not the driver's")
+rows = re.findall("<tr><td>(.*?)</td><td>(.*?)</td><td>(.*?)</td>" + 3 * '<td class="n">(.*?)</td>' + "</tr>", table)
+wanted = [(panel, series) for panel in chart["panels"] for series in panel["series"]]
+require(len(rows) == len(wanted), f"{len(rows)} rows for {len(wanted)} series")
+for (title, quantity, name, *figures), (panel, series) in zip(rows, wanted):
+    require([html.unescape(t) for t in (title, quantity, name)] == [panel["title"], panel["y"]["name"], series["name"]], f"{title} {name}")
+    least, mean, most = (float(figure.replace("\u2212", "-")) for figure in figures)
+    y = series["y"]
+    require(all(abs(a - b) < 6e-4 for a, b in zip((least, mean, most), (min(y), sum(y) / len(y), max(y)))), f"{name}: {figures}")

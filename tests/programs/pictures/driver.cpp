@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "flight/pictures.hpp"
-#include "page/page.hpp"
 #include "training/pictures.hpp"
 
 namespace {
@@ -44,14 +43,10 @@ programs::AxisSeries ellipse_cloud() {
 
 void draw(const std::string& folder) {
   const programs::AxisSeries series = ellipse_cloud();
-  const auto write = [&](const char* name, const programs::Chart& chart) {
-    programs::write_svg(folder + "/" + name + ".svg", chart);
-    std::ofstream(folder + "/" + name + ".html") << programs::whole_page(
-        "charts", programs::page_file("text.css"), "<figure>" + programs::inline_svg(chart) + "</figure>");
-  };
-  write("trajectory", programs::trajectory_chart(spiral(8)));
-  write("slow_trajectory", programs::trajectory_chart(spiral(3)));
-  write("ellipses", programs::ellipses_chart({{"a & b", {series, series, series}}}));
+  programs::write_svg(folder + "/trajectory.svg", programs::trajectory_chart(spiral(8)));
+  programs::write_svg(folder + "/slow_trajectory.svg", programs::trajectory_chart(spiral(3)));
+  std::ofstream(folder + "/ellipses.html")
+      << programs::inline_chart(programs::ellipses_chart({{"a & b </script>", {series, series, series}}}));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // stays in the working folder, to be looked at.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -71,6 +72,26 @@ std::size_t count_of(const std::string& text, const std::string& what) {
   return count;
 }
 
+/// The charts of a page, as the script that draws them reads them.
+std::vector<nlohmann::json> charts_of(const std::string& page) {
+  const std::string begin = "<div class=\"chart\"><script type=\"application/json\">", end = "</script>";
+  std::vector<nlohmann::json> charts;
+  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at + 1)) {
+    const std::size_t from = at + begin.size();
+    charts.push_back(nlohmann::json::parse(page.substr(from, page.find(end, from) - from)));
+    CHECK(page.substr(page.find(end, from) + end.size(), 25) == "<div class=\"wide\"><table ");
+  }
+  return charts;
+}
+
+const nlohmann::json& series_of(const nlohmann::json& chart, std::size_t panel, const std::string& name) {
+  for (const nlohmann::json& series : chart["panels"][panel]["series"]) {
+    if (series["name"] == name) return series;
+  }
+  FAIL("no series " << name);
+  return chart;
+}
+
 }  // namespace
 
 TEST_CASE("the page: figures, verdicts, drawings, worst moments with their links") {
@@ -95,9 +116,35 @@ TEST_CASE("the page: figures, verdicts, drawings, worst moments with their links
   CHECK(page.find("· speed ") != std::string::npos);
   CHECK(page.find("nan") == std::string::npos);
   CHECK(page.find("{{") == std::string::npos);
-  CHECK(count_of(page, "<svg") == count_of(page, "</svg>"));
-  // over time, gain and phase, residuals; flights, errors over, ellipses; four moments: for wide, for narrow
-  CHECK(count_of(page, "<svg") == 2 * (3 + 3 + 4));
+  // over time, gain and phase, residuals; flights, errors over, ellipses; four moments
+  const std::vector<nlohmann::json> charts = charts_of(page);
+  REQUIRE(charts.size() == 3 + 3 + 4);
+  CHECK(charts[3]["panels"][0]["y"]["rows"] == nlohmann::json(run.judged.flights));
+  const std::vector<double> errors = programs::error_of_flights(run.judged.kinds[2]);
+  const nlohmann::json& marks = series_of(charts[3], 0, run.judged.kinds[2].kind.title);
+  REQUIRE(marks["x"].size() == errors.size());
+  for (std::size_t flight = 0; flight < errors.size(); ++flight) {
+    CHECK(marks["x"][flight].get<double>() == doctest::Approx(1e3 * errors[flight]).epsilon(1e-6));
+    CHECK(marks["y"][flight] == flight);
+  }
+  for (std::size_t moment = 6; moment < charts.size(); ++moment) {
+    const nlohmann::json& flown = series_of(charts[moment], 0, "flown");
+    const auto motor =
+        static_cast<std::size_t>(charts[moment]["panels"][0]["y"]["name"].get<std::string>().back() - '1');
+    std::size_t of_flights = 0;
+    for (const pinnquad::Flight& flight : run.dataset.flights()) {
+      std::size_t same = 0;
+      for (std::size_t i = 0; i < flown["x"].size(); ++i) {
+        const auto row = static_cast<std::size_t>(std::lround(flown["x"][i].get<double>() / 0.05));
+        for (const std::size_t near : {row - 1, row, row + 1}) {
+          if (near >= flight.size() || std::abs(flight[near].time_s - flown["x"][i].get<double>()) > 1e-4) continue;
+          if (std::abs(flight[near].commands[motor] - flown["y"][i].get<double>()) < 1e-6) ++same;
+        }
+      }
+      of_flights += same == flown["x"].size() ? 1 : 0;
+    }
+    CHECK_MESSAGE(of_flights == 1, "moment " << moment - 5 << " is not drawn as one flight flew it");
+  }
   CHECK(page.find("<h2>Gain and phase, predicted to flown</h2>") != std::string::npos);
   CHECK(page.find(" with this noise") != std::string::npos);
   CHECK(page.find("outside the envelope of the training rows") != std::string::npos);
@@ -141,8 +188,9 @@ TEST_CASE("the page begins with the verdict, the path flown with and without the
   programs::FlightVerdict found("all is well");
   found.care("R^2 0.7 is <low>", "record more");
   programs::FlownTraces traces;
-  traces.model = {{0, 1}, {0, 1}, {0, 1}, {0, 1}, {0, 1}, {0, 0.1}};
+  traces.model = {{0, 2}, {0.125, 1.125}, {0.25, 1.25}, {0.5, 1.5}, {0.75, 1.75}, {0, 0.125}};
   traces.without = traces.model;
+  traces.without.error_m = {0, 0.25};
   programs::TrainingPage input{run.plan,
                                imported,
                                run.fits,
@@ -165,6 +213,14 @@ TEST_CASE("the page begins with the verdict, the path flown with and without the
   CHECK(page.find("45.6 cm without it") != std::string::npos);
   CHECK(page.find("<b>75.0&#160;%</b><span>of the path") != std::string::npos);
   CHECK(page.find("Path from above") < page.find("<details"));
+  const nlohmann::json path = charts_of(page).front();
+  CHECK(series_of(path, 0, "planned")["x"] == nlohmann::json({0.25, 1.25}));
+  CHECK(series_of(path, 0, "planned")["y"] == nlohmann::json({0.125, 1.125}));
+  CHECK(series_of(path, 0, "with the model")["x"] == nlohmann::json({0.75, 1.75}));
+  CHECK(series_of(path, 0, "with the model")["y"] == nlohmann::json({0.5, 1.5}));
+  CHECK(series_of(path, 1, "with the model")["x"] == nlohmann::json({0.0, 2.0}));
+  CHECK(series_of(path, 1, "with the model")["y"] == nlohmann::json({0.0, 12.5}));
+  CHECK(series_of(path, 1, "without the model")["y"] == nlohmann::json({0.0, 25.0}));
   CHECK(page.find("first line&#10;second line&#10;") < page.find("<details"));
   CHECK(page.find("{{") == std::string::npos);
 }

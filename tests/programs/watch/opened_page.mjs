@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The page that the browser test has open: its flight's own rows, what one can do to it, what it says, and the checks.
-import { readFileSync, writeFileSync } from 'node:fs';
+// The page that a browser test has open: what one can do to it, what it says, and the checks.
+//   node <test> <chromium> <page.html> <folder for screenshots> ...
+import { writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 import { Chromium, readPng } from './chromium.mjs';
 
-const [program, page, csv, givenTitle, folder] = process.argv.slice(2);
-export const rows = readFileSync(csv, 'utf8')
-  .trim()
-  .split('\n')
-  .slice(1)
-  .map((line) => {
-    const [t, north, east, down, vNorth, vEast, vDown, w, x, y, z, ...commands] = line.split(',').map(Number);
-    return { t, north, east, down, velocity: [vNorth, vEast, vDown], q: [w, x, y, z], commands };
-  });
-
-export const title = givenTitle;
-export const count = { checks: 0, failures: 0 };
+const [program, page, folder, ...rest] = process.argv.slice(2);
+export const given = rest;
+const count = { checks: 0, failures: 0 };
 export function check(what, good, detail = '') {
   ++count.checks;
   if (good) return;
@@ -27,8 +19,8 @@ export function check(what, good, detail = '') {
 export const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
 export const sleep = (seconds) => new Promise((wake) => setTimeout(wake, 1000 * seconds));
 
-export const complaints = [];
-export const requests = [];
+const complaints = [];
+const requests = [];
 export const url = pathToFileURL(resolve(page)).href;
 export const chromium = new Chromium(program);
 chromium.on((method, p) => {
@@ -40,6 +32,53 @@ chromium.on((method, p) => {
   if (method === 'Network.requestWillBeSent') requests.push(p.request.url);
   if (method === 'Network.webSocketCreated') requests.push(p.url);
 });
+
+/** Without a network; done once the expression holds. */
+export async function open(started) {
+  await chromium.attach();
+  for (const domain of ['Page', 'Runtime', 'Log', 'Network']) await chromium.send(`${domain}.enable`);
+  await chromium.send('Network.emulateNetworkConditions', {
+    offline: true,
+    latency: 0,
+    downloadThroughput: 0,
+    uploadThroughput: 0,
+  });
+  await resize(1280, 800, { deviceScaleFactor: 1 });
+  await chromium.send('Page.navigate', { url });
+  let opened = false;
+  for (let i = 0; i < 100 && !opened && complaints.length === 0; ++i) {
+    await sleep(0.1);
+    opened = await evaluate(started);
+  }
+  if (!opened) throw new Error(`the page did not start; it said: ${complaints.join('; ') || 'nothing'}`);
+  await drawn();
+}
+
+/** Nothing came from elsewhere, nothing was complained of. */
+export async function isWhole() {
+  check('no resource was asked for', (await evaluate('performance.getEntriesByType("resource").length')) === 0);
+  const foreign = requests.filter((request) => request !== url && !request.startsWith('data:'));
+  check('no network request', foreign.length === 0, foreign.join(' '));
+  check('the page itself was seen by the network log', requests.includes(url));
+  check('no error in the console', complaints.length === 0, complaints.join('; '));
+}
+
+/** The steps of a test, one after the other; the exit status says whether all held. */
+export async function run(...steps) {
+  const begin = Date.now();
+  try {
+    for (const step of steps) await step();
+  } catch (error) {
+    check('the test ran to its end', false, error.stack);
+    if (complaints.length > 0) console.error(`the page said: ${complaints.join('; ')}`);
+  } finally {
+    await chromium.close();
+  }
+  console.log(
+    `browser: ${count.checks - count.failures} of ${count.checks} checks passed in ${((Date.now() - begin) / 1000).toFixed(1)} s`,
+  );
+  process.exitCode = count.failures === 0 ? 0 : 1;
+}
 
 export const evaluate = (expression) => chromium.evaluate(expression);
 export const figure = async (id) =>

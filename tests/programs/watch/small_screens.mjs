@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The page on small screens, under fingers, and in light and dark.
+import { rows } from './flight.mjs';
 import {
   cameraPlace,
   check,
@@ -12,7 +13,6 @@ import {
   luminance,
   near,
   resize,
-  rows,
   screenshot,
   sleep,
 } from './opened_page.mjs';

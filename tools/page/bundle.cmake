@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
 #
-# Installs the locked packages into the folder PACKAGES and runs bundle.mjs. Run by the targets watch_page and watch_bundle with
-# NODE, NPM, SOURCE, PACKAGES, PAGE and REQUIRED (ON or AUTO). What fails under AUTO is a notice, and there is no page.
-get_filename_component(folder "${PAGE}" DIRECTORY)
-file(MAKE_DIRECTORY "${folder}")
+# Installs the locked packages into the folder PACKAGES and runs bundle.mjs, which writes to FOLDER. Run by the targets watch_page
+# and watch_bundle with NODE, NPM, SOURCE, PACKAGES, FOLDER and REQUIRED (ON or AUTO). What fails under AUTO is a notice.
+file(MAKE_DIRECTORY "${FOLDER}")
 
 macro(give_up what output)
-  file(REMOVE "${PAGE}") # a page of older sources would be a lie
+  file(REMOVE "${FOLDER}/watch.json" "${FOLDER}/charts.json") # of older sources they would be a lie
   if(REQUIRED STREQUAL "AUTO")
-    message(NOTICE "pinnquad: ${what}; fly --watch is not available. With a network: build the target watch_bundle. It said:\n${output}")
+    message(NOTICE "pinnquad: ${what}; fly --watch is not available, and pages have tables for charts. With a network: build the target watch_bundle. It said:\n${output}")
     return()
   endif()
   message(FATAL_ERROR "pinnquad: ${what}. It said:\n${output}")
@@ -24,15 +23,15 @@ if(NOT EXISTS "${stamp}")
     COMMAND "${NPM}" ci --ignore-scripts --no-audit --no-fund --no-update-notifier --loglevel=error --fetch-retries=1
     WORKING_DIRECTORY "${PACKAGES}" RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output TIMEOUT 300)
   if(NOT code EQUAL 0)
-    give_up("npm could not install the packages of the page to watch a flight" "${output}")
+    give_up("npm could not install the packages of its pages" "${output}")
   endif()
   file(WRITE "${stamp}" "")
 endif()
 
 execute_process(
-  COMMAND "${NODE}" "${SOURCE}/bundle.mjs" "${PACKAGES}" "${PAGE}"
+  COMMAND "${NODE}" "${SOURCE}/bundle.mjs" "${PACKAGES}" "${FOLDER}"
   RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output TIMEOUT 120)
 if(NOT code EQUAL 0)
-  give_up("the page to watch a flight could not be bundled" "${output}")
+  give_up("the page to watch a flight and the charts could not be bundled" "${output}")
 endif()
 message(NOTICE "${output}")
