@@ -203,7 +203,7 @@ TEST_CASE("samples that are frozen, no numbers or not known, and rotors that are
   const auto late = [&](double, State<double>&, bool& known, Commands<double>&) { known = false; };
   const auto missing = [&](double, State<double>&, bool&, Commands<double>& commands) { commands[2] = no_number; };
   const auto at_end = [&](double, State<double>&, bool&, Commands<double>& commands) { commands[2] = 1; };
-  const auto never = [&](const auto& shown) {
+  const auto never = [&](const auto& shown, double learns_within_s = 12) {
     Axes axes({1.3, 0.6, 1.5, 0.7});
     OnboardInverse<double> policy(start);
     policy.excite(true);
@@ -212,7 +212,7 @@ TEST_CASE("samples that are frozen, no numbers or not known, and rotors that are
     CHECK_FALSE(proven(policy));
     CHECK(refusals(policy) == "few_rows few_rows few_rows few_rows ");
     // and it learns as soon as they come
-    fly(axes, policy, 12, as_measured);
+    fly(axes, policy, learns_within_s, as_measured);
     CHECK(policy.certificate()[1].proven);
     const OnboardSum<double>& roll = policy.certificate()[1];
     CHECK(std::abs(roll.forward.slope() - axes.slopes[1]) <= roll.half_width);
@@ -221,7 +221,7 @@ TEST_CASE("samples that are frozen, no numbers or not known, and rotors that are
   SUBCASE("no numbers") { never(nan); }
   SUBCASE("late: not known") { never(late); }
   SUBCASE("no rotors") { never(missing); }
-  SUBCASE("at an end") { never(at_end); }
+  SUBCASE("at an end") { never(at_end, 20); }  // the bias has learnt of commands that did not fly
 }
 
 TEST_CASE("samples that come 50 ms late, and do not say so, never swap anything") {
@@ -360,5 +360,5 @@ TEST_CASE("float learns what double does, to 1e-4 of the slope") {
     const double other = static_cast<double>(narrow.candidate()[k].forward.slope());
     CHECK(std::abs(other / policy.candidate()[k].forward.slope() - 1) < 1e-4);
   }
-  CHECK(sizeof(OnboardInverse<float>) <= 8'704);
+  CHECK(sizeof(OnboardInverse<float>) <= 5'904);
 }

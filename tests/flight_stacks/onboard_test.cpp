@@ -4,9 +4,15 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "onboard_stacks.hpp"
 #include "pinnquad/control/tracking_controller.hpp"
+#include "pinnquad/deploy/block_model.hpp"
+#include "pinnquad/deploy/learnt_model.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
 
 namespace {
 
@@ -18,13 +24,23 @@ using autopilot::Learning;
 using autopilot::Reaction;
 using autopilot::Situation;
 
-/// The policy of a loop, held elsewhere.
+/// A question that a policy was asked in flight, its answer before it was desaturated, and its bias.
+struct Asked {
+  MotionInputs<float> motion;
+  Commands<float> answer;
+  SignedSums<float> bias;
+};
+
+/// The policy of a loop, held elsewhere. `asked`: what it is asked while it is frozen, where somebody wants to know.
 struct Held {
   OnboardInverse<float>* policy;
+  std::vector<Asked>* asked = nullptr;
 
   Status operator()(const State<float>& state, const Accelerations<float>& wanted, std::uint64_t now_us,
                     Commands<float>& commands) noexcept {
-    return (*policy)(state, wanted, now_us, commands);
+    const Status status = (*policy)(state, wanted, now_us, commands);
+    if (asked != nullptr) asked->push_back({motion_inputs(state, wanted), commands, policy->bias().sums()});
+    return status;
   }
   void learn(std::uint64_t now_us, bool known, const State<float>& state, const Commands<float>& commands) noexcept {
     policy->learn(now_us, known, state, commands);
@@ -118,7 +134,9 @@ TEST_CASE_TEMPLATE("a core that learns makes the commands of the loop's policy, 
   const auto outer_loop = [](const Airframe<float>& of) {
     return autopilot::detail::outer_loop(settings(), of, standard_gravity_m_s2<float>);
   };
-  TrackingController<float, Held> loop(airframe, outer_loop(airframe), Held{&policy});
+  std::vector<Asked> asked;
+  TrackingController<float, Held> loop(airframe, outer_loop(airframe), Held{&policy, &asked});
+  LearntRows model_rows;
   std::uint32_t rows = 0;
   std::size_t ticks = 0;
   std::uint64_t excited_us = 0, before_us = 0;
@@ -129,10 +147,12 @@ TEST_CASE_TEMPLATE("a core that learns makes the commands of the loop's policy, 
     policy.freeze(flight.learning == Learning::frozen);
     if (rows != policy.rows()) loop.change_to(airframe, outer_loop(policy.airframe()));
     rows = policy.rows();
+    if (flight.learning != Learning::frozen) asked.clear();
     Commands<float> commands{};
     REQUIRE(record.reaction == static_cast<std::uint8_t>(Reaction::flies));
     REQUIRE(has_output(loop(state_of(record), point_of(record), record.timestamp, commands)));
     REQUIRE(std::memcmp(commands.data(), record.commands, sizeof record.commands) == 0);
+    model_rows.note(policy);
     ++ticks;
   };
   flight.fly(16, loop_too);
@@ -154,6 +174,43 @@ TEST_CASE_TEMPLATE("a core that learns makes the commands of the loop's policy, 
   CHECK(flight.takeovers == 0);
   CHECK(flight.worst_m < 1);
   CHECK(ticks == static_cast<std::size_t>(36'000 / Stack::period_ms));
+
+  // written as a block on the ground, the model answers what flew: to the bit, but for the bias that flew beside it
+  const auto model = learnt_model(policy, "strange", model_rows);
+  const Provenance provenance = learnt_provenance(policy, "a test", model_rows);
+  const BlockModel block("learnt.block", model_block(model, model_rows.some<float>(), provenance, "LearntModel"));
+  CHECK(model_rows.rows().size() == policy.rows());
+  CHECK(block.provenance("training_data") == "learnt in flight: a test");
+  CHECK(block.provenance("loss").find("proven in flight: thrust, roll, pitch, yaw") != std::string::npos);
+  const std::optional<Certificate> certificate = block.certificate();
+  REQUIRE(certificate);
+  CHECK(certificate->proven());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto slope = static_cast<double>(policy.certificate()[axis + 1].forward.slope());
+    CHECK(certificate->slope[axis] * slope == doctest::Approx(1).epsilon(1e-6));
+  }
+  const AffineInverse<float> inverse = affine_inverse(policy.forward());
+  const detail::SignedMix<float>& mix = policy.bias().mix();
+  std::size_t answered = 0;
+  REQUIRE(asked.size() > 1000);
+  for (const Asked& one : asked) {
+    std::vector<float> x(InverseFeatures::size);
+    InverseFeatures::extract(one.motion, x.data());
+    const Commands<double> said = block.commands({x.begin(), x.end()});
+    const detail::SumMotion<float> motion = detail::sum_motion(one.motion);
+    Commands<float> alone{}, with_bias{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const float sum = inverse[k].of(k, motion);
+        alone[i] += mix.by[i][k] * sum;
+        with_bias[i] += mix.by[i][k] * (sum + (one.bias[k] + inverse[k].by_total * one.bias[0]));
+      }
+    }
+    if (std::memcmp(with_bias.data(), one.answer.data(), sizeof one.answer) != 0) break;
+    if (said != Commands<double>{alone[0], alone[1], alone[2], alone[3]}) break;
+    ++answered;
+  }
+  CHECK(answered == asked.size());
 }
 
 TEST_CASE_TEMPLATE("off, a core with a learner answers as one without, and the network answers again after it", Stack,

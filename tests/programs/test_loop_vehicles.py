@@ -70,11 +70,13 @@ def test_slopes_are_those_that_fly(eight):
 
 
 def test_the_same_seed_is_the_same_file(pinnquad):
-    words = "--controllers onboard --vehicles 2 --conditions gusts,noise_3 --start laws --frozen 6"
+    words = "--controllers onboard --vehicles 2 --conditions gusts,noise_3 --start laws --frozen 6 --draw 1"
     for out, seed in ("a", 5), ("b", 5), ("c", 6):
         flown(pinnquad, f"{words} --seed {seed}", out)
-    files = [Path(out, "loop.json").read_bytes() for out in "abc"]
-    assert files[0] == files[1] != files[2]
+    for name in "loop.json", "slopes_gusts_1.svg", "slopes_noise_3_1.svg":
+        files = [Path(out, name).read_bytes() for out in "abc"]
+        assert files[0] == files[1] != files[2]
+    assert len(list(Path("a").iterdir())) == 3
     no_partial_files("a")
 
 
@@ -107,6 +109,7 @@ def test_a_lost_vehicle_is_15_m_off(pinnquad):
     ("model.block --conditions nan", "nan"), ("model.block --vehicles 2 --out o", "model"), ("", "model"),
     ("--vehicles 2 --out o --guard none", "--guard"), ("--vehicles 2 --out o --airframe crazyflie", "--airframe"),
     ("--vehicles 0 --out o", "--vehicles"), ("--vehicles 2 --out o --start guess", "--start"),
+    ("--vehicles 2 --out o --draw 2", "--draw"), ("--draw 0", "--vehicles"),
     ("--vehicles 2 --out o --frozen 0", "--frozen"), ("--seed 2", "--vehicles"), ("model.block --start laws", "--vehicles")])
 def test_refused(pinnquad, words, keyword):
     pinnquad.refused(f"loop {words}", keyword=keyword)

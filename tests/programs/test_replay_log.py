@@ -316,7 +316,7 @@ def test_learnt(pinnquad, core, same, differs, stack):
     def learnt_of(log, into):
         said = same(log, *words, "--learnt", into)
         assert f"all {len(table(log / RECORD))} ticks compared" in said, said
-        assert listing(into) == ["airframe.toml", "learnt.json", "slopes.csv", "slopes.svg"]
+        assert listing(into) == ["airframe.toml", "learnt.block", "learnt.hpp", "learnt.json", "slopes.csv", "slopes.svg"]
         return said, json.loads((Path(into) / "learnt.json").read_text())
 
     said, learnt = learnt_of(folder, "all")
@@ -333,6 +333,15 @@ def test_learnt(pinnquad, core, same, differs, stack):
         proven += is_["proven"]
     assert proven >= 3
     assert "kg" in pinnquad("airframe check all/airframe.toml").out
+    # its model is one as any other: proven by its structure with the slopes that flew, and flies in a loop
+    block = json.loads(pinnquad("block all/learnt.block --json").out)
+    assert block["proven"] and block["provenance"]["training_data"].startswith("learnt in flight: "), block
+    certified = json.loads(pinnquad("certify all/learnt.hpp --json").out)
+    assert certified["verdict"] == "proven", certified
+    for axis in ("roll", "pitch", "yaw"):
+        assert certified["slope"][axis] * learnt[axis]["slope"] == pytest.approx(1, rel=1e-6), certified
+    rows = json.loads(pinnquad("loop all/learnt.block --controllers adaptive --json").out)["rows"]
+    assert len(rows) == 1 and rows[0]["rmse_cm"] < 2, rows  # with a bias, as it flew
     rows = table("all/slopes.csv")
     assert len(rows) >= 37 and float(rows[-1]["roll_slope"]) == learnt["roll"]["slope"]
     # a log that begins before the flight tells all of it; one that begins in flight, or has a gap there, does not

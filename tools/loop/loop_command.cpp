@@ -208,6 +208,10 @@ int fly_unknown(const LoopOptions& options) {
   unknown.controllers = programs::names_or(options.controllers, programs::vehicle_controllers());
   unknown.conditions = programs::names_or(options.conditions, {"calm"});
   unknown.json = options.json;
+  if (unknown.drawn >= unknown.vehicles) {
+    throw std::invalid_argument("--draw: expected a vehicle from 0 to " + std::to_string(unknown.vehicles - 1) +
+                                ", found " + std::to_string(unknown.drawn));
+  }
   return programs::fly_vehicles(unknown);
 }
 
@@ -283,7 +287,10 @@ Command loop_command(CLI::App& program) {
       ->check(CLI::IsMember({"forty", "laws"}))
       ->needs(vehicles);
   add_number(*line, "--frozen", unknown.frozen_s, 1.0, 3600.0, "learning ends at this time, s")->needs(vehicles);
-  add_path(*line, "--out", unknown.out, "FOLDER", "folder for their loop.json")->needs(vehicles);
+  add_number(*line, "--draw", unknown.drawn, std::size_t{0}, std::size_t{9'999},
+             "vehicle whose learnt slopes are drawn, from 0 on")
+      ->needs(vehicles);
+  add_path(*line, "--out", unknown.out, "FOLDER", "folder for their loop.json and slopes_*.svg")->needs(vehicles);
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(
       "Examples:\n"

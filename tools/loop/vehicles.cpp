@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
@@ -17,6 +18,7 @@
 #include "loop/any_policy.hpp"
 #include "loop/unknown_vehicle.hpp"
 #include "loop/vehicle_course.hpp"
+#include "model/learnt_vehicle.hpp"
 #include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/control/onboard/onboard_inverse.hpp"
 #include "pinnquad/io/atomic_file.hpp"
@@ -175,8 +177,6 @@ struct VehicleFlight {
   std::size_t vehicle = 0;
 };
 
-constexpr std::array<const char*, 4> sum_names = {"thrust", "roll", "pitch", "yaw"};
-
 /// One vehicle, one controller, one condition.
 class Flown {
  public:
@@ -189,6 +189,8 @@ class Flown {
         gains_(gains_for(start_.rotor_time_constant_s)) {}
 
   nlohmann::json row() { return flight_.controller == "onboard" ? onboard() : known(); }
+  /// Slopes over time of a vehicle that is learnt on board.
+  const std::optional<Chart>& picture() const noexcept { return picture_; }
 
  private:
   /// The analytic inverse of what is told.
@@ -210,10 +212,12 @@ class Flown {
     std::array<std::uint32_t, 4> row{};
     std::array<std::size_t, 4> swaps{};
     std::size_t unproven = 0;
+    LearntVehicle<double> learnt_vehicle(start_);
     const OnboardCertificate<double> at_start = policy.certificate();
     const auto watch = [&](double time_s) {
       policy.excite(time_s < VehicleCourse::hover_s && time_s < options_.frozen_s);
       policy.freeze(time_s >= options_.frozen_s);
+      learnt_vehicle.note(time_s, policy);
       for (std::size_t k = 0; k < 4; ++k) {
         const OnboardSum<double>& sum = policy.certificate()[k];
         if (!sum.proven && sum.forward.theta != at_start[k].forward.theta) ++unproven;
@@ -225,6 +229,9 @@ class Flown {
     };
     nlohmann::json result = fly(policy, policy, watch, [&] { return policy.airframe(); });
     const SignedSums<double> truth = true_slopes();
+    SignedSums<double> slopes{};
+    for (std::size_t k = 0; k < 4; ++k) slopes[k] = 1 / truth[k];
+    picture_ = learnt_vehicle.picture(slopes);
     nlohmann::json& learnt = result["learnt"] = {{"rows", policy.rows()},
                                                  {"unproven_ticks", unproven},
                                                  {"drag", {policy.drag().linear_1_s, policy.drag().quadratic_1_m}}};
@@ -384,6 +391,7 @@ class Flown {
   FlightGains<double> gains_;
   double squares_ = 0, ticks_ = 0, learning_squares_ = 0, learning_ticks_ = 0, worst_m_ = 0;
   double lost_at_s_ = -1, saturated_share_ = 0;
+  std::optional<Chart> picture_;
 };
 
 /// The value below which a share of all lie; NaN of none.
@@ -434,13 +442,16 @@ int fly_vehicles(const VehiclesOptions& options) {
     }
   }
   std::vector<nlohmann::json> rows(flights.size());
+  std::vector<std::optional<Chart>> pictures(flights.size());
   std::atomic<std::size_t> finished{0};
   run_parallel(
       std::to_string(flights.size()) + " flights", flights.size(), std::max(1U, std::thread::hardware_concurrency()),
       [&] { return static_cast<double>(finished.load()) / static_cast<double>(flights.size()); },
       [&](std::size_t i) {
         stop_if_interrupted();
-        rows[i] = Flown(options, flights[i]).row();
+        Flown flown(options, flights[i]);
+        rows[i] = flown.row();
+        if (flights[i].vehicle == options.drawn) pictures[i] = flown.picture();
         ++finished;
       });
   stop_if_interrupted();
@@ -450,6 +461,11 @@ int fly_vehicles(const VehiclesOptions& options) {
                                  {"frozen_s", options.frozen_s},
                                  {"rows", rows}};
   file.stream() << report.dump(2) << '\n';
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    if (!pictures[i]) continue;
+    const std::string of = flights[i].condition + "_" + std::to_string(flights[i].vehicle);
+    write_svg(options.out + "/slopes_" + of + ".svg", *pictures[i]);
+  }
   file.commit();
   if (options.json) {
     std::printf("%s\n", report.dump(2).c_str());

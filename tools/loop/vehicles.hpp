@@ -21,13 +21,15 @@ inline std::vector<std::string> vehicle_conditions() {
 struct VehiclesOptions {
   std::vector<std::string> controllers, conditions;
   std::size_t vehicles = 0;
+  std::size_t drawn = 0;  ///< the vehicle whose slopes over time are drawn, as `onboard` learns them
   std::uint64_t seed = 1;
   std::string start = "forty", out;
   double frozen_s = 20;
   bool json = false;
 };
 
-/// Flies all, writes `out`/loop.json and prints a table. Its exit code.
+/// Flies all, writes `out`/loop.json, slopes_CONDITION_VEHICLE.svg of what is learnt on board, and prints a table. Its
+/// exit code.
 int fly_vehicles(const VehiclesOptions& options);
 
 }  // namespace programs

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A vehicle that was learnt in flight (docs/onboard.md), as files: the airframe that flies, its certificate, the
-// slopes with their intervals over time, and a picture of these.
+// A vehicle that was learnt in flight (docs/onboard.md), as files: its model, the airframe that flies, its certificate,
+// the slopes with their intervals over time, and a picture of these.
 #pragma once
 
 #include <array>
@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,10 @@
 #include "command_line/in_words.hpp"
 #include "page/chart.hpp"
 #include "pinnquad/control/onboard/onboard_inverse.hpp"
-#include "pinnquad/dynamics/airframe.hpp"
+#include "pinnquad/deploy/header_writer.hpp"
+#include "pinnquad/deploy/learnt_model.hpp"
+#include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/dynamics/airframe_value.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "training/judgement.hpp"
 
@@ -34,6 +39,7 @@ class LearntVehicle {
 
   /// After a tick, of a time from the first one.
   void note(double time_s, const Learner& learner) {
+    model_rows_.note(learner);
     const auto second = static_cast<long>(std::floor(time_s));
     bool swapped = false;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -59,12 +65,25 @@ class LearntVehicle {
     moments_.push_back(moment);
   }
 
-  /// Into a folder that is there: airframe.toml, learnt.json, slopes.csv, slopes.svg. Throws OutputError.
-  void write(const std::string& folder, const std::string& name, const Learner& learner) const {
+  /// Into a folder that is there: airframe.toml, learnt.block, learnt.hpp, learnt.json, slopes.csv, slopes.svg. Returns
+  /// why there is no model; empty where there is one. `flight`: name of the log. Throws OutputError.
+  std::string write(const std::string& folder, const std::string& name, const std::string& flight,
+                    const Learner& learner) const {
     write_text(folder + "/airframe.toml", airframe_text(name, learner));
     write_text(folder + "/learnt.json", certificate(learner).dump(2) + "\n");
     write_text(folder + "/slopes.csv", table());
     write_svg(folder + "/slopes.svg", picture());
+    try {
+      const auto model = learnt_model(learner, name, model_rows_);
+      const auto golden = model_rows_.some<Scalar>();
+      const pinnquad::Provenance from = learnt_provenance(learner, flight, model_rows_);
+      const std::vector<unsigned char> block = model_block(model, golden, from, struct_name);
+      write_model_header(folder + "/learnt.hpp", struct_name, model, golden, from);
+      pinnquad::write_weight_file(folder + "/learnt.block", block);
+    } catch (const std::invalid_argument& refused) {
+      return refused.what();
+    }
+    return {};
   }
 
   /// The sums that fly at the end, and each swap.
@@ -98,79 +117,9 @@ class LearntVehicle {
     return json;
   }
 
- private:
-  struct Of {
-    bool proven = false;
-    double slope = 0, half_width = 0;
-    const char* rule = "";
-  };
-  struct Moment {
-    double time_s = 0;
-    std::array<Of, 4> flown, candidate;
-  };
-  struct Swap {
-    double time_s;
-    std::size_t sum;
-    double slope, half_width;
-    const char* rule;
-  };
-
-  static pinnquad::Airframe<double> in_double(const pinnquad::Airframe<Scalar>& from) {
-    std::vector<double> numbers;
-    each_number(from, [&numbers](auto value) { numbers.push_back(static_cast<double>(value)); });
-    pinnquad::Airframe<double> airframe{};
-    auto next = numbers.begin();
-    each_number(airframe, [&next](auto& value) { value = static_cast<std::decay_t<decltype(value)>>(*next++); });
-    return airframe;
-  }
-  static double number(Scalar value) { return static_cast<double>(value); }
-  static Of of(const pinnquad::OnboardSum<Scalar>& sum) {
-    return {sum.proven, number(sum.forward.slope()), number(sum.half_width), to_string(sum.refused_last)};
-  }
-  static void write_text(const std::string& path, const std::string& text) {
-    pinnquad::AtomicFile file(path);
-    file.stream() << text;
-    file.commit();
-  }
-
-  std::string airframe_text(const std::string& name, const Learner& learner) const {
-    std::string proven;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const pinnquad::OnboardSum<Scalar>& sum = learner.certificate()[k];
-      proven += std::string("# ") + sum_names[k] +
-                (sum.proven ? in_words(": learnt, %.4g of the start, +- %.1f %%\n",
-                                       number(sum.forward.slope()) / number(start_[k].slope()),
-                                       100 * number(sum.half_width) / std::fabs(number(sum.forward.slope())))
-                            : std::string(": the start's; refused last: ") + to_string(sum.refused_last) + "\n");
-    }
-    return "# Learnt in flight (learnt.json has the certificate).\n" + proven +
-           airframe_toml({name + ", learnt", in_double(learner.airframe())});
-  }
-
-  std::string table() const {
-    std::string text = "t";
-    for (const char* name : sum_names) {
-      for (const char* what : {"proven", "slope", "half_width", "candidate", "candidate_half_width", "refused_last"}) {
-        text += std::string(",") + name + "_" + what;
-      }
-    }
-    text += "\n";
-    for (const Moment& moment : moments_) {
-      text += pinnquad::number_text(moment.time_s);
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Of &flown = moment.flown[k], &candidate = moment.candidate[k];
-        text += std::string(flown.proven ? ",1," : ",0,") + pinnquad::number_text(flown.slope) + "," +
-                (flown.proven ? pinnquad::number_text(flown.half_width) : std::string()) + "," +
-                pinnquad::number_text(candidate.slope) + "," + pinnquad::number_text(candidate.half_width) + "," +
-                flown.rule;
-      }
-      text += "\n";
-    }
-    return text;
-  }
-
-  /// Slopes over the start's: what flies, its interval, each second's candidate and the swaps.
-  Chart picture() const {
+  /// Slopes over the start's: what flies, its interval, each second's candidate and the swaps; the truth's, where
+  /// somebody knows them.
+  Chart picture(const std::optional<std::array<double, 4>>& truth = {}) const {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     Chart chart{
         "A vehicle as it is learnt: slopes over the start's",
@@ -217,9 +166,80 @@ class LearntVehicle {
                                   : std::string("the start's")) +
                    rule;
       panel.series = {low, high, candidates, flown, swapped};
+      if (truth && !flown.x.empty()) {
+        Series known{k == 0 ? "truth" : "", Shape::line, colour::green};
+        known.dashed = true;
+        for (const double end : {flown.x.front(), flown.x.back()}) add(known, end, (*truth)[k] / start);
+        panel.series.insert(panel.series.begin(), known);
+      }
       chart.panels.push_back(panel);
     }
     return chart;
+  }
+
+ private:
+  static constexpr const char* struct_name = "LearntModel";
+
+  struct Of {
+    bool proven = false;
+    double slope = 0, half_width = 0;
+    const char* rule = "";
+  };
+  struct Moment {
+    double time_s = 0;
+    std::array<Of, 4> flown, candidate;
+  };
+  struct Swap {
+    double time_s;
+    std::size_t sum;
+    double slope, half_width;
+    const char* rule;
+  };
+
+  static double number(Scalar value) { return static_cast<double>(value); }
+  static Of of(const pinnquad::OnboardSum<Scalar>& sum) {
+    return {sum.proven, number(sum.forward.slope()), number(sum.half_width), to_string(sum.refused_last)};
+  }
+  static void write_text(const std::string& path, const std::string& text) {
+    pinnquad::AtomicFile file(path);
+    file.stream() << text;
+    file.commit();
+  }
+
+  std::string airframe_text(const std::string& name, const Learner& learner) const {
+    std::string proven;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const pinnquad::OnboardSum<Scalar>& sum = learner.certificate()[k];
+      proven += std::string("# ") + sum_names[k] +
+                (sum.proven ? in_words(": learnt, %.4g of the start, +- %.1f %%\n",
+                                       number(sum.forward.slope()) / number(start_[k].slope()),
+                                       100 * number(sum.half_width) / std::fabs(number(sum.forward.slope())))
+                            : std::string(": the start's; refused last: ") + to_string(sum.refused_last) + "\n");
+    }
+    return "# Learnt in flight (learnt.json has the certificate).\n" + proven +
+           airframe_toml({name + ", learnt", pinnquad::airframe_in<double>(learner.airframe())});
+  }
+
+  std::string table() const {
+    std::string text = "t";
+    for (const char* name : sum_names) {
+      for (const char* what : {"proven", "slope", "half_width", "candidate", "candidate_half_width", "refused_last"}) {
+        text += std::string(",") + name + "_" + what;
+      }
+    }
+    text += "\n";
+    for (const Moment& moment : moments_) {
+      text += pinnquad::number_text(moment.time_s);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Of &flown = moment.flown[k], &candidate = moment.candidate[k];
+        text += std::string(flown.proven ? ",1," : ",0,") + pinnquad::number_text(flown.slope) + "," +
+                (flown.proven ? pinnquad::number_text(flown.half_width) : std::string()) + "," +
+                pinnquad::number_text(candidate.slope) + "," + pinnquad::number_text(candidate.half_width) + "," +
+                flown.rule;
+      }
+      text += "\n";
+    }
+    return text;
   }
 
   pinnquad::ForwardModel<Scalar> start_, last_{};
@@ -228,6 +248,7 @@ class LearntVehicle {
   long second_ = -1;
   std::vector<Moment> moments_;
   std::vector<Swap> swaps_;
+  pinnquad::LearntRows model_rows_;
 };
 
 }  // namespace programs

@@ -175,7 +175,9 @@ class Learnt {
     vehicle_.note(time_s - from_s_, *learner);
   }
   /// Throws std::invalid_argument where the log does not have all that was learnt from.
-  void write(const std::string& folder, const std::string& name, const OnboardInverse<float>* learner) const {
+  /// Returns why there is no model among the files; empty where there is one.
+  std::string write(const std::string& folder, const std::string& name, const std::string& flight,
+                    const OnboardInverse<float>* learner) const {
     if (!(from_s_ >= 0)) throw std::invalid_argument("--learnt: in no tick of this log a vehicle is learnt");
     if (unknown_s_ >= 0 || learner == nullptr) {
       throw std::invalid_argument(programs::in_words(
@@ -184,7 +186,7 @@ class Learnt {
           unknown_s_ >= 0 ? unknown_s_ : from_s_));
     }
     programs::make_folders(folder);
-    vehicle_.write(folder, name, *learner);
+    return vehicle_.write(folder, name, flight, *learner);
   }
 
  private:
@@ -227,7 +229,9 @@ Replayed replay_core(const ReplayOptions& options, const ReplayInput& input, con
     if (std::any_of(replayed.rows.begin(), replayed.rows.end(), differs)) {
       replayed.notes.push_back("--learnt: nothing is written, as the core answers otherwise than was logged");
     } else {
-      learnt->write(options.learnt, models.front().airframe_name(), core->learner());
+      const std::string none =
+          learnt->write(options.learnt, models.front().airframe_name(), replayed.flights.front(), core->learner());
+      if (!none.empty()) replayed.notes.push_back("--learnt: no learnt.block is written: " + none);
     }
   }
   return replayed;
@@ -317,7 +321,8 @@ Command replay_command(CLI::App& program) {
              "largest difference of a command from the core's log that counts as the same");
   add_path(*line, "--out", options->out, "FILE.csv", "every row: status, who answered, commands, the reason in words");
   add_path(*line, "--learnt", options->learnt, "FOLDER",
-           "the vehicle that a core learnt in this flight: airframe.toml, learnt.json, slopes.csv, slopes.svg");
+           "the vehicle that a core learnt in this flight: its model (learnt.block, learnt.hpp), airframe.toml, "
+           "learnt.json, slopes.csv, slopes.svg");
   line->add_flag("--json", options->json, "the summary as JSON");
   line->footer(
       "Examples:\n"

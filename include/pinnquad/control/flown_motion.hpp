@@ -27,8 +27,8 @@ struct FlownMotionSettings {
 /// period with this one: noise of a mean cancels in the sum of the two. A sample holds until the next one: the time
 /// between two means is T, however the samples lie, or the noise would not cancel. The commands are behind the rotors'
 /// lag, and as old as the state. Periods begin at whole multiples of T on the samples' clock, so that a
-/// replay of a part of the ticks knows where.
-template <class Scalar>
+/// replay of a part of the ticks knows where. `Rotors`: a RotorFollower.
+template <class Scalar, class Rotors = RotorFollower<Scalar>>
 class FlownMotion {
  public:
   explicit FlownMotion(const FlownMotionSettings<Scalar>& settings = {}) noexcept
@@ -174,7 +174,7 @@ class FlownMotion {
   std::uint64_t number_ = 0;  ///< of the period
   std::uint64_t velocity_of_ = 0, rates_of_ = 0;
   Period before_, now_;
-  RotorFollower<Scalar> rotors_;
+  Rotors rotors_;
   Vector3<Scalar> velocity_m_s_ = Vector3<Scalar>::Zero(), rates_rad_s_ = Vector3<Scalar>::Zero();  ///< came last
   MotionInputs<Scalar> motion_{};
   Vector3<Scalar> mean_velocity_m_s_ = Vector3<Scalar>::Zero();

@@ -133,6 +133,8 @@ class MotionBias {
   /// From now on, as of another model; what was learnt stays.
   constexpr void time_constants(const SignedSums<Scalar>& times_s) noexcept { settings_.time_constants_s = times_s; }
   constexpr const SignedSums<Scalar>& sums() const noexcept { return sums_; }
+  /// All 0 of a vehicle whose signs do not distinguish the axes.
+  constexpr const detail::SignedMix<Scalar>& mix() const noexcept { return mix_; }
   const Vector3<Scalar>& across_m_s2() const noexcept { return across_; }
   const Vector3<Scalar>& across_rate_m_s3() const noexcept { return across_rate_; }  ///< the trend of that, level
   /// d with its lead, which is flown.

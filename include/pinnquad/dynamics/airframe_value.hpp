@@ -50,8 +50,8 @@ constexpr std::array<RotorMount<Scalar>, rotor_count> x_rotors(Scalar forward_m,
 }
 
 /// The same airframe, every number rounded to `To`: what a struct written by deploy/airframe_writer.hpp has.
-template <class To>
-constexpr Airframe<To> airframe_in(const Airframe<double>& from) noexcept {
+template <class To, class From>
+constexpr Airframe<To> airframe_in(const Airframe<From>& from) noexcept {
   double numbers[airframe_number_count] = {};
   double* next = static_cast<double*>(numbers);
   each_number(from, [&next](auto number) { *next++ = static_cast<double>(number); });

@@ -18,8 +18,9 @@ namespace pinnquad {
 namespace detail {
 
 /// Terms of a sum. That of the sum's own thrusts is the last; the one before is how fast they rise: a state that comes
-/// later, or sooner, than the lag says. Of terms before lag_terms the lag changes none.
-inline constexpr std::size_t term_count = 7, own_term = term_count - 1, rise_term = own_term - 1, lag_terms = 4;
+/// later, or sooner, than the lag says. The lag changes those from lag_terms(k) on.
+inline constexpr std::size_t term_count = 7, own_term = term_count - 1, rise_term = own_term - 1;
+constexpr std::size_t lag_terms(std::size_t k) noexcept { return k == 0 ? rise_term : rise_term - 1; }
 template <class Scalar>
 using Terms = std::array<Scalar, term_count>;
 
@@ -117,8 +118,8 @@ Terms<Scalar> prior_deviations(std::size_t k, const ForwardSum<Scalar>& start) n
 inline constexpr std::size_t output_column = term_count;
 template <class Scalar>
 using SumTriangle = Triangle<Scalar, output_column + 1>;
-template <class Scalar>
-using SumTriangles = SharedTriangle<Scalar, lag_terms, term_count - lag_terms, lag_count>;
+template <class Scalar, std::size_t shared>
+using SumTriangles = SharedTriangle<Scalar, shared, term_count - shared, lag_count>;
 
 /// Solution of a sum, and what is known of its slope.
 template <class Scalar>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Signed sums of the thrust fractions that rotors of eight lags would follow, with the weights of a FlownMotion: each
-// lag is a guess, and the rows of all eight are regressed, until the flight says which one it is.
+// Signed sums of the thrust fractions that rotors of six lags would follow, with the weights of a FlownMotion: each
+// lag is a guess, and the rows of all six are regressed, until the flight says which one it is.
 #pragma once
 
 #include <array>
@@ -12,12 +12,14 @@
 
 namespace pinnquad::detail {
 
-inline constexpr std::size_t lag_count = 8;
+inline constexpr std::size_t lag_count = 6;
+/// Where one lag does for all: the middle of the bank.
+inline constexpr std::size_t reference_lag = 2;
 
 /// Time constants, s, of the thinnest rotor to the slowest one with a state that comes late.
 template <class Scalar>
-inline constexpr std::array<Scalar, lag_count> lag_bank_s{Scalar(0.008), Scalar(0.014), Scalar(0.022), Scalar(0.032),
-                                                          Scalar(0.045), Scalar(0.063), Scalar(0.09),  Scalar(0.13)};
+inline constexpr std::array<Scalar, lag_count> lag_bank_s{Scalar(0.008), Scalar(0.014), Scalar(0.025),
+                                                          Scalar(0.044), Scalar(0.075), Scalar(0.13)};
 
 /// A lag between two of the bank: `beside` of the way from the lower one to the next.
 template <class Scalar>
@@ -47,7 +49,7 @@ struct Followed {
   Scalar sum{0}, rise_1_s{0};
 };
 
-/// Means of the sums over the two periods of a FlownMotion, of each lag. It is told each tick beside the motion.
+/// Means of the sums over the two periods of a FlownMotion, of each lag. It has each tick behind the motion.
 template <class Scalar>
 class LagBank {
  public:
@@ -63,13 +65,26 @@ class LagBank {
     now_ = before_ = {};
   }
 
-  /// One tick after the motion's: the thrust fractions in force since the tick before, of `step_s`. `ended`: the motion
-  /// has ended a window, which at() then tells.
-  void tick(std::uint64_t now_us, Scalar step_s, bool ended, const Commands<Scalar>& fractions,
+  /// The motion has ended a window: at() is of it until the next tick(). False where nothing was followed in it.
+  bool finish() noexcept {
+    const Scalar weight = before_.rising_weight + now_.falling_weight;
+    if (!(weight > Scalar(0))) return false;
+    const Scalar inverse = Scalar(1) / weight;
+    for (std::size_t lag = 0; lag < lag_count; ++lag) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Scalar rise_1_s = (now_.mean(lag, k) - before_.mean(lag, k)) / period_s_;
+        means()[lag][k] = inverse * (before_.rising[lag][k] + now_.falling[lag][k]);
+        rises_1_s()[lag][k] = rise_1_s;
+      }
+    }
+    return true;
+  }
+
+  /// One tick after the motion's: the thrust fractions in force since the tick before, of `step_s`.
+  void tick(std::uint64_t now_us, Scalar step_s, const Commands<Scalar>& fractions,
             const SignedMix<Scalar>& mix) noexcept {
     const std::uint64_t number = now_us / period_us_;
     if (number != number_) {
-      if (ended) finish();
       before_ = now_;
       now_ = {};
       number_ = number;
@@ -92,7 +107,9 @@ class LagBank {
   }
 
   /// The sum that rotors of a lag would follow, and how fast it rises, 1/s.
-  Followed<Scalar> at(std::size_t k, std::size_t lag) const noexcept { return {means_[lag][k], rises_1_s_[lag][k]}; }
+  Followed<Scalar> at(std::size_t k, std::size_t lag) const noexcept {
+    return {before_.rising[lag][k], before_.falling[lag][k]};
+  }
   /// The same of a lag between two of the bank.
   Followed<Scalar> at(std::size_t k, const LagPlace<Scalar>& lag) const noexcept {
     const Followed<Scalar> low = at(k, lag.lower), next = at(k, lag.lower + 1u);
@@ -117,23 +134,15 @@ class LagBank {
     }
   };
 
-  void finish() noexcept {
-    const Scalar weight = before_.rising_weight + now_.falling_weight;
-    if (!(weight > Scalar(0))) return;
-    const Scalar inverse = Scalar(1) / weight;
-    for (std::size_t lag = 0; lag < lag_count; ++lag) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        means_[lag][k] = inverse * (before_.rising[lag][k] + now_.falling[lag][k]);
-        rises_1_s_[lag][k] = (now_.mean(lag, k) - before_.mean(lag, k)) / period_s_;
-      }
-    }
-  }
+  /// A window that has ended is in place of its first period, which nobody asks for any more.
+  Sums& means() noexcept { return before_.rising; }
+  Sums& rises_1_s() noexcept { return before_.falling; }
 
   std::uint32_t period_us_;
   Scalar period_s_;
   std::uint64_t number_ = 0;  ///< of the period
-  RotorFollower<Scalar> delayed_;
-  Sums following_{}, means_{}, rises_1_s_{};
+  RotorFollower<Scalar, 12> delayed_;
+  Sums following_{};
   Period now_, before_;
 };
 

@@ -11,6 +11,7 @@
 
 #include "pinnquad/control/desaturate.hpp"
 #include "pinnquad/control/flown_motion.hpp"
+#include "pinnquad/control/onboard/affine_inverse.hpp"
 #include "pinnquad/control/onboard/excitation.hpp"
 #include "pinnquad/control/onboard/forward_model.hpp"
 #include "pinnquad/control/onboard/lag_bank.hpp"
@@ -31,13 +32,15 @@ class OnboardInverse {
   explicit OnboardInverse(const Airframe<Scalar>& start, const OnboardSettings<Scalar>& settings = {}) noexcept
       : start_(start),
         settings_(settings),
-        mix_(detail::signed_mix(start)),
-        start_model_(forward_model(start)),
         regression_(settings.regression, settings.period_us),
         motion_(FlownMotionSettings<Scalar>{settings.period_us, Scalar(0), Scalar(0)}),
         bank_(settings.period_us, settings.delay_s),
         bias_(start, settings.bias) {
-    for (std::size_t k = 0; k < 4; ++k) flown_[k].forward = before_[k].forward = start_model_[k];
+    const ForwardModel<Scalar> model = forward_model(start);
+    for (std::size_t k = 0; k < 4; ++k) {
+      flown_[k].forward = before_[k].forward = model[k];
+      start_terms_[k] = {model[k].theta[2], model[k].slope()};
+    }
   }
 
   /// Gentle sines on what is asked for, from the next tick on; without them only where a sum is unknown, fainter.
@@ -49,30 +52,34 @@ class OnboardInverse {
   void freeze(bool on) noexcept { frozen_ = on; }
 
   /// One tick, before the inverse is asked: the state, and the commands in force since the tick before. `known`: they
-  /// drove the motors, in flight, and the state is fresh. A row is of two periods in which no command was at its end.
+  /// drove the motors, in flight, and the state is fresh. A row is of two periods in which no command was at its end;
+  /// the bias learns of those too: the rotors follow a command at its end as any other one.
   void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
     const Scalar step_s = clock_.step_s(now_us);
     motion_.velocity(now_us, state.velocity_m_s);
     motion_.body_rates(now_us, state.body_rates_rad_s);
     const bool sound = known && step_s > Scalar(0) && all_finite(state) && all_finite(commands);
-    const bool at_end = sound && saturated(commands);
-    const bool ended = motion_.tick(now_us, sound && !at_end, state, commands);
+    const bool at_end = !sound || saturated(commands);
+    const bool ended = motion_.tick(now_us, sound, state, commands);
+    const std::uint64_t number = now_us / settings_.period_us;
+    const bool is_row = !(at_end || at_end_before_ || at_end_now_);
+    if (number != number_) {
+      number_ = number;
+      at_end_before_ = at_end_now_;
+      at_end_now_ = false;
+    }
+    at_end_now_ = at_end_now_ || at_end;
     if (sound) {
       Commands<Scalar> fractions{};
       for (std::size_t i = 0; i < fractions.size(); ++i) {
         fractions[i] = thrust_fraction(start_.rotors[i].thrust_curve, commands[i]);
       }
-      if (!follows_) bank_.restart(fractions, mix_);
-      bank_.tick(now_us, step_s, ended, fractions, mix_);
+      if (!follows_) bank_.restart(fractions, bias_.mix());
+      if (ended && bank_.finish()) window(now_us, is_row);
+      bank_.tick(now_us, step_s, fractions, bias_.mix());
     }
     follows_ = sound;
-    if (ended && sound) {
-      row(now_us);
-    } else if (at_end) {
-      bias_.freeze();
-    } else {
-      bias_.wait(step_s);
-    }
+    if (!ended) bias_.wait(step_s);
   }
 
   /// `not_finite` of a state or motion that is no number, `output_not_finite`, else `ok`. Commands may lie beyond 0 and
@@ -85,17 +92,21 @@ class OnboardInverse {
     const Accelerations<Scalar> added = sines(now_us);
     const detail::SumMotion<Scalar> motion = detail::sum_motion(
         motion_inputs(state, {wanted.linear_m_s2 + added.linear_m_s2, wanted.angular_rad_s2 + added.angular_rad_s2}));
+    const AffineInverse<Scalar> inverse = affine_inverse(forward());
+    const SignedSums<Scalar>& bias = bias_.sums();
     SignedSums<Scalar> sums{};
     for (std::size_t k = 0; k < 4; ++k) {
-      sums[k] = flown_[k].forward.needed(k, motion, sums[0], Scalar(0)) + bias_.sums()[k];
+      sums[k] = inverse[k].of(k, motion) + (bias[k] + inverse[k].by_total * bias[0]);
     }
+    const detail::SignedMix<Scalar>& mix = bias_.mix();
     Commands<Scalar> result{};
     for (std::size_t i = 0; i < result.size(); ++i) {
       Scalar fraction(0);
-      for (std::size_t k = 0; k < 4; ++k) fraction += mix_.by[i][k] * sums[k];
+      for (std::size_t k = 0; k < 4; ++k) fraction += mix.by[i][k] * sums[k];
       result[i] = command_of_fraction(start_.rotors[i].thrust_curve, fraction);
     }
-    if (!all_finite(result)) return Status::output_not_finite;
+    // a mix of 0 is none: the vehicle's signs do not distinguish the axes
+    if (!all_finite(result) || !(mix.signs[0][0] > Scalar(0))) return Status::output_not_finite;
     commands = result;
     return Status::ok;
   }
@@ -110,19 +121,26 @@ class OnboardInverse {
 
   /// The sums that fly now, at any tick.
   const OnboardCertificate<Scalar>& certificate() const noexcept { return flown_; }
+  /// Their model; inverted (affine_inverse()) it answers, with sines and bias beside it.
+  ForwardModel<Scalar> forward() const noexcept {
+    return {flown_[0].forward, flown_[1].forward, flown_[2].forward, flown_[3].forward};
+  }
+  /// The motion of the last row.
+  const MotionInputs<Scalar>& motion() const noexcept { return motion_.motion(); }
   /// The sums that were proposed last, whether they will fly or not.
   const OnboardCertificate<Scalar>& candidate() const noexcept { return candidate_; }
+  const OnboardSettings<Scalar>& settings() const noexcept { return settings_; }
   const LateralDrag<Scalar>& drag() const noexcept { return drag_; }
   const MotionBias<Scalar>& bias() const noexcept { return bias_; }
   std::uint32_t rows() const noexcept { return rows_; }  ///< since the start
   /// The start with the slopes that fly, for limits and desaturation: thrust by coefficient, torques by inertia.
   Airframe<Scalar> airframe() const noexcept {
     Airframe<Scalar> flown = start_;
-    const Scalar thrust = flown_[0].forward.slope() / start_model_[0].slope();
+    const Scalar thrust = flown_[0].forward.slope() / start_terms_[0].slope;
     flown.thrust_coefficient *= thrust;
     flown.power_coefficient *= thrust;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      flown.inertia_kg_m2[axis] *= thrust * start_model_[axis + 1].slope() / flown_[axis + 1].forward.slope();
+      flown.inertia_kg_m2[axis] *= thrust * start_terms_[axis + 1].slope / flown_[axis + 1].forward.slope();
     }
     return flown;
   }
@@ -164,8 +182,8 @@ class OnboardInverse {
     second_.add(asked, motion, bank_, Scalar(1));
   }
 
-  /// Two periods of flight.
-  void row(std::uint64_t now_us) noexcept {
+  /// Two periods of flight; a row where no command was at its end.
+  void window(std::uint64_t now_us, bool is_row) noexcept {
     const MotionInputs<Scalar>& flown = motion_.motion();
     const detail::SumMotion<Scalar> motion = detail::sum_motion(flown);
     SignedSums<Scalar> residual{};
@@ -177,6 +195,7 @@ class OnboardInverse {
     bias_.time_constants(bias_times_s());
     if (!has_output(bias_.learn(residual, body_to_world<Scalar>(flown.attitude, across), period_s()))) return;
     bias_age_s_ += period_s();
+    if (!is_row) return;
     judge(motion, residual);
     listen(now_us, motion);
     regression_.teach(now_us, motion, bank_, force);
@@ -258,16 +277,19 @@ class OnboardInverse {
     const detail::LagPlace<Scalar> lag = regression_.best_lag(start_model_[0].lag.seconds());
     judging_ = false;
     for (std::size_t k = 0; k < 4; ++k) {
-      const detail::SumSolution<Scalar> solution = regression_.solution(k, lag, start_model_[k]);
+      ForwardSum<Scalar> start{};
+      start.theta[2] = start_terms_[k].second;
+      start.theta[detail::own_term] = start_terms_[k].slope;
+      const detail::SumSolution<Scalar> solution = regression_.solution(k, lag, start);
       OnboardSum<Scalar>& sum = candidate_[k];
       sum.forward = {solution.theta, lag};
       sum.half_width = detail::half_width(k, solution);
-      sum.terms_bound = detail::terms_bound(k, sum.forward, start_model_[k]);
+      sum.terms_bound = detail::terms_bound(k, sum.forward, start);
       sum.left_square = solution.left_square;
       const detail::SineWitness<Scalar> sines{answer_.share(k), answer_.slope(k, sum.forward, settings_.excitation)};
       sum.refused_last =
-          detail::refusal(k, sum.forward, start_model_[k], solution, regression_.rows(k), candidate_[0].forward.slope(),
-                          sines, start_.propeller_diameter_m, settings_.proof);
+          detail::refusal(k, sum.forward, start, solution, regression_.rows(k), candidate_[0].forward.slope(), sines,
+                          start_.propeller_diameter_m, settings_.proof);
     }
     const auto late = [this](std::size_t k) noexcept { return candidate_[k].refused_last == OnboardRule::lag_unknown; };
     const bool any_late = late(1) || late(2);  // samples that come late are of all sums
@@ -307,11 +329,11 @@ class OnboardInverse {
   void swap(std::size_t k, const OnboardSum<Scalar>& sum, Scalar bias) noexcept {
     if (elsewhere(sum, flown_[k])) {  // a finer one of the same slope is no other model
       before_[k] = flown_[k];
-      past_.bias[k] = own_.bias[k];
+      past_bias_[k] = own_.bias[k];
     }
     flown_[k] = sum;
     flown_[k].proven_row = rows_;
-    past_.square[k] = watched_.square[k] = first_square_[k] = Scalar(0);
+    past_square_[k] = watched_square_[k] = first_square_[k] = Scalar(0);
     watched_rows_[k] = 0;
     own_.bias[k] = bias;
     SignedSums<Scalar> biases = bias_.sums();
@@ -324,43 +346,49 @@ class OnboardInverse {
   void watch(const detail::SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
     for (std::size_t k = 0; k < 4; ++k) {
       if (!flown_[k].proven) continue;
-      const Scalar said = lacking(k, before_[k].forward, motion) - past_.bias[k];
-      past_.bias[k] += period_s() / (period_s() + settings_.bias.time_constants_s[k]) * said;
+      const Scalar said = lacking(k, before_[k].forward, motion) - past_bias_[k];
+      past_bias_[k] += period_s() / (period_s() + settings_.bias.time_constants_s[k]) * said;
       const Scalar a = (residual[k] - own_.bias[k]) * flown_[k].forward.slope(), b = said * before_[k].forward.slope();
-      watched_.square[k] += a * a;
-      past_.square[k] += b * b;
+      watched_square_[k] += a * a;
+      past_square_[k] += b * b;
       if (++watched_rows_[k] < settings_.rows_of_gain) continue;
-      if (!(first_square_[k] > Scalar(0))) first_square_[k] = watched_.square[k];
-      const bool doubled = watched_.square[k] > Scalar(4) * first_square_[k];
-      if (doubled && past_.square[k] < Scalar(0.8) * watched_.square[k] && !frozen_) {
+      if (!(first_square_[k] > Scalar(0))) first_square_[k] = watched_square_[k];
+      const bool doubled = watched_square_[k] > Scalar(4) * first_square_[k];
+      if (doubled && past_square_[k] < Scalar(0.8) * watched_square_[k] && !frozen_) {
         const OnboardSum<Scalar> again = before_[k];
-        swap(k, again, past_.bias[k]);
+        swap(k, again, past_bias_[k]);
         flown_[k].refused_last = OnboardRule::went_back;
         judging_ = false;
       }
-      watched_.square[k] = past_.square[k] = Scalar(0);
+      watched_square_[k] = past_square_[k] = Scalar(0);
       watched_rows_[k] = 0;
     }
   }
 
+  /// Terms of the start's sums that are not 0: of drag along z or the product of body rates, and the own.
+  struct StartTerms {
+    Scalar second, slope;
+  };
+
   Airframe<Scalar> start_;
+  std::array<StartTerms, 4> start_terms_{};
   OnboardSettings<Scalar> settings_;
-  detail::SignedMix<Scalar> mix_;
-  ForwardModel<Scalar> start_model_;
   detail::SumRegression<Scalar> regression_;
   OnboardCertificate<Scalar> flown_{}, candidate_{}, before_{};
-  Shadow own_{}, shadow_{}, past_{}, watched_{};
-  std::array<Scalar, 4> first_square_{};  ///< of the first two seconds
+  Shadow own_{}, shadow_{};
+  SignedSums<Scalar> past_bias_{};                                           ///< of the sum that flew before
+  std::array<Scalar, 4> past_square_{}, watched_square_{}, first_square_{};  ///< over two seconds; the first two
   std::array<std::uint32_t, 4> watched_rows_{};
   detail::SineAnswer<Scalar> answer_{}, second_{};  ///< of the rows remembered, and of the last second
   LateralDrag<Scalar> drag_{};
-  FlownMotion<Scalar> motion_;
+  FlownMotion<Scalar, RotorFollower<Scalar, 0>> motion_;
   detail::LagBank<Scalar> bank_;
   MotionBias<Scalar> bias_;
   detail::TickClock<Scalar> clock_;
-  std::uint64_t begun_us_ = 0;
-  Scalar bias_age_s_{0};  ///< time of the rows that it has learnt from
+  std::uint64_t begun_us_ = 0, number_ = 0;  ///< of the period
+  Scalar bias_age_s_{0};                     ///< time of the rows that it has learnt from
   std::uint32_t rows_ = 0, rows_since_ = 0, judged_ = 0;
+  bool at_end_now_ = false, at_end_before_ = false;  ///< a command was, in this period and in the one before
   bool excited_ = false, begun_ = false, frozen_ = false, follows_ = false, judging_ = false, stood_ = false;
 };
 

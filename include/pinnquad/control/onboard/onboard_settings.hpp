@@ -40,13 +40,13 @@ struct OnboardSettings {
 template <class Scalar>
 struct OnboardSum {
   ForwardSum<Scalar> forward{};
-  bool proven = false;           ///< false: the start's
+  bool proven = false;                              ///< false: the start's
+  OnboardRule refused_last{OnboardRule::few_rows};  ///< it refused a candidate last; `none` once one flies
   Scalar half_width{0};          ///< of the slope's interval, in its units; 0 of the start, which has none
   Scalar terms_bound{0};         ///< most that the other terms ask for beside the start's, in units of the sum
   Scalar left_square{0};         ///< mean square of its residual in the rows that it is of
   Scalar gain{1};                ///< mean square of its forward residual over that of the sum that flew before
   std::uint32_t proven_row = 0;  ///< the row after which it has flown
-  OnboardRule refused_last{OnboardRule::few_rows};  ///< it refused a candidate last; `none` once one flies
 };
 template <class Scalar>
 using OnboardCertificate = std::array<OnboardSum<Scalar>, 4>;

@@ -80,7 +80,6 @@ class SineAnswer {
  private:
   using Wave = SineWave<Scalar>;
   static constexpr Scalar two_pi = Scalar(6.283185307179586), least_energy = Scalar(1e-6);
-  static constexpr std::size_t reference_lag = 3;
 
   static constexpr Wave times(const Wave& a, const Wave& b) noexcept {
     return {a.real * b.real - a.imaginary * b.imaginary, a.real * b.imaginary + a.imaginary * b.real};

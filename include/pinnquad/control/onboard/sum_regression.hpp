@@ -11,6 +11,7 @@
 #include "pinnquad/control/onboard/forward_model.hpp"
 #include "pinnquad/control/onboard/lag_bank.hpp"
 #include "pinnquad/control/onboard/triangle.hpp"
+#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/finite.hpp"
 
 namespace pinnquad {
@@ -60,7 +61,8 @@ class SumRegression {
 
   /// Forgets all rows: they are of no flight.
   void forget() noexcept {
-    triangles_ = {};
+    thrust_ = {};
+    turns_ = {};
     rows_ = means_of_torque_ = rows_of_drag_ = Scalar(0);
     drag_ = {};
     mean_ = {};
@@ -73,18 +75,8 @@ class SumRegression {
     if (now_us / period_us_ - row_us_ / period_us_ > 1) mean_ = {};
     row_us_ = now_us;
     ++mean_.rows;
-    for (std::size_t k = 0; k < 4; ++k) {
-      SumRow row = row_of(k, motion, bank);
-      if (k < 3) {
-        if (!(rows_ > Scalar(0))) running_[k] = row;
-        put_beside(row, running_[k], follows_[k], settings_.wind_share);
-      }
-      if (k == 0) {
-        triangles_[0].turn_in(row.shared, row.owns, root_keep_);
-      } else {
-        teach_torque(k, row);
-      }
-    }
+    teach_thrust(motion, bank);
+    for (std::size_t k = 1; k < 4; ++k) teach_torque(k, motion, bank);
     rows_ = keep() * rows_ + Scalar(1);
     if (mean_.rows == settings_.rows_of_torque) {
       means_of_torque_ = root_keep_torque_ * root_keep_torque_ * means_of_torque_ + Scalar(1);
@@ -100,8 +92,9 @@ class SumRegression {
     return k == 0 ? rows_ : means_of_torque_ * Scalar(settings_.rows_of_torque);
   }
 
-  /// The lag that leaves least of the angular accelerations, between those of the bank by the parabola through the best
-  /// one and its neighbours; yaw counts a third. `start_s`: a prior, which decides where noise leaves it open.
+  /// The lag that leaves least of the angular accelerations, between those of the bank by the parabola of logarithms
+  /// through the best one and its neighbours: where two of the bank are as good, it lies in their middle either way.
+  /// Yaw counts a third. `start_s`: a prior, which decides where noise leaves it open.
   LagPlace<Scalar> best_lag(Scalar start_s) const noexcept {
     using std::log;
     const Scalar weight = settings_.repeats / (means_of_torque_ + Scalar(1));
@@ -114,20 +107,22 @@ class SumRegression {
     std::size_t best = 0;
     for (std::size_t lag = 0; lag < lag_count; ++lag) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Scalar root = triangles_[axis + 1].left(lag);
+        const Scalar root = turns_[axis].left(lag);
         left[lag][axis] = root * root + Scalar(1e-12);
         sum[lag] += weights[axis] * log(left[lag][axis]);
       }
       sum[lag] += apart(lag);
       if (sum[lag] < sum[best]) best = lag;
     }
+    if (best + 1 == lag_count) return lag_place(lag_bank_s<Scalar>[best]);
+    if (best == 0) best = 1;
     const Scalar at = lag_bank_s<Scalar>[best];
-    if (best == 0 || best + 1 == lag_count) return lag_place(at);
     const Scalar low = lag_bank_s<Scalar>[best - 1] - at, high = lag_bank_s<Scalar>[best + 1] - at;
     Scalar by_low = (apart(best - 1) - apart(best)) / low, by_high = (apart(best + 1) - apart(best)) / high;
+    // of quotients: a float has no digits left of logarithms' differences
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      by_low += weights[axis] * (left[best - 1][axis] / left[best][axis] - Scalar(1)) / low;
-      by_high += weights[axis] * (left[best + 1][axis] / left[best][axis] - Scalar(1)) / high;
+      by_low += weights[axis] * log(left[best - 1][axis] / left[best][axis]) / low;
+      by_high += weights[axis] * log(left[best + 1][axis] / left[best][axis]) / high;
     }
     const Scalar curvature = (by_high - by_low) / (high - low);
     const Scalar beside = curvature > Scalar(0) ? (curvature * low - by_low) / (Scalar(2) * curvature) : Scalar(0);
@@ -139,8 +134,8 @@ class SumRegression {
                                const ForwardSum<Scalar>& start) const noexcept {
     const Terms<Scalar> deviations = prior_deviations(k, start);
     const auto at = [&](std::size_t place) noexcept {
-      return solved(triangles_[k].of(place), k == 0 ? rows_ : means_of_torque_, start.theta, deviations,
-                    settings_.repeats);
+      return solved(k == 0 ? thrust_.of(place) : turns_[k - 1].of(place), k == 0 ? rows_ : means_of_torque_,
+                    start.theta, deviations, settings_.repeats);
     };
     SumSolution<Scalar> result = at(lag.lower);
     const SumSolution<Scalar> next = at(lag.lower + 1u);
@@ -170,39 +165,60 @@ class SumRegression {
  private:
   static constexpr std::array<Scalar, 3> weights{Scalar(1), Scalar(1), Scalar(0.3)};
 
+  static constexpr std::size_t thrust_terms = lag_terms(0), turn_terms = lag_terms(1);
+
+  template <std::size_t shared_terms>
   struct SumRow {
-    typename SumTriangles<Scalar>::Row shared{};
-    typename SumTriangles<Scalar>::Owns owns{};
+    typename SumTriangles<Scalar, shared_terms>::Row shared{};
+    typename SumTriangles<Scalar, shared_terms>::Owns owns{};
   };
-  static SumRow row_of(std::size_t k, const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank) noexcept {
-    SumRow row;
+  template <std::size_t shared_terms>
+  static SumRow<shared_terms> row_of(std::size_t k, const SumMotion<Scalar>& motion,
+                                     const LagBank<Scalar>& bank) noexcept {
+    SumRow<shared_terms> row;
     const Terms<Scalar> x = terms_of(k, motion, Scalar(0), {});
-    for (std::size_t i = 0; i < lag_terms; ++i) row.shared[i] = x[i];
-    row.shared[lag_terms] = motion.accelerations[k];
+    for (std::size_t i = 0; i < shared_terms; ++i) row.shared[i] = x[i];
+    row.shared[shared_terms] = motion.accelerations[k];
     for (std::size_t lag = 0; lag < lag_count; ++lag) {
       const Followed<Scalar> own = bank.at(k, lag);
-      row.owns[lag] = {k == 0 ? x[lag_terms] : bank.at(0, lag).sum, own.rise_1_s, own.sum};
+      if constexpr (shared_terms == thrust_terms) {
+        row.owns[lag] = {own.rise_1_s, own.sum};
+      } else {
+        row.owns[lag] = {bank.at(0, lag).sum, own.rise_1_s, own.sum};
+      }
     }
     return row;
   }
-  static void put_beside(SumRow& row, SumRow& means, Scalar follows, Scalar share) noexcept {
-    const auto beside = [=](Scalar& value, Scalar& mean) noexcept {
-      mean += follows * (value - mean);
-      value -= share * mean;
-    };
-    for (std::size_t i = 0; i < row.shared.size(); ++i) beside(row.shared[i], means.shared[i]);
-    for (std::size_t lag = 0; lag < lag_count; ++lag) {
-      for (std::size_t i = 0; i < row.owns[lag].size(); ++i) beside(row.owns[lag][i], means.owns[lag][i]);
-    }
+  /// Out of line, as teach_torque(): a row is on the stack once.
+  PINNQUAD_NOINLINE void teach_thrust(const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank) noexcept {
+    SumRow<thrust_terms> row = row_of<thrust_terms>(0, motion, bank);
+    put_beside(row, running_thrust_, 0);
+    thrust_.turn_in(row.shared, row.owns, root_keep_);
   }
-  void teach_torque(std::size_t k, const SumRow& row) noexcept {
+  PINNQUAD_NOINLINE void teach_torque(std::size_t k, const SumMotion<Scalar>& motion,
+                                      const LagBank<Scalar>& bank) noexcept {
+    SumRow<turn_terms> row = row_of<turn_terms>(k, motion, bank);
+    if (k < 3) put_beside(row, running_[k - 1], k);
     const Scalar share = Scalar(1) / Scalar(settings_.rows_of_torque);
-    SumRow& mean = mean_.of[k - 1];
+    SumRow<turn_terms>& mean = mean_.of[k - 1];
     for (std::size_t i = 0; i < row.shared.size(); ++i) mean.shared[i] += share * row.shared[i];
     for (std::size_t lag = 0; lag < lag_count; ++lag) {
       for (std::size_t j = 0; j < row.owns[lag].size(); ++j) mean.owns[lag][j] += share * row.owns[lag][j];
     }
-    if (mean_.rows == settings_.rows_of_torque) triangles_[k].turn_in(mean.shared, mean.owns, root_keep_torque_);
+    if (mean_.rows == settings_.rows_of_torque) turns_[k - 1].turn_in(mean.shared, mean.owns, root_keep_torque_);
+  }
+  /// A row beside its running mean, which follows it.
+  template <std::size_t shared_terms>
+  void put_beside(SumRow<shared_terms>& row, SumRow<shared_terms>& running, std::size_t k) const noexcept {
+    if (!(rows_ > Scalar(0))) running = row;
+    const auto beside = [follows = follows_[k], share = settings_.wind_share](Scalar& value, Scalar& mean) noexcept {
+      mean += follows * (value - mean);
+      value -= share * mean;
+    };
+    for (std::size_t i = 0; i < row.shared.size(); ++i) beside(row.shared[i], running.shared[i]);
+    for (std::size_t lag = 0; lag < lag_count; ++lag) {
+      for (std::size_t i = 0; i < row.owns[lag].size(); ++i) beside(row.owns[lag][i], running.owns[lag][i]);
+    }
   }
   void teach_drag(const Vector3<Scalar>& velocity_m_s, const Vector3<Scalar>& force_m_s2) noexcept {
     using std::sqrt;
@@ -219,13 +235,15 @@ class SumRegression {
   Scalar root_keep_{0}, root_keep_torque_{0}, root_keep_drag_{0};
   std::array<Scalar, 3> follows_{};
   std::uint64_t row_us_ = 0;
-  std::array<SumTriangles<Scalar>, 4> triangles_{};
+  SumTriangles<Scalar, thrust_terms> thrust_{};
+  std::array<SumTriangles<Scalar, turn_terms>, 3> turns_{};
   Scalar rows_{0}, means_of_torque_{0}, rows_of_drag_{0};  ///< each as often as it is still remembered
   struct {
-    std::array<SumRow, 3> of{};
+    std::array<SumRow<turn_terms>, 3> of{};
     std::uint32_t rows = 0;
-  } mean_{};                         ///< of roll, pitch and yaw, until it is whole
-  std::array<SumRow, 3> running_{};  ///< means, of thrust, roll and pitch
+  } mean_{};  ///< of roll, pitch and yaw, until it is whole
+  SumRow<thrust_terms> running_thrust_{};
+  std::array<SumRow<turn_terms>, 2> running_{};  ///< means, of roll and pitch
   Triangle<Scalar, 3> drag_{};
 };
 }  // namespace detail
