@@ -89,6 +89,8 @@ class JobLine {
     if (!line_ || job != job_) line_.emplace(job_ = job);
     line_->update(share);
   }
+  /// Takes the line off the terminal.
+  void clear() { line_.reset(); }
 
  private:
   std::optional<ProgressLine> line_;
