@@ -14,7 +14,7 @@ from math import asin, atan2, cos, degrees, sin, sqrt
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, cell, column, edited, replaced, table
+from conftest import SOURCE, cell, column, edited, needed, replaced, table
 
 HERE = SOURCE / "tests/programs/import"
 FLIGHT = "A1_wave_rep1.csv"

@@ -124,9 +124,9 @@ def test_waypoints_of_a_file(pinnquad):
     flown = flown_by(pinnquad, model)
     low, high = flown["altitude_m"]
     assert flown["period_s"] == 10 and flown["model"]["asked"] == 5000, flown
-    assert 2 <= flown["half_length_m"] < 3 and low <= 19 and high >= 22 and high - low < 5, flown
+    assert 2 <= flown["half_length_m"] < 4 and low > 18 and 3 <= high - low < 4, flown
     for who in "model", "analytic_inverse":
-        assert flown[who]["rmse_m"] < 0.02 and flown[who]["max_speed_m_s"] > 2, flown
+        assert 0 < flown[who]["rmse_m"] < 0.02, flown
     assert "own.csv" in pinnquad(model).out
     # controllers fly it too, their errors are of what comes after 10 s: here of the last point, where they wait
     rows = json.loads(pinnquad(f"{model} --controllers formula,pid --json").out)["rows"]
@@ -141,7 +141,7 @@ def test_waypoints_of_a_file(pinnquad):
 
 @pytest.mark.parametrize("rows, head, at, keyword", [
     (["0,0,0,0", "1,1,0,0"], "t,x,y", "own.csv:1", "column named z"), (["0,0,0,0"], None, "own.csv:2", "2 rows"),
-    (["0,0,0,0", "1,a,0,0"], None, "own.csv:3:2", "'a'"), (["0,0,0,0", "2,1,0,0", "2,2,0,0"], None, "own.csv:4:1", "after"),
+    (["0,0,0,0", "1,a,0,0"], None, "own.csv:3:2", 'found "a"'), (["0,0,0,0", "2,1,0,0", "2,2,0,0"], None, "own.csv:4:1", "after"),
     (["0,0,0,0", "4000,1,0,0"], None, "own.csv:3:1", "at most 600"), (["0,0,0,0", "5,0,20000,0"], None, "own.csv:3:3", "10 km"),
     (["0,0,0,0,0", "5,1,0,0,90"], "t,x,y,z,yaw", "own.csv:3:5", "half a turn"),
     (["0,0,0,0", "3,1,0,0", "3.4,20,0,0", "9,0,0,0"], None, "own.csv:*", "times the weight"),

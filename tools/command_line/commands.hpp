@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -54,14 +55,16 @@ inline constexpr std::pair<const char*, const char*> gone_options[] = {
     {"--log", "LOGS --mapping NAME"},  {"--model", "MODEL"},
     {"--recipe", "--models NAME,..."}, {"--loss", "--models NAME,..."}};
 
-/// The first example of a command's help without what is behind it, after two spaces or more. Empty where it has
+/// The first example of a command's help that calls it, without what is behind it after two spaces. Empty where it has
 /// none.
 inline std::string first_example(const CLI::App& command) {
-  const std::string help = command.get_footer(), begin = "\n  ";
-  const std::size_t at = help.find(begin + "pinnquad");
-  if (at == std::string::npos) return "";
-  const std::string line = help.substr(at + begin.size(), help.find('\n', at + 1) - at - begin.size());
-  return line.substr(0, line.find("  "));
+  std::istringstream lines(command.get_footer());
+  for (std::string line; std::getline(lines, line);) {
+    if (line.compare(0, 10, "  pinnquad") != 0 || line.find(" " + command.get_name() + " ") == std::string::npos)
+      continue;
+    return line.substr(2, line.find("  ", 2) - 2);
+  }
+  return "";
 }
 
 /// Throws, one line, for words that are left over: of options that there are not, the first is named.

@@ -2,7 +2,6 @@
 #include "flight/block_loop.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -35,18 +34,16 @@ AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const Model
   if (is_waypoint_file(plan.trajectory)) {
     const WaypointPath path =
         waypoints_for(plan.trajectory, detail::center_for(ground_z_m, range), ground_z_m, plan.airframe);
-    double least_m = 0, most_m = 0, lowest_m = std::numeric_limits<double>::infinity(), highest_m = -lowest_m;
+    Vector3<double> least_m = path.sample(0).position_m, most_m = least_m;
     for (double time_s = 0; time_s <= path.duration_s(); time_s += 0.02) {
-      const auto position_m = path.sample(time_s).position_m;
-      least_m = std::min(least_m, position_m[0]);
-      most_m = std::max(most_m, position_m[0]);
-      lowest_m = std::min(lowest_m, ground_z_m - position_m[2]);
-      highest_m = std::max(highest_m, ground_z_m - position_m[2]);
+      least_m = least_m.cwiseMin(path.sample(time_s).position_m);
+      most_m = most_m.cwiseMax(path.sample(time_s).position_m);
     }
-    flights.half_length_m = (most_m - least_m) / 2;
+    constexpr double least_half_m = 1;  // of one that stays at a place: so far off, a vehicle is lost
+    flights.half_length_m = std::max(least_half_m, (most_m - least_m).maxCoeff() / 2);
     flights.period_s = flights.duration_s = path.duration_s();
-    flights.lowest_m = lowest_m;
-    flights.highest_m = highest_m;
+    flights.lowest_m = ground_z_m - most_m[2];
+    flights.highest_m = ground_z_m - least_m[2];
     return AnyTrajectory{[path](double time_s) { return path.sample(time_s); }};
   }
   if (plan.trajectory == "circle") {

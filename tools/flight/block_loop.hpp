@@ -27,7 +27,7 @@ struct LoopPlan {
 };
 
 struct LoopFlights {
-  double half_length_m = 0, period_s = 0;  ///< of waypoints: half their extent north; from the first to the last
+  double half_length_m = 0, period_s = 0;  ///< of waypoints: half their extent, 1 m at least; from first to last
   double duration_s = pinnquad::TrackingPlan<double>{}.duration_s;
   double lowest_m = 0, highest_m = 0;  ///< altitude of the trajectory
   bool near_ground = false;            ///< in ground effect: the model is shown the altitude
