@@ -77,7 +77,7 @@ inline std::string first_example(const CLI::App& command) {
   if (option == words.end()) throw std::invalid_argument("expected no word more, found '" + words.front() + "'");
   std::vector<std::string> known;
   for (const CLI::Option* one : command.get_options()) {
-    if (one->nonpositional()) known.push_back(one->get_name());
+    if (one->nonpositional() && one != command.get_help_ptr()) known.push_back(one->get_name());
   }
   const std::string name = option->substr(0, option->find('='));
   throw std::invalid_argument("no option " + name + "; " + pinnquad::logs::nearest_names(name, known));
