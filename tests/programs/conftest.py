@@ -98,12 +98,14 @@ class Program:
         return done
 
     def refused(self, *words, at="", keyword="", code=2, **how):
-        """Runs it; it says one line, of that place and with that word. A * in the place is any number."""
+        """Runs it; it says one line, of that place and with that word, and a command to type next. A * in the place is
+        any number."""
         done = self(*words, code=code, **how)
         assert len(done.lines) == 1, done
         name = Path(done.words[0]).name
         if name in ("pinnquad", "pinnquad-study"):
             assert done.lines[0].split(":")[0] in (name, *done.words[1:]), done
+            assert code != 2 or re.search("pinnquad(-study)? ", done.lines[0]), ("names no command to type next", done)
         place = re.escape(at).replace(r"\*", r"\d+")
         assert re.search(rf"(^|[ /]){place}(?![\w.])" if at else "", done.lines[0]), (at, done)
         assert keyword in done.lines[0], (keyword, done)

@@ -95,6 +95,21 @@ def test_refused(pinnquad, commands, words, keyword):
     check_refused(pinnquad, commands, words, keyword)
 
 
+@pytest.mark.parametrize("words, keyword", [
+    ("trian f.csv", "no command named 'trian'; nearest: train"), ("help", "see pinnquad --help"),
+    ("train f.csv --epoch 5", "no option --epoch; nearest: --epochs"),
+    ("train f.csv --Epochs=5", "no option --Epochs; nearest: --epochs"),
+    ("loop m.block --seconds -1", "no option --seconds"), ("train f.csv --epochs ten", "see pinnquad train --help"),
+    ("airframe list check", "expected no word more, found 'check'"), ("block", "for example: pinnquad block "),
+    ("convert", "for example: pinnquad convert "), ("replay f.ulg", "for example: pinnquad replay "),
+    ("benchmark", "for example: pinnquad benchmark "), ("fly d1", "pinnquad fly d1 --out d1.csv"),
+    ("loop", "pinnquad loop my_model/model.block"), ("import f.ulg", "--out dataset"),
+    ("train none.csv", "see pinnquad train --help")])
+def test_a_mistake_of_the_first_hour(pinnquad, words, keyword):
+    """The line names what was meant, or what to type next."""
+    pinnquad.refused(words, keyword=keyword)
+
+
 @pytest.mark.parametrize("words, instead", [
     ("train --flight f.csv", "train ... FLIGHTS"), ("train --log=f.csv", "train ... LOGS --mapping"),
     ("identify --dataset d", "identify ... DIR"), ("evaluate --model m.block f.csv", "evaluate ... MODEL"),

@@ -254,7 +254,7 @@ def test_too_short(pinnquad, flown):
 
 
 @pytest.mark.parametrize("words, keyword", [
-    ("", "expected FLIGHTS"), ("a raw.csv", "one dataset"), ("raw.csv", "does not tell which"),
+    ("", "expected FLIGHTS"), ("a raw.csv", "one dataset"), ("raw.csv", "none of these names"),
     ("--log raw.csv", "identify ... LOGS"),
     ("b.csv --rate 100", "--rate"), ("b.csv --out vehicle.hpp", ".toml"),
     ("b.csv --mass 0", "--mass"), ("nowhere.csv", "nowhere.csv")])

@@ -14,7 +14,7 @@ from math import asin, atan2, cos, degrees, sin, sqrt
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, cell, column, edited, replaced, table
+from conftest import SOURCE, cell, column, edited, needed, replaced, table
 
 HERE = SOURCE / "tests/programs/import"
 FLIGHT = "A1_wave_rep1.csv"
@@ -498,3 +498,37 @@ def test_px4_recorded(pinnquad, recorded):
     count, found = errors(rebuilt, numbers(sorted(Path("B").glob("*.csv"))[0], "u1", "u2", "u3", "u4"),
                           facts("B")["lag_removed_s"])
     assert 1000 <= count <= 5000 and max(found) <= 0.02
+
+
+def test_progress_on_a_terminal(pinnquad, recorded):
+    """Each part has shares of its own, which never fall; those of one flight move while it is compared."""
+    needed("script")
+    if os.system("script -qec true /dev/null >/dev/null 2>&1 </dev/null"):
+        pytest.skip("no pseudo-terminal here")
+    words = f"'{pinnquad}' import '{recorded('sih/test_circle.ulg')}' --out dataset"
+    os.system(f'script -qec "{words}" terminal.txt >/dev/null </dev/null')
+    shares = {}
+    for job, share in re.findall(r"([a-z][a-z0-9_ ]*): +([0-9]+) %", Path("terminal.txt").read_text()):
+        shares.setdefault(job, []).append(int(share))
+    assert all(of == sorted(of) for of in shares.values()), shares
+    assert "reading test_circle" in shares and any(0 < share < 100 for share in shares["comparing the flights"]), shares
+
+
+def test_a_part_of_a_log_whose_mapping_its_content_names(pinnquad, recorded):
+    log = recorded("sih/test_circle.ulg")
+    rows = {}
+    for words in "", "--from 40 --to 70":
+        pinnquad(f"import {log} {words} --out dataset")
+        rows[words] = sum(flight["rows"] for flight in json.loads(Path("dataset/dataset.json").read_text())["flights"])
+    assert 0 < rows["--from 40 --to 70"] < rows[""], rows
+
+
+def test_folder_without_logs(pinnquad):
+    Path("empty").mkdir()
+    pinnquad.refused("import empty --out dataset", at="empty", keyword="found a folder without logs")
+
+
+def test_unknown_key_of_a_mapping(pinnquad):
+    Path("own.toml").write_text('[moters]\ncolumns = ["u1"]\n')
+    Path("log.csv").write_text("t,u1\n0,0\n")
+    pinnquad.refused("import log.csv --mapping own.toml --out dataset", at="own.toml:1:2", keyword="nearest: motors")

@@ -294,7 +294,7 @@ def test_a_part_of_the_logs(pinnquad, logs):
     for flight in json.loads(Path("dataset/dataset.json").read_text())["flights"]:
         assert 500 <= flight["rows"] <= 600, flight
     pinnquad.refused(f"import logs {MAPPED} --from 40 --to 10 --out other", keyword="--from")
-    pinnquad.refused("identify dataset --from 10", keyword="--mapping")
+    pinnquad.refused("identify dataset --from 10", keyword="go with logs")
 
 
 def test_one_log_is_cut_into_flights_that_can_be_held_out(pinnquad, logs):

@@ -113,6 +113,45 @@ def test_loses_another_vehicle(pinnquad):
         assert flown["model"]["answered_share"] > 0.99 and flown["model"]["rmse_m"] < 0.02, trajectory
 
 
+def waypoints(name, *rows, head="t,x,y,z,yaw"):
+    Path(name).write_text("\n".join([head, *rows, ""]))
+
+
+def test_waypoints_of_a_file(pinnquad):
+    """The path goes through them, at rest at both ends; the flight is as long as they are; z is down."""
+    model = f"loop {MODELS}/structured_quadrotor.block --trajectory own.csv"
+    waypoints("own.csv", "10,0,0,0,0", "13,4,0,-2,0.4", "16,4,4,1,0.4", "20,0,0,0,0")
+    flown = flown_by(pinnquad, model)
+    low, high = flown["altitude_m"]
+    assert flown["period_s"] == 10 and flown["model"]["asked"] == 5000, flown
+    assert 2 <= flown["half_length_m"] < 4 and low > 18 and 3 <= high - low < 4, flown
+    for who in "model", "analytic_inverse":
+        assert 0 < flown[who]["rmse_m"] < 0.02, flown
+    assert "own.csv" in pinnquad(model).out
+    # controllers fly it too, their errors are of what comes after 10 s: here of the last point, where they wait
+    rows = json.loads(pinnquad(f"{model} --controllers formula,pid --json").out)["rows"]
+    assert all(row["rmse_cm"] < 2 and not row["crashed"] for row in rows), rows
+    # without yaw, columns in any order
+    waypoints("own.csv", "0,0,0,0", "0,8,0,0", head="y,t,z,x")
+    assert flown_by(pinnquad, model)["model"]["rmse_m"] < 0.01
+    # a file that is slower than one of the usual trajectories is as long as it says
+    waypoints("own.csv", "0,0,0,0", "45,3,0,0", head="t,x,y,z")
+    assert json.loads(pinnquad(f"{model} --controllers formula --json").out)["duration_s"] == 45
+
+
+@pytest.mark.parametrize("rows, head, at, keyword", [
+    (["0,0,0,0", "1,1,0,0"], "t,x,y", "own.csv:1", "column named z"), (["0,0,0,0"], None, "own.csv:2", "2 rows"),
+    (["0,0,0,0", "1,a,0,0"], None, "own.csv:3:2", 'found "a"'), (["0,0,0,0", "2,1,0,0", "2,2,0,0"], None, "own.csv:4:1", "after"),
+    (["0,0,0,0", "4000,1,0,0"], None, "own.csv:3:1", "at most 600"), (["0,0,0,0", "5,0,20000,0"], None, "own.csv:3:3", "10 km"),
+    (["0,0,0,0,0", "5,1,0,0,90"], "t,x,y,z,yaw", "own.csv:3:5", "half a turn"),
+    (["0,0,0,0", "3,1,0,0", "3.4,20,0,0", "9,0,0,0"], None, "own.csv:*", "times the weight"),
+    (["0,0,0,0", "20,0,0,30"], None, "own.csv:3", "above the ground"), ([], None, "own.csv:1", "2 rows")])
+def test_waypoints_refused(pinnquad, rows, head, at, keyword):
+    waypoints("own.csv", *rows, head=head or "t,x,y,z")
+    for more in "", " --controllers pid":
+        pinnquad.refused(f"loop {MODELS}/structured_quadrotor.block --trajectory own.csv{more}", at=at, keyword=keyword)
+
+
 def errors_of(pinnquad, *words, model="structured_quadrotor"):
     """By condition and controller, cm."""
     flown = json.loads(pinnquad(f"loop {MODELS}/{model}.block --json", *words).out)

@@ -232,6 +232,6 @@ def test_refused(pinnquad, flight, commands, words, keyword):
     line = pinnquad.refused(f"train {flight} --out out --epochs 1 --seeds 1 {words}", keyword=keyword).lines[0]
     assert not os.listdir("out")
     (text,) = [text for command, text in commands if command.words[-1] == "train"]
-    nearest = line.split("nearest: ")[1].replace("_", ", ") if "nearest: " in line else "altitude, slopes, pinned, 130"
+    nearest = line.split("nearest: ")[1].split(";")[0].replace("_", ", ") if "nearest: " in line else "altitude, slopes, pinned, 130"
     for name in nearest.split(", "):
         assert name in text, f"help does not name {name}"

@@ -170,7 +170,7 @@ def test_full_disk(paper):
     ("paper --seeds 1", "", "--out"),
     ("ablation --variants vanilla,z --out no", "", "z"), ("paper --seeds 0 --out no", "", "--seeds"),
     ("--models 2 --seeds 1 --out no", "", "expected a command"), ("--models 2 ablation --seeds 1 --epochs 1 --out no",
-                                                                  "", "not expected"),
+                                                                  "", "no option --models; nearest"),
     ("paper ablation --seeds 1 --epochs 1 --out no", "", "ablation"),
     (f"paper {OPTIONS} --out a_file/out", "a_file/out", ""),
     (f"paper {OPTIONS} --out garbage", "garbage/study.json:1:1", "JSON"),

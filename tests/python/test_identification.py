@@ -54,8 +54,8 @@ def test_the_vehicle_is_found_and_flies(flown):
     assert number.low < number.value < number.high and number.unit == "rad/s^2"
     assert number.value == pytest.approx(0.985 * 40, rel=0.06)  # the air at 157 m is thinner
     assert number.excitation in ("good", "fair") and number.fly is None
-    assert found.numbers["gyroscopic_roll"].excitation == "not told" and found.numbers["gyroscopic_roll"].fly
-    assert "numbers told" in repr(found)
+    assert found.numbers["gyroscopic_roll"].excitation == "not determined" and found.numbers["gyroscopic_roll"].fly
+    assert "numbers determined" in repr(found)
     airframe = found.airframe
     airframe.check()
     airframe.mass_kg = 9

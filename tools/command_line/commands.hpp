@@ -4,8 +4,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -18,6 +22,7 @@
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "command_line/settings_file.hpp"
+#include "logs/nearest_names.hpp"
 
 namespace programs {
 
@@ -50,6 +55,34 @@ inline constexpr std::pair<const char*, const char*> gone_options[] = {
     {"--log", "LOGS --mapping NAME"},  {"--model", "MODEL"},
     {"--recipe", "--models NAME,..."}, {"--loss", "--models NAME,..."}};
 
+/// The first example of a command's help that calls it, without what is behind it after two spaces. Empty where it has
+/// none.
+inline std::string first_example(const CLI::App& command) {
+  std::istringstream lines(command.get_footer());
+  for (std::string line; std::getline(lines, line);) {
+    if (line.compare(0, 10, "  pinnquad") != 0 || line.find(" " + command.get_name() + " ") == std::string::npos)
+      continue;
+    return line.substr(2, line.find("  ", 2) - 2);
+  }
+  return "";
+}
+
+/// Throws, one line, for words that are left over: of options that there are not, the first is named.
+[[noreturn]] inline void refuse_words(const CLI::App& command, const std::vector<std::string>& words) {
+  const auto is_option = [](const std::string& word) {
+    const std::size_t at = word.find_first_not_of('-');
+    return at != std::string::npos && (at == 1 || at == 2) && std::isalpha(static_cast<unsigned char>(word[at])) != 0;
+  };
+  const auto option = std::find_if(words.begin(), words.end(), is_option);
+  if (option == words.end()) throw std::invalid_argument("expected no word more, found '" + words.front() + "'");
+  std::vector<std::string> known;
+  for (const CLI::Option* one : command.get_options()) {
+    if (one->nonpositional() && one != command.get_help_ptr()) known.push_back(one->get_name());
+  }
+  const std::string name = option->substr(0, option->find('='));
+  throw std::invalid_argument("no option " + name + "; " + pinnquad::logs::nearest_names(name, known));
+}
+
 /// Throws, one line, where a command is missing or words are left over. They are left with the program: what a command
 /// does not know is handed up. `elsewhere` ends the line about a command that there is not.
 inline void require_command(const CLI::App& program, const std::string& elsewhere) {
@@ -68,14 +101,18 @@ inline void require_command(const CLI::App& program, const std::string& elsewher
         throw std::invalid_argument("no option " + option + "; write: " + command.get_name() + " ... " + instead);
       }
     }
-    if (!unknown.empty()) throw CLI::ExtrasError(command.get_name(), unknown);
+    if (!unknown.empty()) refuse_words(command, unknown);
     return;
   }
-  if (unknown.empty()) throw std::invalid_argument("expected a command: " + known + " (see --help)");
+  if (unknown.empty()) throw std::invalid_argument("expected a command: " + known);
   if (unknown.front().compare(0, 1, "-") == 0) {
-    throw std::invalid_argument("expected a command before " + unknown.front() + ": " + known + " (see --help)");
+    throw std::invalid_argument("expected a command before " + unknown.front() + ": " + known);
   }
-  throw std::invalid_argument("no command named '" + unknown.front() + "'; known: " + known + elsewhere);
+  std::vector<std::string> names;
+  for (const CLI::App* part : command.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(part->get_name());
+  throw std::invalid_argument("no command named '" + unknown.front() + "'; " +
+                              pinnquad::logs::nearest_names(unknown.front(), names) + "; known: " + known + elsewhere);
 }
 
 }  // namespace detail
@@ -110,7 +147,10 @@ inline std::optional<int> choose_command(CLI::App& program, int argument_count, 
     detail::require_command(program, elsewhere);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);
-    complain(name.c_str(), error.what());
+    const bool lacks = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    const std::string example = lacks ? detail::first_example(detail::chosen_command(program)) : "";
+    const std::string what = error.what() + (example.empty() ? "" : "; for example: " + example);
+    complain(name.c_str(), with_help(what, help_of(program.get_name(), name)));
     return exit_bad_input;
   }
   return {};

@@ -31,6 +31,19 @@ inline void complain(const char* program, const std::string& what) {
   std::fprintf(stderr, "%s\n", isatty(STDERR_FILENO) != 0 ? in_columns(line, 2).c_str() : line.c_str());
 }
 
+/// `what`, and behind it the help to read next, such as "pinnquad train --help", where it names no command itself.
+inline std::string with_help(const std::string& what, const std::string& help) {
+  for (const char* named : {"pinnquad ", "pinnquad-study ", "--help"}) {
+    if (what.find(named) != std::string::npos) return what;
+  }
+  return what + "; see " + help;
+}
+
+/// "pinnquad train --help" of the program that was called and the command that was chosen: itself where none was.
+inline std::string help_of(const std::string& called, const std::string& command) {
+  return called + (command == called ? "" : " " + command) + " --help";
+}
+
 namespace detail {
 
 /// Descriptors 0, 1 and 2 that the caller closed are taken, or the first files opened would get what is printed.
@@ -54,13 +67,15 @@ inline bool is_refusal(const std::exception& error) {
 /// Runs a program: `body()` gives its exit code; what it throws becomes one line. A refusal and the want of memory are
 /// exit_bad_input. Any other exception is a fault of ours, and exit_internal_fault. Standard output that could not be
 /// written (a full disk, a closed pipe: files are finished all the same) is told as a refusal is.
-/// Lines begin with `program`, which the body may change: to the command that was chosen.
+/// Lines begin with `program`, which the body may change: to the command that was chosen. A refusal ends with a command
+/// to type next: its own, or that command's --help.
 template <class Body>
 int run_program(const std::string& program, const Body& body) {
   detail::take_closed_streams();
   std::signal(SIGPIPE, SIG_IGN);  // a reader who left is no reason to lose a training
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a full disk: an error to report
   int code = exit_bad_input;
+  const std::string called = program;
   const auto fault = [&code](const std::string& what) {
     complain("pinnquad " PINNQUAD_VERSION, "internal fault: " + what + "; please report it");
     code = exit_internal_fault;
@@ -74,7 +89,7 @@ int run_program(const std::string& program, const Body& body) {
     complain(program.c_str(), "out of memory");
   } catch (const std::exception& error) {
     if (detail::is_refusal(error)) {
-      complain(program.c_str(), error.what());
+      complain(program.c_str(), with_help(error.what(), help_of(called, program)));
     } else {
       fault(error.what());
     }

@@ -107,13 +107,11 @@ void add_time_range(CLI::App& app, Options& options) {
   add_number(app, "--to", options.to_s, 0.0, longest_s, "and until this time")->default_str("");
 }
 
-/// Throws std::invalid_argument, one line, for a part of what is no log, and for an empty one.
+/// Throws std::invalid_argument, one line, for a part of what are no logs, and for an empty one.
 template <class Options>
-void require_time_range(const Options& options) {
+void require_time_range(const Options& options, bool are_logs) {
   const bool given = options.from_s > 0 || options.to_s;
-  if (given && options.mapping.empty()) {
-    throw std::invalid_argument("--from and --to go with logs and their --mapping");
-  }
+  if (given && !are_logs) throw std::invalid_argument("--from and --to go with logs: of other rows all count");
   if (options.to_s && *options.to_s <= options.from_s) {
     throw std::invalid_argument("--to: expected more than --from");
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -16,6 +17,26 @@
 #include "command_line/interrupt.hpp"
 
 namespace programs {
+
+/// The share of a job that was done at a time since its begin.
+struct PassedShare {
+  double time_s, share;
+};
+
+/// How long the job still takes, by what has passed of it, in order of time: at the geometric mean of its speed so far,
+/// slow where it begins slowly, and of that in the second half of the time, fast where steps are large. Empty before
+/// enough is done to know.
+inline std::optional<double> seconds_left(const std::vector<PassedShare>& passed) {
+  constexpr double least_share = 0.03;
+  const PassedShare now = passed.back();
+  if (now.share < least_share || !(now.time_s > 0)) return {};
+  const PassedShare half =
+      *std::find_if(passed.begin(), passed.end(), [&](const PassedShare& one) { return 2 * one.time_s >= now.time_s; });
+  const double speed_1_s = now.share / now.time_s;
+  const bool has_half = half.time_s < now.time_s && half.share < now.share;
+  const double late_1_s = has_half ? (now.share - half.share) / (now.time_s - half.time_s) : speed_1_s;
+  return (1 - now.share) / std::sqrt(speed_1_s * late_1_s);
+}
 
 /// Shows how much of one job is done. update() may be called as often as one likes; what is shown is limited.
 class ProgressLine {
@@ -41,8 +62,8 @@ class ProgressLine {
     if (!terminal_ && share >= 1) return;  // the summary says so
     next_s_ = now_s + (terminal_ ? terminal_interval_s : plain_interval_s);
     if (!terminal_ && now_s < plain_interval_s) return;
-    std::fprintf(stderr, "%s%s: %3.0f %%%s%s", terminal_ ? "\r" : "", job_.c_str(), 100 * share,
-                 time_left(share).c_str(), terminal_ ? "       " : "\n");
+    std::fprintf(stderr, "%s%s: %3.0f %%%s%s", terminal_ ? "\r" : "", job_.c_str(), 100 * share, time_left().c_str(),
+                 terminal_ ? "       " : "\n");
     std::fflush(stderr);
     shown_ = terminal_;
   }
@@ -56,28 +77,16 @@ class ProgressLine {
   double elapsed_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
  private:
-  struct Passed {
-    double time_s, share;
-  };
-
-  /// At the speed of the second half of the time so far, which a machine that others use too changes. Empty before
-  /// enough is done to know.
-  std::string time_left(double share) const {
-    constexpr double least_share = 0.03;
-    const Passed now = passed_.back();
-    const Passed half = *std::find_if(passed_.begin(), passed_.end(),
-                                      [&](const Passed& passed) { return 2 * passed.time_s >= now.time_s; });
-    const bool began = half.time_s >= now.time_s || half.share >= share;
-    const double speed_1_s = began ? share / now.time_s : (share - half.share) / (now.time_s - half.time_s);
-    if (share < least_share || !(speed_1_s > 0)) return "";
-    const double left_s = (1 - share) / speed_1_s;
-    return left_s < 100 ? in_words(", %.0f s left", left_s) : in_words(", %.0f min left", left_s / 60);
+  std::string time_left() const {
+    const std::optional<double> left_s = seconds_left(passed_);
+    if (!left_s) return "";
+    return *left_s < 100 ? in_words(", %.0f s left", *left_s) : in_words(", %.0f min left", *left_s / 60);
   }
 
   std::string job_;
   bool terminal_;
   bool shown_{false};
-  std::vector<Passed> passed_;
+  std::vector<PassedShare> passed_;
   double next_s_{0};
   std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
 };
@@ -89,6 +98,8 @@ class JobLine {
     if (!line_ || job != job_) line_.emplace(job_ = job);
     line_->update(share);
   }
+  /// Takes the line off the terminal.
+  void clear() { line_.reset(); }
 
  private:
   std::optional<ProgressLine> line_;

@@ -36,7 +36,9 @@ struct ConvertOptions : programs::Conversion {
 /// Of a network a model.
 void convert_network(const ConvertOptions& options) {
   if (options.features.empty()) {
-    throw std::invalid_argument("--features is required: no file of weights says what its numbers mean");
+    throw std::invalid_argument(
+        "--features is required: no file of weights says what its numbers mean; begin the file: pinnquad convert "
+        "flight.csv --out features.toml");
   }
   programs::FileRoles roles;
   roles.reads("source", options.source);

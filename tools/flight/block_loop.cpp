@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "flight/block_loop.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "flight/battery_choice.hpp"
 #include "flight/block_feed_forward.hpp"
 #include "flight/loop_trajectories.hpp"
+#include "flight/waypoints.hpp"
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/aero/ground_effect.hpp"
@@ -20,7 +22,7 @@ namespace {
 using namespace pinnquad;
 
 AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const ModelRange& range, LoopFlights& flights) {
-  constexpr const char* none = "the model's envelope holds no trajectory of this kind, however slow: --no-envelope";
+  constexpr const char* none = "the model's envelope holds no trajectory of this kind, however slow: --guard none";
   const auto take = [&](const auto& trajectory, double half_length_m, double half_height_m) {
     const double middle_m = ground_z_m - trajectory.center_m[2];
     flights.half_length_m = half_length_m;
@@ -29,6 +31,21 @@ AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const Model
     flights.highest_m = middle_m + half_height_m;
     return AnyTrajectory{[trajectory](double time_s) { return trajectory.sample(time_s); }};
   };
+  if (is_waypoint_file(plan.trajectory)) {
+    const WaypointPath path =
+        waypoints_for(plan.trajectory, detail::center_for(ground_z_m, range), ground_z_m, plan.airframe);
+    Vector3<double> least_m = path.sample(0).position_m, most_m = least_m;
+    for (double time_s = 0; time_s <= path.duration_s(); time_s += 0.02) {
+      least_m = least_m.cwiseMin(path.sample(time_s).position_m);
+      most_m = most_m.cwiseMax(path.sample(time_s).position_m);
+    }
+    constexpr double least_half_m = 1;  // of one that stays at a place: so far off, a vehicle is lost
+    flights.half_length_m = std::max(least_half_m, (most_m - least_m).maxCoeff() / 2);
+    flights.period_s = flights.duration_s = path.duration_s();
+    flights.lowest_m = ground_z_m - most_m[2];
+    flights.highest_m = ground_z_m - least_m[2];
+    return AnyTrajectory{[path](double time_s) { return path.sample(time_s); }};
+  }
   if (plan.trajectory == "circle") {
     const auto circle = circle_for(plan.airframe, ground_z_m, range);
     if (!circle) throw std::invalid_argument(none);
@@ -85,21 +102,21 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   const FlightController<double> controller(
       {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
   const AnalyticInverse<SwitchedQuadrotor> analytic(vehicle);
+  TrackingPlan<double> how;
+  how.duration_s = flights.duration_s;
   const auto fly = [&](const auto& feed_forward) {
-    const TrackingPlan<double> usual;
-    return track(vehicle, world, trajectory, controller, feed_forward, usual,
-                 flights.traces.model.observer(usual.duration_s));
+    return track(vehicle, world, trajectory, controller, feed_forward, how,
+                 flights.traces.model.observer(how.duration_s));
   };
   using FallsBack = Fallback<AnalyticInverse<SwitchedQuadrotor>>;
   const auto fly_model = [&](const auto& guard) { return with_feed_forward(model, guard, ground_z_m, columns, fly); };
   flights.model = plan.keeps_envelope ? fly_model(Extend<TrainingGuard, FallsBack>(analytic))
                                       : fly_model(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic));
   if (world.voltage_V != nullptr) flights.last_voltage_V = *world.voltage_V;
-  flights.analytic_inverse = track(vehicle, trajectory, controller, analytic);
+  flights.analytic_inverse = track(vehicle, trajectory, controller, analytic, how);
   ExactWorld<SwitchedQuadrotor> exact{vehicle};
-  const TrackingPlan<double> usual;
-  flights.without_jerk = track(vehicle, exact, WithoutJerk{trajectory}, controller, analytic, usual,
-                               flights.traces.without.observer(usual.duration_s));
+  flights.without_jerk = track(vehicle, exact, WithoutJerk{trajectory}, controller, analytic, how,
+                               flights.traces.without.observer(how.duration_s));
   return flights;
 }
 

@@ -19,7 +19,7 @@ namespace programs {
 inline constexpr std::array<const char*, 3> loop_trajectories = {"eight", "yaw_eight", "circle"};
 
 struct LoopPlan {
-  std::string trajectory;                 ///< one of loop_trajectories
+  std::string trajectory;                 ///< one of loop_trajectories, or a file of waypoints (flight/waypoints.hpp)
   pinnquad::Airframe<double> airframe{};  ///< what flies, in calm air
   bool keeps_envelope = true;             ///< the model declines outside its training envelope, as TrainingGuard does
   std::vector<double> columns;            ///< of the model, in their order
@@ -27,7 +27,8 @@ struct LoopPlan {
 };
 
 struct LoopFlights {
-  double half_length_m = 0, period_s = 0;
+  double half_length_m = 0, period_s = 0;  ///< of waypoints: half their extent, 1 m at least; from first to last
+  double duration_s = pinnquad::TrackingPlan<double>{}.duration_s;
   double lowest_m = 0, highest_m = 0;  ///< altitude of the trajectory
   bool near_ground = false;            ///< in ground effect: the model is shown the altitude
   double last_voltage_V = 0;           ///< of a battery that the model reads

@@ -279,7 +279,8 @@ class ChosenFlight {
 /// Options that contradict each other; empty if none do.
 std::string contradiction(const FlyOptions& o) {
   const bool single_output = !o.record_sticks.empty() || !o.pictures.empty() || !o.watch.empty();
-  if (o.out.empty() && !single_output && o.statistics == 0) return "--out FILE.csv is needed (see --help)";
+  if (o.out.empty() && !single_output && o.statistics == 0)
+    return "--out FILE.csv is needed: pinnquad fly d1 --out d1.csv";
   if (o.statistics > 0 && !o.sticks.empty()) return "--statistics flies seeds, --sticks a recording: one of them";
   if (o.statistics > 0 && single_output) return "--statistics goes with none of --record-sticks, --pictures, --watch";
   if (!o.sticks.empty() && o.max_speed_m_s) return "--max-speed is the random pilot's, --sticks has no use for it";

@@ -36,7 +36,7 @@ inline double looseness(const IdentifiedNumber& number) {
 /// How well the flights tell a number: half its interval is 5 %, 15 %, 50 % of it, or more.
 inline const char* excitation_words(const IdentifiedNumber& number) {
   const double loose = looseness(number);
-  return loose <= 0.05 ? "good" : loose <= 0.15 ? "fair" : loose <= 0.5 ? "weak" : "not told";
+  return loose <= 0.05 ? "good" : loose <= 0.15 ? "fair" : loose <= 0.5 ? "weak" : "not determined";
 }
 inline bool is_told(const IdentifiedNumber& number) { return looseness(number) <= 0.5; }
 

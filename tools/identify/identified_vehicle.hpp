@@ -80,9 +80,9 @@ inline std::string why_no_airframe(const pinnquad::Identification& found, const 
       if (i == 3 && !backwards) continue;
       if (pinnquad::is_told(number.estimate, 0.5) && !backwards) continue;
       return "column " + std::string(columns[i]) + ": " + number.words + " is " +
-             (backwards
-                  ? "negative, " + interval_text(number.estimate) + ": the commands turn it the other way"
-                  : "not told, " + interval_text(number.estimate) + ", as " + number.moved + "; fly: " + number.flight);
+             (backwards ? "negative, " + interval_text(number.estimate) + ": the commands turn it the other way"
+                        : "not determined, " + interval_text(number.estimate) + ", as " + number.moved +
+                              "; fly: " + number.flight);
     }
   }
   if (const auto number = pinnquad::implausible_number(found, like)) return implausible_in_words(*number);

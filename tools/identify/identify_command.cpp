@@ -179,7 +179,7 @@ Command identify_command(CLI::App& program) {
             if (options->rate_hz && !are_logs) {
               throw std::invalid_argument("--rate goes with logs: other rows have their own");
             }
-            require_time_range(*options);
+            require_time_range(*options, are_logs);
             return run(*options);
           }};
 }

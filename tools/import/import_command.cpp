@@ -95,15 +95,18 @@ int run(const ImportOptions& options) {
     return 0;
   }
   if (options.logs.empty())
-    throw std::invalid_argument("expected a log: a .ulg, .bbl or .bin file, a .csv table, a folder of them");
-  if (options.out.empty()) throw std::invalid_argument("expected --out DATASET: the folder to write");
-  programs::require_time_range(options);
+    throw std::invalid_argument(
+        "expected a log, a .ulg, .bbl or .bin file, a .csv table, a folder of them: pinnquad import flight.ulg --out "
+        "dataset");
+  if (options.out.empty())
+    throw std::invalid_argument("expected --out DATASET, the folder to write: pinnquad import ... --out dataset");
+  programs::require_time_range(options, true);
   logs::LogSettings settings = settings_of(options);
   logs::require_dataset_place(options.out);
-  programs::ProgressLine progress("importing");
-  settings.on_progress = [&progress](const std::string&, double share) { progress.update(share / 2); };
+  programs::JobLine progress;
+  settings.on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
   const logs::ImportedDataset dataset = logs::read_dataset(options.logs, settings);
-  logs::write_dataset_folder(options.out, dataset, [&](double share) { progress.update(0.5 + share / 2); });
+  logs::write_dataset_folder(options.out, dataset, [&](double share) { progress.update("writing", share); });
   progress.clear();
   if (options.json) {
     std::printf("%s\n", logs::dataset_json(dataset).c_str());

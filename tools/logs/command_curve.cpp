@@ -64,7 +64,7 @@ CommandCurve command_curve(const Dataset& flights, const std::optional<double>& 
   if (const auto k = told_curve(curve)) return {std::round(1e4 * *k) / 1e4, true, law + is + of + overrule};
   if (curve.half_width <= narrow_curve) return {0, false, law + "straight, k = 0 taken: " + is + of + overrule};
   return {0, false,
-          law + "not told" + of +
+          law + "not determined" + of +
               ": thrust proportional to the command is assumed, which a throttle is not; fly climbs with full power "
               "and hard rolls" +
               overrule};

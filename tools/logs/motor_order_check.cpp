@@ -152,7 +152,8 @@ MotorOrderCheck check_motor_order(const std::vector<Flight>& lag_aligned, const 
   if (as_it_stands) {
     check.finding =
         "roll and pitch follow the commands, yaw turns against them: the propellers turn the other way than the "
-        "airframe says (spin), or two that turn alike are exchanged with the other two";
+        "airframe says (spin), or two that turn alike are exchanged with the other two; for the former write its file, "
+        "exchange the spins in it and give it with --airframe: pinnquad airframe convert racer_5_inch --out mine.toml";
     return check;
   }
   if (check.explained > stands * most) return check;

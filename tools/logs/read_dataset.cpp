@@ -54,9 +54,11 @@ Mapping chosen_mapping(const std::string& name_or_file) {
 /// Throws InputError where the content asks for none.
 OfferedMapping required_offer(const std::string& path) {
   if (const auto offered = offered_mapping(path)) return *offered;
+  const bool is_folder = std::filesystem::is_directory(path);
   throw InputError(
       path, 0, 0, "a flight, a dataset, or a --mapping of the log's columns (" + mapping_names() + ", or a .toml file)",
-      "a log that does not tell which");
+      is_folder ? "a folder without logs"
+                : "columns that none of these names; what a mapping says: pinnquad import --list, docs/import.md");
 }
 
 /// Fewest rows of a flight: a batch of training.
@@ -153,6 +155,7 @@ class Import {
     remove_lag();
     drop_rows();
     make_flights();
+    if (settings_.on_flights) settings_.on_flights(dataset_);
     Airframe<double> airframe = airframe_ ? airframe_->value : airframe_value<PaperQuadrotor, double>();
     if (!airframe_) {
       report("fitting the thrust curve", 0);

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "logs/nearest_names.hpp"
 #include "logs/toml_file.hpp"
 #include "pinnquad/io/file_error.hpp"
 
@@ -78,7 +79,9 @@ class TomlTable {
   void require_no_more() const {
     for (const auto& [key, node] : table_) {
       if (known_.count(std::string(key.str())) == 0) {
-        refuse(key.source(), what_, "`" + printable(key.str()) + "`");
+        refuse(
+            key.source(), what_,
+            "`" + printable(key.str()) + "`; " + nearest_names(std::string(key.str()), {known_.begin(), known_.end()}));
       }
     }
   }

@@ -80,7 +80,10 @@ CommandLag widest_lag(const std::vector<Flight>& segments, double period_s) {
   return better ? wide : lag;
 }
 
-Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_removed_s) {
+/// `on_rows` is called with the rows of each identification that is finished: each row counts twice, among all and then
+/// among its half.
+template <class OnRows>
+Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_removed_s, const OnRows& on_rows) {
   constexpr double most_s = 300;
   Judged judged;
   judged.name = flight.name;
@@ -104,8 +107,10 @@ Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_
     half_rows[1].add(segment, {middle, segment.size()});
   }
   judged.found = identify(rows, axis_signs(airframe), settings);
+  on_rows(rows.size());
   for (std::size_t half = 0; half < 2; ++half) {
     judged.halves[half] = identify(half_rows[half], axis_signs(airframe), settings);
+    on_rows(half_rows[half].size());
   }
   for (std::size_t i = 0; i < flight.size(); ++i) {
     const auto& u = flight[i].commands;
@@ -400,14 +405,15 @@ void check_vehicle(ImportedDataset& dataset, const Airframe<double>& airframe, b
                    const OnProgress& on_progress) {
   const auto& flights = dataset.flights.flights();
   std::vector<Judged> judged(flights.size());
-  std::atomic<std::size_t> done{0};
+  std::atomic<std::size_t> rows_done{0};
   const auto meanwhile = [&] {
-    const double share = static_cast<double>(done.load()) / static_cast<double>(flights.size());
+    const double rows = static_cast<double>(std::max(std::size_t{1}, dataset.flights.rows()));
+    const double share = std::min(1.0, static_cast<double>(rows_done.load()) / (2 * rows));
     if (on_progress) on_progress("comparing the flights", share);
   };
   each_in_parallel(flights.size(), std::max(1u, std::thread::hardware_concurrency()), meanwhile, [&](std::size_t i) {
-    judged[i] = judge(flights[i], airframe, dataset.lag_removed_s);
-    done.fetch_add(1);
+    judged[i] =
+        judge(flights[i], airframe, dataset.lag_removed_s, [&](std::size_t rows) { rows_done.fetch_add(rows); });
   });
   VehicleCheck check(std::move(judged), airframe, known);
   const std::vector<VehicleFinding> findings = check.run();

@@ -132,6 +132,12 @@ AnyTrajectory ControlledLoop::trajectory(const std::string& name, std::uint64_t 
   if (name == "random") {
     return required(any(random_path_for(setting_.airframe, told_.site().ground_z_m, range_, seed)));
   }
+  if (is_waypoint_file(name)) {
+    const double ground_z_m = told_.site().ground_z_m;
+    const WaypointPath path =
+        waypoints_for(name, detail::center_for(ground_z_m, range_), ground_z_m, setting_.airframe);
+    return AnyTrajectory{[path](double time_s) { return path.sample(time_s); }};
+  }
   return required(at_once_.at(name));
 }
 

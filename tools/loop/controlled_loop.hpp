@@ -46,7 +46,7 @@ class ControlledLoop {
   /// Throws std::invalid_argument, one line, of an airframe or an envelope that holds no flight.
   explicit ControlledLoop(const LoopSetting& setting);
 
-  /// Throws std::invalid_argument where the envelope holds none of this name.
+  /// By name, or a file of waypoints. Throws std::invalid_argument where the envelope holds none, InputError of a file.
   AnyTrajectory trajectory(const std::string& name, std::uint64_t seed) const;
 
   /// A row of figures; with the error over time where the condition changes at half time, of the first seed.

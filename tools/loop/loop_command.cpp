@@ -25,6 +25,7 @@
 #include "command_line/parallel.hpp"
 #include "flight/block_loop.hpp"
 #include "flight/loop_figures.hpp"
+#include "flight/waypoints.hpp"
 #include "loop/controlled_loop.hpp"
 #include "loop/loop_model.hpp"
 #include "loop/loop_verdict.hpp"
@@ -103,9 +104,9 @@ void print_table(const LoopOptions& options, const BlockModel& model, const std:
   }
   programs::print_entry(
       "trajectory", programs::in_words("%s, period %.1f s, %.2f to %.2f m above the ground%s, flown by %s for %.0f s",
-                                       options.trajectory.c_str(), flights.period_s, flights.lowest_m,
+                                       printable(options.trajectory).c_str(), flights.period_s, flights.lowest_m,
                                        flights.highest_m, flights.near_ground ? ", in ground effect" : "",
-                                       printable(airframe).c_str(), TrackingPlan<double>{}.duration_s));
+                                       printable(airframe).c_str(), flights.duration_s));
   std::printf("  %-20s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "answered by the model");
   print_flight("model", flights.model);
   print_flight("analytic inverse", flights.analytic_inverse);
@@ -125,9 +126,9 @@ void print_json(const nlohmann::json& value) {
 void print_errors(const LoopOptions& options, const std::vector<std::string>& conditions,
                   const std::vector<nlohmann::json>& rows, const std::string& airframe, double duration_s) {
   programs::print_verdict(programs::controllers_verdict(rows, conditions.size()));
-  programs::print_entry("trajectory",
-                        programs::in_words("%s, flown by %s for %.0f s, with noise in what controllers see",
-                                           options.trajectory.c_str(), printable(airframe).c_str(), duration_s));
+  programs::print_entry(
+      "trajectory", programs::in_words("%s, flown by %s for %.0f s, with noise in what controllers see",
+                                       printable(options.trajectory).c_str(), printable(airframe).c_str(), duration_s));
   programs::print_line(programs::in_words("RMSE of the position in cm, of what comes after %.0f s",
                                           programs::ControlledLoop::settled_s));
   constexpr std::size_t beside = 5;  // conditions in one table: no line is too wide
@@ -151,7 +152,10 @@ void print_errors(const LoopOptions& options, const std::vector<std::string>& co
 
 /// Controllers side by side, each under each condition.
 int fly_controllers(const LoopOptions& options, const programs::LoopModel& given) {
-  const programs::LoopSetting setting{given.model, given.columns, given.airframe.value, given.battery};
+  programs::LoopSetting setting{given.model, given.columns, given.airframe.value, given.battery};
+  if (programs::is_waypoint_file(options.trajectory)) {
+    setting.duration_s = std::max(setting.duration_s, programs::read_waypoints(options.trajectory).duration_s());
+  }
   const programs::ControlledLoop loop(setting);
   const auto conditions = programs::names_or(options.conditions, {"calm"});
   std::vector<programs::LoopFlight> flights;
@@ -202,7 +206,9 @@ int fly_unknown(const LoopOptions& options) {
   if (!options.model.empty()) {
     throw std::invalid_argument("--vehicles: a model was given, which these flights don't fly");
   }
-  if (unknown.out.empty()) throw std::invalid_argument("--out is required with --vehicles: the folder of loop.json");
+  if (unknown.out.empty())
+    throw std::invalid_argument(
+        "--out is required with --vehicles, the folder of loop.json: pinnquad loop --vehicles 20 --out flown");
   require_names("--controllers", options.controllers, programs::vehicle_controllers(), "--vehicles");
   require_names("--conditions", options.conditions, programs::vehicle_conditions(), "--vehicles");
   unknown.controllers = programs::names_or(options.controllers, programs::vehicle_controllers());
@@ -217,7 +223,9 @@ int fly_unknown(const LoopOptions& options) {
 
 int loop(const LoopOptions& options) {
   if (options.unknown.vehicles > 0) return fly_unknown(options);
-  if (options.model.empty()) throw std::invalid_argument("a model is required, or --vehicles");
+  if (options.model.empty())
+    throw std::invalid_argument(
+        "a model is required: pinnquad loop my_model/model.block, or pinnquad loop --vehicles 20 --out flown");
   require_names("--controllers", options.controllers, programs::names_of(programs::loop_controllers), "a model");
   require_names("--conditions", options.conditions, programs::names_of(programs::loop_conditions), "a model");
   const programs::LoopModel given = programs::read_loop_model(options);
@@ -250,9 +258,16 @@ Command loop_command(CLI::App& program) {
   const auto options = std::make_shared<LoopOptions>();
   add_loop_model(*line, *options);
   line->get_option("model")->required(false);  // of vehicles that nobody knows there is none
-  line->add_option("--trajectory", options->trajectory, "as large and fast as airframe and training range allow")
+  const std::vector<std::string> ready(loop_trajectories.begin(), loop_trajectories.end());
+  const auto refused = [ready](const std::string& text) {
+    const bool known = is_waypoint_file(text) || std::find(ready.begin(), ready.end(), text) != ready.end();
+    return known ? "" : "expected " + listed(ready) + " or a .csv file, found '" + text + "'";
+  };
+  line->add_option("--trajectory", options->trajectory,
+                   "as large and fast as airframe and training range allow; or waypoints: t,x,y,z[,yaw], s, m NED, rad")
+      ->type_name("eight|yaw_eight|circle|FILE.csv")
       ->capture_default_str()
-      ->check(CLI::IsMember(std::vector<std::string>(loop_trajectories.begin(), loop_trajectories.end())));
+      ->check(CLI::Validator(refused, ""));
   CLI::Option* guard =
       line->add_option(
               "--guard", options->guard,

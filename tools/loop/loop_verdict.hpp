@@ -35,7 +35,8 @@ inline FlightVerdict loop_verdict(const nlohmann::json& report) {
   if (!(answered > 0)) {
     verdict.refuse("answers nothing on this trajectory", "train on flights as fast as this trajectory");
   }
-  if (own > without_jerk && own > slack_of_loops * formula) verdict.refuse(compared, livelier_flight);
+  constexpr double least_cm = 1;  // a path that hardly bends needs no model: what is nearer refuses none
+  if (own > least_cm && own > without_jerk && own > slack_of_loops * formula) verdict.refuse(compared, livelier_flight);
   if (answered < 0.99) {
     verdict.care(in_words("the model answered %.0f %% of the path, the analytic inverse flew the rest", 100 * answered),
                  "train on flights as fast as this trajectory");

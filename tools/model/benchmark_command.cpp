@@ -138,14 +138,14 @@ std::string three_digits(const json& number) {
 }
 
 /// "4.86; 13.7, -, 1.43": thrust of a rotor over mass, m/s^2; what roll, pitch and yaw answer with, rad/s^2; - is not
-/// told.
+/// determined.
 std::string vehicle_text(const json& vehicle) {
   std::string text;
   for (const char* key :
        {"thrust_m_s2", "roll_effectiveness_rad_s2", "pitch_effectiveness_rad_s2", "yaw_effectiveness_rad_s2"}) {
     const json numbers = vehicle.is_object() ? vehicle.value("numbers", json::object()) : json::object();
     const json number = numbers.value(key, json::object());
-    const bool told = number.value("excitation", "not told") != "not told";
+    const bool told = number.value("excitation", "not determined") != "not determined";
     text += text.empty() ? "" : text.find(';') == std::string::npos ? "; " : ", ";
     text += told ? programs::in_words("%.3g", number.at("value").get<double>()) : "-";
   }

@@ -95,7 +95,7 @@ void bind_identification(py::module_& module) {
         const auto& numbers = self.vehicle.numbers;
         const auto told = std::count_if(numbers.begin(), numbers.end(), programs::is_told);
         return "<pinnquad.Identification " + pinnquad::printable(self.name) + ": " + std::to_string(told) + " of " +
-               std::to_string(numbers.size()) + " numbers told>";
+               std::to_string(numbers.size()) + " numbers determined>";
       });
   refuse_new(identification);
   module.def(

@@ -90,7 +90,7 @@ std::string condition_name(const std::string& flight, const std::set<std::string
 }
 
 int run(const BeyondOptions& options) {
-  if (options.out.empty()) throw std::invalid_argument("--out DIR is needed (see --help)");
+  if (options.out.empty()) throw std::invalid_argument("--out DIR is needed");
   std::vector<study::Condition> conditions = study::chosen_conditions(study::flown_conditions(), options.conditions);
   if (options.conditions.empty() && !options.flights.empty()) conditions.clear();
   const std::size_t flown_here = conditions.size();

@@ -64,7 +64,7 @@ void add_campaign_options(CLI::App& app, StudyOptions& options) {
 }
 
 int run_campaign(const StudyOptions& options, const char* kind, std::vector<study::Contender> contenders) {
-  if (options.out.empty()) throw std::invalid_argument("--out DIR is needed (see --help)");
+  if (options.out.empty()) throw std::invalid_argument("--out DIR is needed");
   study::Plan plan;
   plan.kind = kind;
   plan.contenders = std::move(contenders);

@@ -160,7 +160,7 @@ inline FlightVerdict export_verdict(const ExportFacts& facts) {
                        (facts.held_out.worse_than_mean() ? " is worse than the mean of the commands"
                                                          : " explains less than half of the commands' variance") +
                        " on the rows held out (" + r2 + ")",
-                   livelier_flight);
+                   std::string(livelier_flight) + "; docs/low_r2.md");
   }
   if (!unfit.empty()) {
     verdict.refuse(facts.title + " " + unfit + ": " + flight_in_words(facts.flown),

@@ -121,8 +121,8 @@ Command train_command(CLI::App& program) {
             TrainOptions& options = asked->options;
             const GivenWords& words = asked->words;
             options.lag_s = programs::lag_of(words.lag);
-            programs::require_time_range(options);
             programs::take_source(options);
+            programs::require_time_range(options, !options.logs.empty());
             require_one_way(*line, options);
             const auto given = [line](const char* name) { return line->count(name) > 0; };
             if (words.altitude != "auto") options.altitude = words.altitude == "yes";

@@ -135,33 +135,6 @@ inline void take_source(TrainOptions& options) {
   options.flights.clear();
 }
 
-/// The dataset of the options, read or imported. `airframe`: of the flights.
-inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options,
-                                                  const pinnquad::Airframe<double>& airframe) {
-  JobLine progress;
-  const auto on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
-  if (!options.flights.empty()) {
-    pinnquad::logs::ImportedDataset dataset;
-    dataset.flights = pinnquad::logs::read_flights(options.flights, fewest_flight_rows,
-                                                   pinnquad::logs::shared_columns(options.flights), on_progress);
-    dataset.sources = options.flights;
-    dataset.sample_period_s = pinnquad::sample_period_s(pinnquad::all_rows(dataset.flights.flights()));
-    remove_latency(dataset, airframe, options.lag_s);
-    return dataset;
-  }
-  if (options.logs.empty()) return pinnquad::logs::read_dataset_folder(options.dataset, on_progress);
-  pinnquad::logs::LogSettings settings;
-  settings.mapping = options.mapping;
-  settings.airframe = options.airframe;
-  settings.lag_s = options.lag_s;
-  settings.from_s = options.from_s;
-  settings.to_s = options.to_s;
-  settings.on_progress = on_progress;
-  pinnquad::logs::ImportedDataset dataset = pinnquad::logs::read_dataset(options.logs, settings);
-  for (const std::string& taken : dataset.taken) std::printf("%s\n", taken.c_str());
-  return dataset;
-}
-
 /// The rows that a row's bias may be of. Rows of logs have derivatives that an import's filter made, which look ahead.
 inline pinnquad::PastRows past_rows_of(const pinnquad::logs::ImportedDataset& dataset,
                                        const pinnquad::Airframe<double>& airframe, bool of_logs) {
@@ -250,7 +223,35 @@ inline std::vector<Fold> folds_asked_for(const TrainOptions& options, const pinn
   throw std::invalid_argument(
       "say what judges: --hold-out NAME[,NAME...] or --hold-out-each flight|trajectory; the flights are " +
       listed(flights.flights(), [](const auto& flight) { return pinnquad::printable(flight.name); }) +
-      (flights.size() == 1 ? "; of one log pinnquad import --cut SECONDS makes several" : ""));
+      (flights.size() == 1 ? "; make several of one log: pinnquad import LOG --cut 60 --out dataset" : ""));
+}
+
+/// The dataset of the options, read or imported. `airframe`: of the flights.
+inline pinnquad::logs::ImportedDataset dataset_of(const TrainOptions& options,
+                                                  const pinnquad::Airframe<double>& airframe) {
+  JobLine progress;
+  const auto on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
+  if (!options.flights.empty()) {
+    pinnquad::logs::ImportedDataset dataset;
+    dataset.flights = pinnquad::logs::read_flights(options.flights, fewest_flight_rows,
+                                                   pinnquad::logs::shared_columns(options.flights), on_progress);
+    dataset.sources = options.flights;
+    dataset.sample_period_s = pinnquad::sample_period_s(pinnquad::all_rows(dataset.flights.flights()));
+    remove_latency(dataset, airframe, options.lag_s);
+    return dataset;
+  }
+  if (options.logs.empty()) return pinnquad::logs::read_dataset_folder(options.dataset, on_progress);
+  pinnquad::logs::LogSettings settings;
+  settings.mapping = options.mapping;
+  settings.airframe = options.airframe;
+  settings.lag_s = options.lag_s;
+  settings.from_s = options.from_s;
+  settings.to_s = options.to_s;
+  settings.on_progress = on_progress;
+  settings.on_flights = [&options](const auto& dataset) { folds_asked_for(options, dataset); };  // refuses a name early
+  pinnquad::logs::ImportedDataset dataset = pinnquad::logs::read_dataset(options.logs, settings);
+  for (const std::string& taken : dataset.taken) std::printf("%s\n", taken.c_str());
+  return dataset;
 }
 
 }  // namespace programs

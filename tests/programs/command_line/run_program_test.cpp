@@ -54,7 +54,7 @@ Ended ended_by(const Error& error) {
 
 void check_refused(const Ended& end, const std::string& what) {
   CHECK(end.code == 2);
-  CHECK(end.said == "land: " + what + "\n");
+  CHECK(end.said == "land: " + what + "; see land --help\n");
 }
 
 void check_fault(const Ended& end, const std::string& what) {
@@ -72,6 +72,14 @@ TEST_CASE("an exit code is handed on, and nothing is said") {
   }
 }
 
+TEST_CASE("a refusal that names a command to type next is left as it is") {
+  const std::string what = "--out is needed: pinnquad fly d1 --out d1.csv";
+  CHECK(ended_by(std::invalid_argument(what)).said == "land: " + what + "\n");
+  const std::string name = "pinnquad";
+  CHECK(programs::help_of(name, "train") == "pinnquad train --help");
+  CHECK(programs::help_of(name, name) == "pinnquad --help");
+}
+
 TEST_CASE("a refusal is one line of the command, exit code 2") {
   check_refused(ended_by(pinnquad::InputError("a.csv", 3, 0, "a number", "'x'")),
                 "a.csv:3: expected a number, found 'x'");
@@ -79,7 +87,9 @@ TEST_CASE("a refusal is one line of the command, exit code 2") {
   check_refused(ended_by(std::invalid_argument("--out is needed\nhere")), "--out is needed?here");
   const std::filesystem::filesystem_error denied("reading", std::make_error_code(std::errc::permission_denied));
   check_refused(ended_by(denied), denied.what());
-  check_refused(ended_by(std::bad_alloc()), "out of memory");
+  const Ended end = ended_by(std::bad_alloc());
+  CHECK(end.code == 2);
+  CHECK(end.said == "land: out of memory\n");
 }
 
 TEST_CASE("an interruption says what is kept, exit code 130") {

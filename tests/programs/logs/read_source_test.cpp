@@ -2,7 +2,9 @@
 // Flights of any source, told apart by content.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -50,7 +52,7 @@ TEST_CASE("a log of PX4 becomes the flight that was logged") {
   const std::string log = folder.write("flight.ulg", pinnquad_test::synthetic_ulog());
   CHECK(kind_of_source(log) == SourceKind::logs);
   CHECK(read_source({log}).taken == std::vector<std::string>{"mapping px4 taken: a ULog file with PX4's topics"});
-  CHECK(refusal({folder.write("other.csv", "a,b\n1,2\n")}).find("found a log that does not tell which") !=
+  CHECK(refusal({folder.write("other.csv", "a,b\n1,2\n")}).find("found columns that none of these names") !=
         std::string::npos);
   LogSettings settings;
   settings.mapping = "px4";
@@ -126,4 +128,22 @@ TEST_CASE("flights and a folder of them are read without a mapping") {
   std::getline(std::ifstream(a), text, '\0');
   const std::string less = folder.write("less.csv", text.replace(text.find("u4"), 2, "v4"));
   CHECK(refusal({less}).find("less.csv:1: expected a column named u4") != std::string::npos);
+}
+
+TEST_CASE("what on_flights throws ends the reading before flights are compared") {
+  const TemporaryFolder folder;
+  const std::string log = folder.write("log.ulg", pinnquad_test::synthetic_ulog());
+  std::vector<std::string> jobs, names;
+  LogSettings settings;
+  settings.on_progress = [&](const std::string& job, double) { jobs.push_back(job); };
+  CHECK(refusal({log}, settings) == "accepted");
+  CHECK(std::count(jobs.begin(), jobs.end(), "comparing the flights") > 0);
+  jobs.clear();
+  settings.on_flights = [&](const ImportedDataset& dataset) {
+    for (const Flight& flight : dataset.flights.flights()) names.push_back(flight.name);
+    throw std::invalid_argument("no such flight");
+  };
+  CHECK(refusal({log}, settings) == "no such flight");
+  CHECK(names == std::vector<std::string>{"log"});
+  CHECK(std::count(jobs.begin(), jobs.end(), "comparing the flights") == 0);
 }

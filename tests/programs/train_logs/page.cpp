@@ -54,7 +54,7 @@ std::string page_of(Judged& run, const std::vector<std::string>& absent, bool wi
             {"low", nullptr},
             {"high", nullptr},
             {"unit", "s"},
-            {"excitation", "not told"},
+            {"excitation", "not determined"},
             {"fly", "quick small rolls"}}}}}};
   }
   programs::TrainingPage input{run.plan,     imported, run.fits,       run.judged,

@@ -87,7 +87,7 @@ class IdentifiedNumber:
     low: Optional[float]  #: of the 95 % interval; None: no end
     high: Optional[float]
     unit: str
-    excitation: str  #: 'good', 'fair', 'weak' or 'not told': how well the flights determine it
+    excitation: str  #: 'good', 'fair', 'weak' or 'not determined': how well the flights determine it
     fly: Optional[str] = None  #: the flight that would determine it
 
 

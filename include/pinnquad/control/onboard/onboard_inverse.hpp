@@ -274,7 +274,8 @@ class OnboardInverse {
 
   /// A candidate of each sum.
   void propose() noexcept {
-    const detail::LagPlace<Scalar> lag = regression_.best_lag(start_model_[0].lag.seconds());
+    const detail::LagPlace<Scalar> lag =
+        regression_.best_lag(detail::lag_place(start_.rotor_time_constant_s).seconds());
     judging_ = false;
     for (std::size_t k = 0; k < 4; ++k) {
       ForwardSum<Scalar> start{};

@@ -73,6 +73,8 @@ struct LogSettings {
   bool hold_commands = false;   ///< a command holds until the next row, where lines are drawn between rows otherwise
   bool keep_saturated = false;  ///< rows with a command at its limit stay: what the motors were given is known
   OnProgress on_progress;
+  /// Is given the flights before they are compared, which takes longest: what it throws ends the reading.
+  std::function<void(const ImportedDataset&)> on_flights;
 };
 
 /// Logs of any kind and folders of them, told apart by their content: ULog files, ulog2csv's folders, blackbox and
