@@ -11,8 +11,8 @@
 namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// The model's parameters, weights column by column; rows are filled up to whole packs, a bias that is none is 0. It refers to the model, which
-/// must outlive it; it never changes.
+/// The model's parameters, weights column by column; rows are filled up to whole packs, no bias is 0. It refers to the
+/// model, which must outlive it; it never changes.
 template <class Scalar>
 class RunTimeRow {
  public:
