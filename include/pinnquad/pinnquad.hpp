@@ -19,6 +19,7 @@
 #include "pinnquad/deploy/golden_features.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/learnt_model.hpp"
+#include "pinnquad/deploy/run_time_row.hpp"
 #include "pinnquad/deploy/structured_model.hpp"
 #include "pinnquad/deploy/trust_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"

@@ -116,6 +116,13 @@ void commands_are_the_same(const Model& model) {
   CHECK(run_time->golden_difference(work.data()) <= 0);
   rows_are_the_same(model, *run_time);
   CHECK(same_commands(model, *run_time, [&](const auto& x) { return model.predict(x); }) == inputs_per_kind);
+  const RunTimeRow<typename Model::Scalar> row(*run_time);
+  std::vector<typename Model::Scalar> row_work(row.workspace());
+  CHECK(same_commands(model, *run_time, [&](const auto& x) {
+          Commands<typename Model::Scalar> u{};
+          row.commands(x.data(), u.data(), row_work.data());
+          return u;
+        }) == inputs_per_kind);
   if constexpr (!std::is_same_v<typename Model::Vehicle, GivenAirframe>) {
     ModelView<Model> view;
     REQUIRE(ModelView<Model>::open(block.data(), block.size(), view) == Status::ok);

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Models of blocks: one motion and many, the guard, figures and proofs as the program says them, hostile arrays."""
+import inspect
 import json
 import pickle
 import threading
@@ -87,6 +88,51 @@ def test_memory_in_any_order_is_copied(structured):
         np.testing.assert_array_equal(structured.predict(given), expected)
         np.testing.assert_array_equal(structured.predict_guarded(given)[0], expected)
     np.testing.assert_array_equal(structured.predict(np.rint(x).astype(int)), structured.predict(np.rint(x)))
+
+
+def test_answers_go_into_an_array_that_is_given(structured, network):
+    """Of one motion and of many; in place of the answer's own memory."""
+    for model in (structured, network):
+        x = inside(model, 8)
+        expected = model.predict(x)
+        for kind in (np.float64, np.float32):
+            out = np.full(4, 7, np.float32)
+            for row, commands in zip(x.astype(kind), model.predict(x.astype(kind))):
+                assert model.predict(row, out=out) is out
+                np.testing.assert_array_equal(out, commands)
+        for out in (np.empty((8, 4)), np.empty((8, 4), np.float32), np.empty((8, 8), np.float32)[:, ::2]):
+            assert model.predict(x, out=out) is out
+            np.testing.assert_array_equal(out, expected)
+        for row in (x[0], x[0].astype(">f8"), np.repeat(x[0], 2)[::2], x[0].tolist()):
+            np.testing.assert_array_equal(model.predict(row, out=out[1]), expected[0])
+            np.testing.assert_array_equal(Model.predict(model, features=row, out=None), expected[0])
+
+
+@pytest.mark.parametrize("out, error, found", [
+    (np.zeros(3, "f4"), ValueError, r"\(3,\), float32"), (np.zeros((1, 4), "f4"), ValueError, r"\(1, 4\), float32"),
+    (np.zeros(4, "f2"), ValueError, r"\(4,\), float16"), (np.zeros(4, int), ValueError, r"\(4,\), int64"),
+    (np.zeros(4, "c8"), ValueError, r"\(4,\), complex64"), ([0, 0, 0, 0], TypeError, "list"), ("u", TypeError, "str"),
+    (np.broadcast_to(np.float32(0), 4), ValueError, r"\(4,\), float32, read-only")])
+def test_arrays_that_take_no_answer(network, out, error, found):
+    words = r"^predict: out: expected an array of shape \(4,\), float32 or float64, that may be written to, found " + found
+    with pytest.raises(error, match=words + "$"):
+        network.predict(inside(network, 1)[0], out=out)
+
+
+def test_what_is_refused_leaves_the_array_that_is_given(network):
+    x, out = inside(network, 1)[0], np.full(4, 7, np.float32)
+    for at, number in ((3, np.nan), (15, -np.inf)):
+        wrong = x.copy()
+        wrong[at] = number
+        with pytest.raises(ValueError, match=f"row 0, feature {at}: expected a finite number, found {number}"):
+            network.predict(wrong, out=out)
+    for arguments, named in (((), {}), ((x, out), {}), ((x,), {"into": out}), ((x,), {"features": x}), ((x[:5],), {"out": out})):
+        with pytest.raises((TypeError, ValueError)):
+            network.predict(*arguments, **named)
+    assert (out == 7).all()
+    with pytest.raises(TypeError):
+        Model.predict(out, x)
+    assert str(inspect.signature(Model.predict)) == "(self, /, features, *, out=None)"
 
 
 def test_columns_go_by_name(structured):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import pinnquad
-from pinnquad import Effects, FlightEnded, Simulator
+from pinnquad import Effects, FlightEnded, Path, Simulator
 
 GROUND_Z_M = 0.877
 RADIUS_M = 0.1143
@@ -385,6 +385,42 @@ def test_a_trajectory_of_ones_own_is_flown():
     again = pickle.loads(pickle.dumps(simulator))
     again.fly(1.0), simulator.fly(1.0)
     np.testing.assert_array_equal(again.recording().rows, simulator.recording().rows)
+
+
+def test_a_path_of_arrays_is_flown():
+    """As the same path by a callable; a parabola is met to the last bit of its numbers."""
+    times = np.linspace(0, 12, 49)
+    angle = 2 * np.pi * times / 12
+    places = np.stack([3 * np.sin(angle), 3 - 3 * np.cos(angle), np.full(49, -35.0)], axis=1)
+    path = Path(times, places)
+    np.testing.assert_allclose(path(times), places, atol=1e-12)
+    between = np.linspace(0.5, 11.5, 200)
+    turned = 2 * np.pi * between / 12
+    np.testing.assert_allclose(path(between), np.stack([3 * np.sin(turned), 3 - 3 * np.cos(turned), np.full(200, -35.0)], axis=1), atol=1e-3)
+    step = 1e-6
+    np.testing.assert_allclose(path.velocity_m_s(between), (path(between + step) - path(between - step)) / (2 * step), atol=1e-6)
+    np.testing.assert_allclose(path(13.0), places[-1], atol=1e-12)
+    assert (path.velocity_m_s([-1.0, 13.0]) == 0).all()
+    fall = Path([0.0, 1.0, 3.0, 4.0], [(1, 0, 2 * t * t) for t in (0.0, 1.0, 3.0, 4.0)])
+    np.testing.assert_allclose(fall(np.array([0.3, 2.0, 3.7]))[:, 2], 2 * np.array([0.3, 2.0, 3.7]) ** 2, rtol=1e-12)
+    simulator = Simulator(pilot=path)
+    simulator.fly(12.0)
+    by_callable = Simulator(pilot=circle)
+    by_callable.fly(12.0)
+    np.testing.assert_allclose(simulator.state["position_m"], by_callable.state["position_m"], atol=0.02)
+    np.testing.assert_allclose(simulator.recording().velocity_m_s, by_callable.recording().velocity_m_s, atol=0.02)
+    again = pickle.loads(pickle.dumps(simulator))
+    again.fly(1.0), simulator.fly(1.0)
+    np.testing.assert_array_equal(again.recording().rows, simulator.recording().rows)
+
+
+@pytest.mark.parametrize("times, places, words", [
+    ([0.0], [(0, 0, 0)], "two times or more"), ([0.0, 1.0], np.zeros((2, 2)), r"found shapes \(2,\) and \(2, 2\)"),
+    ([0.0, 0.0], np.zeros((2, 3)), "times that rise"), ([0.0, np.nan], np.zeros((2, 3)), "finite"),
+    ([0.0, 1.0], np.full((2, 3), np.inf), "finite"), ([0.0, 1.0], np.ma.masked_less(np.zeros((2, 3)), 1), "without a mask")])
+def test_paths_that_are_none(times, places, words):
+    with pytest.raises(ValueError, match=words):
+        Path(times, places)
 
 
 def test_a_yaw_rate_and_a_velocity():

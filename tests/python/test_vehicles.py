@@ -403,6 +403,12 @@ def test_tasks_of_ones_own():
         np.testing.assert_allclose(rewards, -np.linalg.norm(off_m, axis=1), rtol=1e-12)
     assert asked == [((5, 19), (5, 4))] * 10
     assert np.linalg.norm(environment.vehicles.velocity_m_s) < np.linalg.norm(still.vehicles.velocity_m_s)
+    path = pinnquad.Path(np.linspace(0, 1, 101), circle(np.linspace(0, 1, 101)))
+    by_arrays = VectorHoverEnv(5, target_m=path, spread_m=0, step_s=0.02)
+    by_arrays.reset(seed=1)
+    for step in range(1, 11):
+        seen, *_ = by_arrays.step(actions)
+        np.testing.assert_allclose(seen[:, :3], by_arrays.vehicles.position_m - circle(np.full(5, 0.02 * step)), atol=1e-5)
     with pytest.raises(ValueError, match=r"reward must return shape \(2,\), found \(\)"):
         wrong = VectorHoverEnv(2, reward=lambda *_: 0.0)
         wrong.reset(seed=1), wrong.step(actions[:2])

@@ -35,7 +35,7 @@ def configure(build):
         from_pip = [f"-Dpybind11_DIR={pybind11.get_cmake_dir()}"]
     configured = subprocess.run(
         ["cmake", "-S", str(ROOT), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-         "-DCMAKE_POSITION_INDEPENDENT_CODE=ON", f"-DPINNQUAD_INSTRUCTION_SETS={sets}",
+         "-DCMAKE_POSITION_INDEPENDENT_CODE=ON", "-DPINNQUAD_INSTALL=OFF", f"-DPINNQUAD_INSTRUCTION_SETS={sets}",
          f"-DPython_EXECUTABLE={sys.executable}", *from_pip,
          *[f"-DPINNQUAD_BUILD_{part}={value}" for part, value in parts.items()]],
         stderr=subprocess.PIPE, text=True)

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "pinnquad/core/body.hpp"
+#include "pinnquad/deploy/run_time_row.hpp"
 #include "pinnquad/exported/run_time_certificate.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/text_file.hpp"
@@ -64,6 +65,12 @@ class BlockModel {
   decltype(auto) with(const Use& use) const {
     if (const auto* model = std::get_if<std::unique_ptr<const RunTimeModel<float>>>(&model_)) return use(**model);
     return use(*std::get<std::unique_ptr<const RunTimeModel<double>>>(model_));
+  }
+  /// Calls `use` with its RunTimeRow: one motion in a third of the time.
+  template <class Use>
+  decltype(auto) with_row(const Use& use) const {
+    if (const auto* row = std::get_if<RunTimeRow<float>>(&*row_)) return use(*row);
+    return use(std::get<RunTimeRow<double>>(*row_));
   }
   bool is_double() const noexcept { return model_.index() == 1; }
 
@@ -148,6 +155,7 @@ class BlockModel {
   std::size_t length_ = 0;
   std::vector<std::uint64_t> bytes_;  ///< aligned as a block must be
   std::variant<std::unique_ptr<const RunTimeModel<float>>, std::unique_ptr<const RunTimeModel<double>>> model_;
+  std::optional<std::variant<RunTimeRow<float>, RunTimeRow<double>>> row_;
   RunTimeOutputs<double> outputs_;  ///< for the derivatives
   std::vector<AccelerationPlace> places_;
   std::array<std::array<double, rotor_count>, 3> signs_{};

@@ -65,22 +65,19 @@ class RunTimeModel {
 
   /// Commands of features in physical units; the envelope is not looked at.
   void commands(const Scalar* x, Scalar* u, Scalar* work) const noexcept {
+    commands<detail::RunTimeEntry::value_and_derivatives>(parameters(), x, u, work);
+  }
+  /// The same of parameters that lie as `Kind` wants them (run_time_row.hpp).
+  template <detail::RunTimeEntry Kind>
+  void commands(const Scalar* parameters, const Scalar* x, Scalar* u, Scalar* work) const noexcept {
     const auto size = std::size_t(features_.size());
     for (std::size_t i = 0; i < size; ++i) work[i] = (x[i] - scales_.input_mean[i]) / scales_.input_deviation[i];
     saturate_columns(work);
-    answer(x, work, u, work + size);
+    answer<Kind>(parameters, x, work, u, work + size);
   }
   /// Answers features that the caller has standardised; `work` has network().outputs() and its workspace().
   void answer(const Scalar* x, const Scalar* standardised, Scalar* u, Scalar* work) const noexcept {
-    static_assert(sizeof(Values<Scalar, 1>) == sizeof(Scalar));
-    using Entry = Values<Scalar, 1>;
-    auto* made = reinterpret_cast<Entry*>(work);
-    network_.template forward<Scalar, 1>(parameters(), reinterpret_cast<const Entry*>(standardised), made,
-                                         made + network_.outputs());
-    for (int k = 0; k < network_.outputs(); ++k) {
-      work[k] = work[k] * scales_.output_deviation[k] + scales_.output_mean[k];
-    }
-    outputs_.commands(x, work, u);
+    answer<detail::RunTimeEntry::value_and_derivatives>(parameters(), x, standardised, u, work);
   }
   /// As the compiled model does: columns outside their range of the training rows are moved to its edge.
   void saturate_columns(Scalar* standardised) const noexcept {
@@ -132,6 +129,20 @@ class RunTimeModel {
   }
 
  private:
+  template <detail::RunTimeEntry Kind>
+  void answer(const Scalar* parameters, const Scalar* x, const Scalar* standardised, Scalar* u,
+              Scalar* work) const noexcept {
+    static_assert(sizeof(Values<Scalar, 1>) == sizeof(Scalar));
+    using Entry = Values<Scalar, 1>;
+    auto* made = reinterpret_cast<Entry*>(work);
+    network_.template forward<Scalar, 1, Kind>(parameters, reinterpret_cast<const Entry*>(standardised), made,
+                                               made + network_.outputs());
+    for (int k = 0; k < network_.outputs(); ++k) {
+      work[k] = work[k] * scales_.output_deviation[k] + scales_.output_mean[k];
+    }
+    outputs_.commands(x, work, u);
+  }
+
   Status read(const unsigned char* block, std::size_t available, BlockFault& fault) noexcept {
     const Status checked = detail::check_bytes(block, available);
     if (checked == Status::block_truncated) return refuse(fault, checked, "a model block", "one that is cut short");

@@ -25,7 +25,8 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// The numbers of an entry of RunTimeNetwork::forward().
 enum class RunTimeEntry {
   value_and_derivatives,  ///< a value, and its derivatives by whatever the caller moves
-  lanes                   ///< a value each of so many motions
+  lanes,                  ///< a value each of so many motions
+  turned                  ///< a value, of parameters as RunTimeRow lays them out
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
@@ -103,10 +104,12 @@ class RunTimeNetwork {
   int parameter_count() const noexcept { return parameter_count_; }
 
   /// Entries of the workspace of forward().
+  std::size_t workspace() const noexcept { return workspace<float, detail::RunTimeEntry::lanes>(); }
+  template <class Number, detail::RunTimeEntry Kind>
   std::size_t workspace() const noexcept {
     int widest = outputs();
     for (int i = 0; i < part_count_; ++i) widest = parts_[i].widest > widest ? parts_[i].widest : widest;
-    return std::size_t(3 * widest);
+    return std::size_t(3 * rows_of<Number, Kind>(widest));
   }
 
   /// An entry is a value and its derivatives by whatever the caller moves: 1 for values alone.
@@ -120,11 +123,10 @@ class RunTimeNetwork {
             class Scalar>
   void forward(const Scalar* parameters, const Values<Number, Count>* x, Values<Number, Count>* y,
                Values<Number, Count>* work) const noexcept {
-    const std::size_t third = workspace() / 3;
+    const std::size_t third = workspace<Number, Kind>() / 3;
     Values<Number, Count>* more = work + 2 * third;
     for (int i = 0; i < part_count_; ++i) {
-      run<Number, Count, Kind>(parts_[i], parameters, x, i == 0 ? y : more, work, work + third);
-      parameters += parts_[i].parameter_count;
+      parameters = run<Number, Count, Kind>(parts_[i], parameters, x, i == 0 ? y : more, work, work + third);
       for (int k = 0; i > 0 && k < outputs(); ++k) {
         for (int c = 0; c < Count; ++c) y[k][std::size_t(c)] += more[k][std::size_t(c)];
       }
@@ -232,14 +234,26 @@ class RunTimeNetwork {
     return parameter_count_ <= most_parameters;
   }
 
+  /// Rows of a layer as they lie in the parameters: turned, they fill packs.
+  template <class Number, detail::RunTimeEntry Kind>
+  static constexpr int rows_of(int outputs) noexcept {
+    return Kind == detail::RunTimeEntry::turned ? padded<pinnquad::NativePack<Number>>(outputs) : outputs;
+  }
+
+  /// The parameters behind those of the part.
   template <class Number, int Count, detail::RunTimeEntry Kind, class Scalar>
-  static void run(const Part& part, const Scalar* own, const Values<Number, Count>* x, Values<Number, Count>* y,
-                  Values<Number, Count>* work, Values<Number, Count>* spare) noexcept {
-    if (part.axis_aligned) return run_axis_aligned<Number, Count, Kind>(part, own, x, y);
+  static const Scalar* run(const Part& part, const Scalar* own, const Values<Number, Count>* x,
+                           Values<Number, Count>* y, Values<Number, Count>* work,
+                           Values<Number, Count>* spare) noexcept {
+    if (part.axis_aligned) {
+      run_axis_aligned<Number, Count, Kind>(part, own, x, y);
+      return own + part.parameter_count;
+    }
     const Scalar* const bounds = own;
     if (part.bounded) own += 2 * part.outputs;
     int width = 0;
     part.each_shown([&](int feature) { work[width++] = x[feature]; });
+    for (int fill = width; fill < rows_of<Number, Kind>(width); ++fill) work[fill] = {};
     for (int i = 0; i < part.layer_count; ++i) {
       const Layer& layer = part.layers[i];
       if (layer.normalised > 0) {
@@ -253,16 +267,23 @@ class RunTimeNetwork {
         continue;
       }
       if (layer.outputs == 0) {
-        activate<Number, Count, Kind>(detail::run_time_activations<Number>[layer.activation], work, width);
+        activate<Number, Count, Kind>(detail::run_time_activations<Number>[layer.activation], work,
+                                      rows_of<Number, Kind>(width));
         continue;
       }
-      const Scalar* const biases = own + width * layer.outputs;
-      for (int row = 0; row < layer.outputs; ++row) {
-        spare[row] = {};
-        if (layer.has_bias) begin<Kind>(static_cast<Number>(biases[row]), spare[row]);
+      const int rows = rows_of<Number, Kind>(layer.outputs);
+      const Scalar* const biases = own + width * rows;
+      if constexpr (Kind == detail::RunTimeEntry::turned) {
+        detail::sum_turned_rows(own, rows, rows, width, biases, work->data(), spare->data());
+        own = biases + rows;
+      } else {
+        for (int row = 0; row < rows; ++row) {
+          spare[row] = {};
+          if (layer.has_bias) begin<Kind>(static_cast<Number>(biases[row]), spare[row]);
+        }
+        detail::add_lane_rows(own, rows, width, work, spare);
+        own = biases + (layer.has_bias ? rows : 0);
       }
-      detail::add_lane_rows(own, layer.outputs, width, work, spare);
-      own = biases + (layer.has_bias ? layer.outputs : 0);
       width = layer.outputs;
       Values<Number, Count>* const before = work;
       work = spare;
@@ -270,6 +291,7 @@ class RunTimeNetwork {
     }
     for (int k = 0; k < part.outputs; ++k) y[k] = work[k];
     if (part.bounded) clip<Number, Count, Kind>(bounds, part.outputs, y);
+    return own;
   }
 
   /// As AxisAligned::forward(): the intercept, the other features, then each axis' own of every tap.

@@ -13,10 +13,11 @@ from .environment import HoverEnv, VectorHoverEnv
 from . import study
 from . import tables as _tables  # noqa: F401: Flight.from_arrays, Dataset.from_dataframe
 from .flights import fly
+from .paths import Path
 from .results import Certificate, Evaluation, IdentifiedNumber, certify, evaluate
 
 __all__ = ["Airframe", "Certificate", "Dataset", "Effects", "Error", "Evaluation", "Flight", "FlightEnded", "HoverEnv",
-           "IdentifiedNumber", "Identification", "Model", "Rotor", "Simulator", "Spin", "Status", "StructuredInverse",
+           "IdentifiedNumber", "Identification", "Model", "Path", "Rotor", "Simulator", "Spin", "Status", "StructuredInverse",
            "Training", "VectorHoverEnv", "Vehicles", "airframe_names", "certify", "convert", "evaluate", "fly",
            "ground_effects", "identify", "instruction_set", "save_network", "split", "study", "train"]
 

@@ -47,6 +47,7 @@ void BlockModel::open_as() {
     refuse(fault.expected, *fault.found == 0 ? number_text(fault.number) : fault.found);
   }
   take_derivatives(*model);
+  row_.emplace(RunTimeRow<Scalar>(*model));
   const auto& said = model->records();
   const bool claims_proof = said.claims_proof(), brings_certificate = said.said(BlockRecord::certificate);
   model_ = std::unique_ptr<const RunTimeModel<Scalar>>(std::move(model));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rows of a dense layer for many motions side by side, a lane each, or for one. Every lane is the chain of the portable
-// kernel: bias, then its inputs ascending. The same bits: rows that run together hide each other's latency.
+// Rows of a dense layer for many motions side by side, a lane each, or for one; of one motion also from weights column
+// by column, a row in each lane. Every lane is the chain of the portable kernel: bias, then its inputs ascending. The
+// same bits: rows that run together hide each other's latency.
 #pragma once
 
 #include <array>
@@ -79,6 +80,40 @@ PINNQUAD_ALWAYS_INLINE void add_lane_rows(const Scalar* weights, int rows, int c
     add_rows_together<together>(weights + row * columns, columns, x, sum + row);
   }
   for (; row < rows; ++row) add_rows_together<1>(weights + row * columns, columns, x, sum + row);
+}
+
+/// sum[row] = bias[row] + sum over the columns of weights[column * stride + row] x[column], of as many rows as `Packs`
+/// hold.
+template <int Packs, class Number>
+PINNQUAD_ALWAYS_INLINE void sum_packs_of_rows(const Number* weights, int stride, int columns, const Number* bias,
+                                              const Number* x, Number* sum) noexcept {
+  using Pack = pinnquad::NativePack<Number>;
+  Pack sums[static_cast<std::size_t>(Packs)];
+  unroll<Packs>([&](auto p) PINNQUAD_INLINE_LAMBDA { sums[p] = Pack::load(bias + p * Pack::width); });
+  for (int column = 0; column < columns; ++column) {
+    const Pack value = Pack::broadcast(x[column]);
+    const Number* const weight = weights + column * stride;
+    unroll<Packs>([&](auto p) PINNQUAD_INLINE_LAMBDA {
+      sums[p] = Pack::multiply_add(Pack::load(weight + p * Pack::width), value, sums[p]);
+    });
+  }
+  unroll<Packs>([&](auto p) PINNQUAD_INLINE_LAMBDA { sums[p].store(sum + p * Pack::width); });
+}
+
+/// The same of `rows` that fill packs: the most at once first, then what is left.
+template <int Packs = 8, class Number>
+PINNQUAD_ALWAYS_INLINE void sum_turned_rows(const Number* weights, int stride, int rows, int columns,
+                                            const Number* bias, const Number* x, Number* sum) noexcept {
+  constexpr int together = Packs * pinnquad::NativePack<Number>::width;
+  int row = 0;
+  for (; row + together <= rows; row += together) {
+    sum_packs_of_rows<Packs>(weights + row, stride, columns, bias + row, x, sum + row);
+  }
+  if constexpr (Packs > 1) {
+    if (row < rows) {
+      sum_turned_rows<Packs - 1>(weights + row, stride, rows - row, columns, bias + row, x, sum + row);
+    }
+  }
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
