@@ -5,8 +5,7 @@
 
 # pinnquad_add_compiled(<include folder>): of the source tree, or of an installed one.
 function(pinnquad_add_compiled include)
-  get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
-  if(TARGET pinnquad_compiled OR NOT CXX IN_LIST languages)
+  if(TARGET pinnquad_compiled OR NOT CMAKE_CXX_COMPILE_FEATURES) # of a project without C++, or an unknown compiler
     return()
   endif()
   file(GLOB bodies CONFIGURE_DEPENDS RELATIVE "${include}"

@@ -13,7 +13,7 @@ mkdir -p "$work/onboard"
 # Instructions of the longest tick and of a second, by optimisation: a tenth above what is measured. 1 % of 400 MHz are
 # 4 million a second, at an instruction a cycle. Bytes.
 declare -A most_of_tick=([-Os]=73900 [-O2]=48000) most_of_second=([-Os]=2460000 [-O2]=1860000)
-most_bytes=5900 most_stack=1000
+most_bytes=6100 most_stack=1000
 # Microseconds of the clock become a float by doubles, which this M7 has.
 forbidden=${forbidden%"|$doubles"}
 

@@ -53,11 +53,11 @@ def test_one_is_asked_for(driver, wanted):
 def test_one_that_is_not_there_is_refused(driver, tmp_path):
     done = asked(driver, "x86-64-v9")
     assert done.code == 2 and done.lines == [
-        f"driver: PINNQUAD_INSTRUCTION_SET is 'x86-64-v9'; here run: {', '.join(reversed(RUN))}"]
+        f"driver: PINNQUAD_INSTRUCTION_SET is 'x86-64-v9'; here run: {', '.join(reversed(RUN))}; see driver --help"]
     alone = shutil.copy(driver, tmp_path)
     assert asked(alone, None).out.startswith(SETS["x86-64"])
     assert asked(alone, "x86-64-v3").lines == [
-        "driver: PINNQUAD_INSTRUCTION_SET is 'x86-64-v3'; here run: x86-64"]
+        "driver: PINNQUAD_INSTRUCTION_SET is 'x86-64-v3'; here run: x86-64; see driver --help"]
 
 
 @pytest.mark.parametrize("processor, best", [("Nehalem", "x86-64"), ("Haswell", "x86-64-v3")])

@@ -254,7 +254,7 @@ namespace programs {
 
 Command loop_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand(
-      "loop", "Flies a model in the simulator beside other controllers; or random vehicles that are learnt in flight");
+      "loop", "Flies a model in the simulator beside other controllers, or random vehicles learnt in flight");
   const auto options = std::make_shared<LoopOptions>();
   add_loop_model(*line, *options);
   line->get_option("model")->required(false);  // of vehicles that nobody knows there is none

@@ -121,7 +121,8 @@ TEST_CASE("rotors of every kind are read") {
 TEST_CASE("one line with line and column for what is wrong") {
   CHECK(said_of("mass_kg = 1.5", "mass_kg = \"heavy\"") == ":4:11: expected a number, found \"heavy\"");
   CHECK(said_of("mass_kg = 1.5\n", "") == ":1:1: expected `mass_kg`, a number, found no such key");
-  CHECK(said_of("mass_kg = 1.5", "mass_kg = 1.5\nmass_g = 1") == ":5:1: expected a key of an airframe, found `mass_g`");
+  CHECK(said_of("mass_kg = 1.5", "mass_kg = 1.5\nmass_g = 1") ==
+        ":5:1: expected a key of an airframe, found `mass_g`; nearest: mass_kg, name, rotor");
   CHECK(said_of("mass_kg = 1.5", "mass_kg = -1.5").find(":4:11: expected a value above 0") == 0);
   CHECK(said_of("mass_kg = 1.5", "mass_kg = nan").find(":4:11: expected a value above 0") == 0);
   CHECK(said_of("mass_kg = 1.5", "mass_kg = 90").find(":4:11: expected an airframe that can hover") == 0);
@@ -150,7 +151,8 @@ TEST_CASE("one line with line and column for what is wrong") {
 
 TEST_CASE("what a file holds is shown on one line, whatever it is; broken TOML ends no program") {
   CHECK(said_of("mass_kg = 1.5", "mass_kg = \"a\\nb\"") == ":4:11: expected a number, found \"a?b\"");
-  CHECK(said_of("mass_kg = 1.5", "\"a\\nb\" = 1\nmass_kg = 1.5") == ":4:1: expected a key of an airframe, found `a?b`");
+  CHECK(said_of("mass_kg = 1.5", "\"a\\nb\" = 1\nmass_kg = 1.5") ==
+        ":4:1: expected a key of an airframe, found `a?b`; nearest: name, rotor, mass_kg");
   CHECK(said_of("\"paper_quadrotor\"", "\"a\\nb\"") == ":3:8: expected a text on one line, found \"a?b\"");
   CHECK(said_of("\"paper_quadrotor\"", "\"\"") == ":3:8: expected a text on one line, found \"\"");
   CHECK(said_of("mass_kg = 1.5", "[[[[").find(":4:3: expected TOML") == 0);

@@ -23,9 +23,8 @@
 
 namespace pinnquad {
 
-/// A feed-forward policy (control/feed_forward.hpp) that learns in flight and knows of an acceleration across
-/// (control/feed_forward.hpp). Commands are thrust fractions through the start's curves; its signs are what is
-/// known of the vehicle for sure.
+/// A feed-forward policy (control/feed_forward.hpp) that learns in flight and knows of an acceleration across. Commands
+/// are thrust fractions through the start's curves; its signs are what is known of the vehicle for sure.
 template <class Scalar>
 class OnboardInverse {
  public:
@@ -53,7 +52,7 @@ class OnboardInverse {
 
   /// One tick, before the inverse is asked: the state, and the commands in force since the tick before. `known`: they
   /// drove the motors, in flight, and the state is fresh. A row is of two periods in which no command was at its end;
-  /// the bias learns of those too: the rotors follow a command at its end as any other one.
+  /// the bias learns of the others too: the rotors follow a command at its end as any other one.
   void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
     const Scalar step_s = clock_.step_s(now_us);
     motion_.velocity(now_us, state.velocity_m_s);
@@ -86,9 +85,8 @@ class OnboardInverse {
   /// 1: they are to be desaturated (control/desaturate.hpp).
   Status operator()(const State<Scalar>& state, const Accelerations<Scalar>& wanted, std::uint64_t now_us,
                     Commands<Scalar>& commands) noexcept {
-    if (!(all_finite(state) && all_finite(wanted.linear_m_s2) && all_finite(wanted.angular_rad_s2))) {
-      return Status::not_finite;
-    }
+    const bool finite = all_finite(state) && all_finite(wanted.linear_m_s2) && all_finite(wanted.angular_rad_s2);
+    if (!finite) return Status::not_finite;
     const Accelerations<Scalar> added = sines(now_us);
     const detail::SumMotion<Scalar> motion = detail::sum_motion(
         motion_inputs(state, {wanted.linear_m_s2 + added.linear_m_s2, wanted.angular_rad_s2 + added.angular_rad_s2}));
@@ -168,7 +166,6 @@ class OnboardInverse {
     const bool unknown = !flown_[k].proven && !frozen_;
     return excited_ ? Scalar(1) : (unknown ? settings_.excitation.share_unknown : Scalar(0));
   }
-  /// The middle of a row is a period ago.
   void listen(std::uint64_t now_us, const detail::SumMotion<Scalar>& motion) noexcept {
     std::array<Scalar, 4> amplitudes{};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -176,7 +173,7 @@ class OnboardInverse {
       amplitudes[k] = detail::sine_amplitudes(settings_.excitation, k, slope, sine_share(k)).fast;
     }
     if (!begun_ || now_us - begun_us_ < settings_.period_us) return;
-    const Scalar t_s = detail::sine_time_s<Scalar>(now_us - begun_us_ - settings_.period_us);
+    const Scalar t_s = detail::sine_time_s<Scalar>(now_us - begun_us_ - settings_.period_us);  // a row's middle
     const detail::AskedSines<Scalar> asked = detail::asked_sines(t_s, settings_.excitation, amplitudes);
     answer_.add(asked, motion, bank_, regression_.keep());
     second_.add(asked, motion, bank_, Scalar(1));
@@ -184,21 +181,7 @@ class OnboardInverse {
 
   /// Two periods of flight; a row where no command was at its end.
   void window(std::uint64_t now_us, bool is_row) noexcept {
-    const MotionInputs<Scalar>& flown = motion_.motion();
-    const detail::SumMotion<Scalar> motion = detail::sum_motion(flown);
-    SignedSums<Scalar> residual{};
-    for (std::size_t k = 0; k < 4; ++k) residual[k] = lacking(k, flown_[k].forward, motion);
-    Vector3<Scalar> across = SpecificForce::of<Scalar>(flown);
-    const Vector3<Scalar> force = across;
-    across[2] = Scalar(0);
-    across -= drag_.of(motion.velocity_m_s);
-    bias_.time_constants(bias_times_s());
-    if (!has_output(bias_.learn(residual, body_to_world<Scalar>(flown.attitude, across), period_s()))) return;
-    bias_age_s_ += period_s();
-    if (!is_row) return;
-    judge(motion, residual);
-    listen(now_us, motion);
-    regression_.teach(now_us, motion, bank_, force);
+    if (!taught(now_us, is_row)) return;
     ++rows_;
     if (++rows_since_ < settings_.rows_of_candidate) return;
     rows_since_ = 0;
@@ -207,6 +190,27 @@ class OnboardInverse {
     if (judging_ && judged_ < settings_.rows_of_gain) return;
     if (judging_) decide();
     propose();
+  }
+  /// Teaches bias and regression; false: no row. Out of line: its motion is off the stack as a candidate is made.
+  PINNQUAD_NOINLINE bool taught(std::uint64_t now_us, bool is_row) noexcept {
+    const MotionInputs<Scalar>& flown = motion_.motion();
+    const detail::SumMotion<Scalar> motion = detail::sum_motion(flown);
+    SignedSums<Scalar> residual{};
+    for (std::size_t k = 0; k < 4; ++k) residual[k] = lacking(k, flown_[k].forward, motion);
+    // desaturation gives yaw up, and its sum swings: by the start's slope a bias of such swings is none
+    if (!is_row && !flown_[3].proven) residual[3] = bias_.sums()[3];
+    Vector3<Scalar> across = SpecificForce::of<Scalar>(flown);
+    const Vector3<Scalar> force = across;
+    across[2] = Scalar(0);
+    across -= drag_.of(motion.velocity_m_s);
+    bias_.time_constants(bias_times_s());
+    if (!has_output(bias_.learn(residual, body_to_world<Scalar>(flown.attitude, across), period_s()))) return false;
+    bias_age_s_ += period_s();
+    if (!is_row) return false;
+    judge(motion, residual);
+    listen(now_us, motion);
+    regression_.teach(now_us, motion, bank_, force);
+    return true;
   }
 
   Scalar period_s() const noexcept { return motion_.period_s(Scalar(0)); }

@@ -61,18 +61,18 @@ class SumRegression {
 
   /// Forgets all rows: they are of no flight.
   void forget() noexcept {
-    thrust_ = {};
-    turns_ = {};
+    thrust_.clear();
+    for (auto& turn : turns_) turn.clear();
     rows_ = means_of_torque_ = rows_of_drag_ = Scalar(0);
     drag_ = {};
-    mean_ = {};
+    begin_mean();
   }
 
   /// A row: the motion, the thrusts that the rotors of each lag would have followed, and the specific force, FRD.
   void teach(std::uint64_t now_us, const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank,
              const Vector3<Scalar>& force_m_s2) noexcept {
     // rows of one mean follow each other
-    if (now_us / period_us_ - row_us_ / period_us_ > 1) mean_ = {};
+    if (now_us / period_us_ - row_us_ / period_us_ > 1) begin_mean();
     row_us_ = now_us;
     ++mean_.rows;
     teach_thrust(motion, bank);
@@ -80,7 +80,7 @@ class SumRegression {
     rows_ = keep() * rows_ + Scalar(1);
     if (mean_.rows == settings_.rows_of_torque) {
       means_of_torque_ = root_keep_torque_ * root_keep_torque_ * means_of_torque_ + Scalar(1);
-      mean_ = {};
+      begin_mean();
     }
     teach_drag(motion.velocity_m_s, force_m_s2);
   }
@@ -188,6 +188,10 @@ class SumRegression {
       }
     }
     return row;
+  }
+  void begin_mean() noexcept {  // row by row: a temporary of all three would be on the stack
+    for (SumRow<turn_terms>& row : mean_.of) row = {};
+    mean_.rows = 0;
   }
   /// Out of line, as teach_torque(): a row is on the stack once.
   PINNQUAD_NOINLINE void teach_thrust(const SumMotion<Scalar>& motion, const LagBank<Scalar>& bank) noexcept {

@@ -71,6 +71,13 @@ class SharedTriangle {
   using Row = std::array<Scalar, shared + 1>;  ///< of A, and y
   using Owns = std::array<std::array<Scalar, own>, variants>;
 
+  /// Forgets all rows, part by part: a triangle of its own for it would be on the stack.
+  void clear() noexcept {
+    head_ = {};
+    for (Owns& beside : beside_) beside = {};
+    for (Triangle<Scalar, own + 1>& tail : tails_) tail = {};
+  }
+
   /// A row; nothing of it is left.
   void turn_in(Row& row, Owns& owns, Scalar root_keep) noexcept {
     head_.turn_in(row, root_keep, 0, shared, [&](std::size_t i, const Turn<Scalar>& turn) noexcept {
