@@ -189,7 +189,7 @@ class Flown {
         gains_(gains_for(start_.rotor_time_constant_s)) {}
 
   nlohmann::json row() { return flight_.controller == "onboard" ? onboard() : known(); }
-  /// Slopes over time of a vehicle that is learnt on board.
+  /// Slopes over time of the vehicle to draw, as it is learnt on board; none of another one.
   const std::optional<Chart>& picture() const noexcept { return picture_; }
 
  private:
@@ -212,12 +212,13 @@ class Flown {
     std::array<std::uint32_t, 4> row{};
     std::array<std::size_t, 4> swaps{};
     std::size_t unproven = 0;
-    LearntVehicle<double> learnt_vehicle(start_);
+    std::optional<LearntVehicle<double>> drawn;
+    if (flight_.vehicle == options_.drawn) drawn.emplace(start_);
     const OnboardCertificate<double> at_start = policy.certificate();
     const auto watch = [&](double time_s) {
       policy.excite(time_s < VehicleCourse::hover_s && time_s < options_.frozen_s);
       policy.freeze(time_s >= options_.frozen_s);
-      learnt_vehicle.note(time_s, policy);
+      if (drawn) drawn->note(time_s, policy);
       for (std::size_t k = 0; k < 4; ++k) {
         const OnboardSum<double>& sum = policy.certificate()[k];
         if (!sum.proven && sum.forward.theta != at_start[k].forward.theta) ++unproven;
@@ -231,7 +232,7 @@ class Flown {
     const SignedSums<double> truth = true_slopes();
     SignedSums<double> slopes{};
     for (std::size_t k = 0; k < 4; ++k) slopes[k] = 1 / truth[k];
-    picture_ = learnt_vehicle.picture(slopes);
+    if (drawn) picture_ = drawn->picture(slopes);
     nlohmann::json& learnt = result["learnt"] = {{"rows", policy.rows()},
                                                  {"unproven_ticks", unproven},
                                                  {"drag", {policy.drag().linear_1_s, policy.drag().quadratic_1_m}}};
@@ -451,7 +452,7 @@ int fly_vehicles(const VehiclesOptions& options) {
         stop_if_interrupted();
         Flown flown(options, flights[i]);
         rows[i] = flown.row();
-        if (flights[i].vehicle == options.drawn) pictures[i] = flown.picture();
+        pictures[i] = flown.picture();
         ++finished;
       });
   stop_if_interrupted();

@@ -6,13 +6,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "pinnquad/control/onboard/onboard_inverse.hpp"
 #include "pinnquad/core/fnv1a.hpp"
+#include "pinnquad/data/dataset.hpp"
 #include "pinnquad/deploy/provenance.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/loss/context.hpp"
@@ -48,11 +48,7 @@ class LearntRows {
   std::uint64_t hash() const noexcept {
     detail::Fnv1a fnv;
     for (const Row& row : rows_) {
-      for (const double number : row) {
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &number, sizeof bits);
-        fnv.absorb_word(bits);
-      }
+      for (const double number : row) detail::absorb_number(fnv, number);
     }
     return fnv.hash;
   }

@@ -41,7 +41,7 @@ class RunTimeRow {
     return numbers + count;
   }
 
-  /// Those of a part, in the order in which RunTimeNetwork reads them; gives what is behind.
+  /// Takes a part's parameters in the order in which RunTimeNetwork reads them; gives what is behind.
   const Scalar* take(const RunTimeNetwork::Part& part, const Scalar* next) {
     if (part.axis_aligned) return copy(next, part.parameter_count);
     if (part.bounded) next = copy(next, 2 * part.outputs);

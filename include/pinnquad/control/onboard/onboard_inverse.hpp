@@ -264,7 +264,7 @@ class OnboardInverse {
     if (judging_) ++judged_;
     watch(motion, residual);
   }
-  /// Those of torques are of their rows: means.
+  /// A torque's residuals count as its rows do: by means.
   void add(Shadow& of, std::size_t k, Scalar residual, Scalar slope, bool settled) const noexcept {
     const Scalar beside = residual - of.bias[k];
     of.bias[k] += period_s() / (period_s() + settings_.bias.time_constants_s[k]) * beside;
