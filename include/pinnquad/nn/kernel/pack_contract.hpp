@@ -157,7 +157,7 @@ PINNQUAD_ALWAYS_INLINE Pack positive_part_by_bits(const Pack& a) noexcept {
   return {reinterpret_cast<decltype(Pack::value)>(bits & (bits >= bound))};
 }
 
-/// The second contract but for repeat<First>(), head<Count>() and sum_of_values(), of a pack with a row in each lane and
+/// The second contract but for repeat<First>(), head<Count>() and sum_of_values(): a pack with a row in each lane takes
 /// one input per step.
 template <class Pack, class ScalarType, int Width>
 struct OneColumn {
