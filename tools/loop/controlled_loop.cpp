@@ -12,6 +12,7 @@
 #include "flight/battery_choice.hpp"
 #include "flight/block_loop.hpp"
 #include "flight/loop_figures.hpp"
+#include "flight/waypoints.hpp"
 #include "loop/world.hpp"
 #include "pinnquad/simulation/flights.hpp"
 

@@ -52,9 +52,10 @@ constexpr bool is_finite_constant(Scalar value) noexcept {
 /// True if `count` values from `first` are all finite. No early return: the time does not depend on the data.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Mask<Scalar> all_finite(const Scalar* first, int count) noexcept {
-  Mask<Scalar> finite(true);
+  // in a bool, gcc takes one number after the other
+  std::conditional_t<std::is_same_v<Mask<Scalar>, bool>, unsigned, Mask<Scalar>> finite(true);
   for (int i = 0; i < count; ++i) finite &= is_finite(first[i]);
-  return finite;
+  return Mask<Scalar>(finite);
 }
 
 /// The same for anything contiguous with data() and size(): std::array, Eigen matrices.

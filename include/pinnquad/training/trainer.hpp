@@ -99,6 +99,7 @@ class Trainer {
       const int size = data.size() - first < BatchSize ? data.size() - first : BatchSize;
       batch_of_epoch_ = first / BatchSize;
       batches_per_epoch_ = (data.size() + BatchSize - 1) / BatchSize;
+      fetch_ahead(data, first + size);
       sum += size * static_cast<double>(batch(data, order_.data() + first, size));
       after_batch(*this);
     }
@@ -225,6 +226,20 @@ class Trainer {
       refuse("expected rows of " + std::to_string(Network::inputs) + " features and " +
              std::to_string(Network::outputs) + " outputs, found " + std::to_string(data.features.size()) + " and " +
              std::to_string(data.outputs.size()) + " numbers");
+    }
+  }
+
+  /// Asks for the rows of the batch that begins with `first` in the order: drawn at random, they come from far away,
+  /// and arrive while the batch before them is worked on.
+  void fetch_ahead(const Data& data, int first) const noexcept {
+    constexpr int cache_line = 64 / static_cast<int>(sizeof(Scalar));
+    for (int i = first; i < data.size() && i < first + BatchSize; ++i) {
+      const int row = order_[static_cast<std::size_t>(i)];
+      if (row < 0 || row >= data.size()) return;  // refused when its turn comes
+      const Scalar* const features = data.features_of(row);
+      for (int k = 0; k < Network::inputs; k += cache_line) __builtin_prefetch(features + k);
+      __builtin_prefetch(features + Network::inputs - 1);
+      __builtin_prefetch(data.outputs_of(row));
     }
   }
 

@@ -33,13 +33,8 @@ struct PackAvx2 {
   static PINNQUAD_ALWAYS_INLINE PackAvx2 square_root(PackAvx2 a) noexcept { return {_mm256_sqrt_ps(a.value)}; }
   /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
   static PINNQUAD_ALWAYS_INLINE PackAvx2 positive_part(PackAvx2 a) noexcept {
-    if constexpr (finite_math_only) {  // the operands of max may be swapped, the bits not
-      const __m256i bits = _mm256_castps_si256(a.value);
-      const __m256i below = _mm256_cmpgt_epi32(_mm256_set1_epi32(above_negatives), bits);
-      return {_mm256_castsi256_ps(_mm256_andnot_si256(below, bits))};
-    } else {
-      return {_mm256_max_ps(_mm256_setzero_ps(), a.value)};
-    }
+    if constexpr (finite_math_only) return positive_part_by_bits(a);
+    return {_mm256_max_ps(_mm256_setzero_ps(), a.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackAvx2 where_positive(PackAvx2 gate, PackAvx2 a) noexcept {
     const __m256 positive = _mm256_cmp_ps(gate.value, _mm256_setzero_ps(), _CMP_GT_OQ);
@@ -135,15 +130,17 @@ struct PackAvx2 {
 };
 
 /// 4 doubles in one register.
-struct PackAvx2Double {
-  using Scalar = double;
+struct PackAvx2Double : OneColumn<PackAvx2Double, double, 4> {
   static constexpr VectorUnit unit = VectorUnit::avx2;
   static constexpr bool fused = true;
-  static constexpr int width = 4;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;
 
   __m256d value;
+
+  PackAvx2Double() = default;
+  PINNQUAD_ALWAYS_INLINE PackAvx2Double(__m256d v) noexcept : value(v) {}
+  using OneColumn::repeat;
 
   static PINNQUAD_ALWAYS_INLINE PackAvx2Double load(const double* p) noexcept { return {_mm256_loadu_pd(p)}; }
   static PINNQUAD_ALWAYS_INLINE PackAvx2Double broadcast(double v) noexcept { return {_mm256_set1_pd(v)}; }
@@ -156,37 +153,22 @@ struct PackAvx2Double {
     return {_mm256_sqrt_pd(a.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackAvx2Double positive_part(PackAvx2Double a) noexcept {
-    if constexpr (finite_math_only) {
-      const __m256i bits = _mm256_castpd_si256(a.value);
-      const __m256i below = _mm256_cmpgt_epi64(_mm256_set1_epi64x(above_negatives_double), bits);
-      return {_mm256_castsi256_pd(_mm256_andnot_si256(below, bits))};
-    } else {
-      return {_mm256_max_pd(_mm256_setzero_pd(), a.value)};
-    }
+    if constexpr (finite_math_only) return positive_part_by_bits(a);
+    return {_mm256_max_pd(_mm256_setzero_pd(), a.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackAvx2Double where_positive(PackAvx2Double gate, PackAvx2Double a) noexcept {
     return {_mm256_and_pd(_mm256_cmp_pd(gate.value, _mm256_setzero_pd(), _CMP_GT_OQ), a.value)};
   }
 
   // A layer in registers (register_layer.hpp): four rows, one input.
-  static constexpr int columns = 1;
-  static constexpr int values = 4;
-  static constexpr int blocks_per_register = 1;
   static constexpr int blocks_at_once = 6;
   static constexpr int chains = 2;
-
-  static constexpr int lane_of_value(int value) noexcept { return value; }
-  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
 
   /// Value First in every lane.
   template <int First>
   PINNQUAD_ALWAYS_INLINE PackAvx2Double repeat() const noexcept {
     return {_mm256_permute4x64_pd(value, First * 0x55)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackAvx2Double repeat(const double* x) noexcept { return broadcast(*x); }
-  static PINNQUAD_ALWAYS_INLINE PackAvx2Double repeat_last(PackAvx2Double v) noexcept { return v.repeat<0>(); }
-  static PINNQUAD_ALWAYS_INLINE PackAvx2Double from_scalar(double v) noexcept { return broadcast(v); }
-  static PINNQUAD_ALWAYS_INLINE PackAvx2Double collect(const PackAvx2Double* sum) noexcept { return *sum; }
   template <int Count>
   PINNQUAD_ALWAYS_INLINE PackAvx2Double head() const noexcept {
     return {_mm256_blend_pd(_mm256_setzero_pd(), value, (1 << Count) - 1)};
@@ -197,18 +179,6 @@ struct PackAvx2Double {
     return {_mm256_castpd128_pd256(_mm_add_pd(two, _mm_unpackhi_pd(two, two)))};
   }
   PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+x"(value)); }
-  PINNQUAD_ALWAYS_INLINE double first_value() const noexcept { return _mm256_cvtsd_f64(value); }
-  /// y[0, Count) and nothing behind.
-  template <int Count>
-  PINNQUAD_ALWAYS_INLINE void store_values(double* y) const noexcept {
-    if constexpr (Count == width) {
-      store(y);
-    } else {
-      alignas(32) double lane[width];
-      store(lane);
-      for (int i = 0; i < Count; ++i) y[i] = lane[i];
-    }
-  }
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

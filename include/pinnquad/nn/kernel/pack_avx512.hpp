@@ -37,13 +37,8 @@ struct PackAvx512 {
   }
   /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
   static PINNQUAD_ALWAYS_INLINE PackAvx512 positive_part(PackAvx512 a) noexcept {
-    if constexpr (finite_math_only) {  // the operands of max may be swapped, the bits not
-      const __m512i bits = _mm512_castps_si512(a.value);
-      const __mmask16 kept = _mm512_cmp_epi32_mask(bits, _mm512_set1_epi32(above_negatives), _MM_CMPINT_NLT);
-      return {_mm512_castsi512_ps(_mm512_maskz_mov_epi32(kept, bits))};
-    } else {
-      return {_mm512_maskz_max_ps(all, _mm512_setzero_ps(), a.value)};
-    }
+    if constexpr (finite_math_only) return positive_part_by_bits(a);
+    return {_mm512_maskz_max_ps(all, _mm512_setzero_ps(), a.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackAvx512 where_positive(PackAvx512 gate, PackAvx512 a) noexcept {
     const __mmask16 positive = _mm512_cmp_ps_mask(gate.value, _mm512_setzero_ps(), _CMP_GT_OQ);
@@ -168,13 +163,8 @@ struct PackAvx512Double {
     return {_mm512_maskz_sqrt_pd(all, a.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackAvx512Double positive_part(PackAvx512Double a) noexcept {
-    if constexpr (finite_math_only) {
-      const __m512i bits = _mm512_castpd_si512(a.value);
-      const __mmask8 kept = _mm512_cmp_epi64_mask(bits, _mm512_set1_epi64(above_negatives_double), _MM_CMPINT_NLT);
-      return {_mm512_castsi512_pd(_mm512_maskz_mov_epi64(kept, bits))};
-    } else {
-      return {_mm512_maskz_max_pd(all, _mm512_setzero_pd(), a.value)};
-    }
+    if constexpr (finite_math_only) return positive_part_by_bits(a);
+    return {_mm512_maskz_max_pd(all, _mm512_setzero_pd(), a.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackAvx512Double where_positive(PackAvx512Double gate, PackAvx512Double a) noexcept {
     const __mmask8 positive = _mm512_cmp_pd_mask(gate.value, _mm512_setzero_pd(), _CMP_GT_OQ);

@@ -33,12 +33,14 @@
 // each pair takes in that step, column_met(First, pair) being the first of it. Over all steps a pair meets each once.
 #pragma once
 
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/core/instruction_set.hpp"
+#include "pinnquad/core/scalar_math.hpp"
 
 namespace pinnquad::detail {
 
@@ -142,6 +144,50 @@ template <class Pack, class = RegisterOf<Pack>>
 PINNQUAD_ALWAYS_INLINE Pack operator/(Pack a, Pack b) noexcept {
   return {a.value / b.value};
 }
+
+/// positive_part() where the compiler may assume that there is no NaN: it may swap the operands of a maximum, the bits
+/// it may not.
+template <class Pack>
+PINNQUAD_ALWAYS_INLINE Pack positive_part_by_bits(const Pack& a) noexcept {
+  constexpr bool of_floats = sizeof(typename Pack::Scalar) == sizeof(above_negatives);
+  using Integer = std::conditional_t<of_floats, int, long long>;
+  using Bits __attribute__((vector_size(sizeof(Pack)))) = Integer;
+  const auto bits = reinterpret_cast<Bits>(a.value);
+  const Bits bound = Bits{} + static_cast<Integer>(of_floats ? above_negatives : above_negatives_double);
+  return {reinterpret_cast<decltype(Pack::value)>(bits & (bits >= bound))};
+}
+
+/// The second contract but for repeat<First>(), head<Count>() and sum_of_values(): a pack with a row in each lane takes
+/// one input per step.
+template <class Pack, class ScalarType, int Width>
+struct OneColumn {
+  using Scalar = ScalarType;
+  static constexpr int width = Width;
+  static constexpr int columns = 1;
+  static constexpr int values = Width;
+  static constexpr int blocks_per_register = 1;
+
+  static constexpr int lane_of_value(int value) noexcept { return value; }
+  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
+
+  static PINNQUAD_ALWAYS_INLINE Pack repeat(const Scalar* x) noexcept { return Pack::broadcast(*x); }
+  static PINNQUAD_ALWAYS_INLINE Pack repeat_last(const Pack& v) noexcept { return v.template repeat<0>(); }
+  static PINNQUAD_ALWAYS_INLINE Pack from_scalar(Scalar v) noexcept { return Pack::broadcast(v); }
+  static PINNQUAD_ALWAYS_INLINE Pack collect(const Pack* sum) noexcept { return *sum; }
+  PINNQUAD_ALWAYS_INLINE Scalar first_value() const noexcept { return static_cast<const Pack*>(this)->value[0]; }
+  template <int Count>
+  PINNQUAD_ALWAYS_INLINE void store_values(Scalar* y) const noexcept {
+    if constexpr (Count == width) {
+      static_cast<const Pack*>(this)->store(y);
+    } else if constexpr (Count == 1) {
+      *y = first_value();
+    } else {
+      alignas(sizeof(Pack)) Scalar lane[static_cast<std::size_t>(width)];
+      static_cast<const Pack*>(this)->store(lane);
+      for (int i = 0; i < Count; ++i) y[i] = lane[i];
+    }
+  }
+};
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad::detail

@@ -14,15 +14,17 @@ namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 4 floats in one register.
-struct PackNeon {
-  using Scalar = float;
+struct PackNeon : OneColumn<PackNeon, float, 4> {
   static constexpr VectorUnit unit = VectorUnit::neon;
   static constexpr bool fused = true;
-  static constexpr int width = 4;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;
 
   float32x4_t value;
+
+  PackNeon() = default;
+  PINNQUAD_ALWAYS_INLINE PackNeon(float32x4_t v) noexcept : value(v) {}
+  using OneColumn::repeat;
 
   static PINNQUAD_ALWAYS_INLINE PackNeon load(const float* p) noexcept { return {vld1q_f32(p)}; }
   static PINNQUAD_ALWAYS_INLINE PackNeon broadcast(float v) noexcept { return {vdupq_n_f32(v)}; }
@@ -41,24 +43,14 @@ struct PackNeon {
   }
 
   // A layer in registers (register_layer.hpp): four rows, one input.
-  static constexpr int columns = 1;
-  static constexpr int values = 4;
-  static constexpr int blocks_per_register = 1;
   static constexpr int blocks_at_once = 6;
   static constexpr int chains = 2;
-
-  static constexpr int lane_of_value(int value) noexcept { return value; }
-  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
 
   /// Value First in every lane.
   template <int First>
   PINNQUAD_ALWAYS_INLINE PackNeon repeat() const noexcept {
     return {vdupq_laneq_f32(value, First)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackNeon repeat(const float* x) noexcept { return broadcast(*x); }
-  static PINNQUAD_ALWAYS_INLINE PackNeon repeat_last(PackNeon v) noexcept { return v.repeat<0>(); }
-  static PINNQUAD_ALWAYS_INLINE PackNeon from_scalar(float v) noexcept { return broadcast(v); }
-  static PINNQUAD_ALWAYS_INLINE PackNeon collect(const PackNeon* sum) noexcept { return *sum; }
   /// The first Count values, zero behind them.
   template <int Count>
   PINNQUAD_ALWAYS_INLINE PackNeon head() const noexcept {
@@ -70,30 +62,20 @@ struct PackNeon {
   PINNQUAD_ALWAYS_INLINE PackNeon sum_of_values() const noexcept { return broadcast(vaddvq_f32(value)); }
   /// Is worked out here: the compiler may not put it off to where it is used.
   PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+w"(value)); }
-  PINNQUAD_ALWAYS_INLINE float first_value() const noexcept { return vgetq_lane_f32(value, 0); }
-  /// y[0, Count) and nothing behind.
-  template <int Count>
-  PINNQUAD_ALWAYS_INLINE void store_values(float* y) const noexcept {
-    if constexpr (Count == width) {
-      store(y);
-    } else {
-      alignas(16) float lane[width];
-      store(lane);
-      for (int i = 0; i < Count; ++i) y[i] = lane[i];
-    }
-  }
 };
 
 /// 2 doubles in one register.
-struct PackNeonDouble {
-  using Scalar = double;
+struct PackNeonDouble : OneColumn<PackNeonDouble, double, 2> {
   static constexpr VectorUnit unit = VectorUnit::neon;
   static constexpr bool fused = true;
-  static constexpr int width = 2;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;
 
   float64x2_t value;
+
+  PackNeonDouble() = default;
+  PINNQUAD_ALWAYS_INLINE PackNeonDouble(float64x2_t v) noexcept : value(v) {}
+  using OneColumn::repeat;
 
   static PINNQUAD_ALWAYS_INLINE PackNeonDouble load(const double* p) noexcept { return {vld1q_f64(p)}; }
   static PINNQUAD_ALWAYS_INLINE PackNeonDouble broadcast(double v) noexcept { return {vdupq_n_f64(v)}; }
@@ -113,24 +95,14 @@ struct PackNeonDouble {
   }
 
   // A layer in registers (register_layer.hpp): two rows, one input.
-  static constexpr int columns = 1;
-  static constexpr int values = 2;
-  static constexpr int blocks_per_register = 1;
   static constexpr int blocks_at_once = 12;
   static constexpr int chains = 1;
-
-  static constexpr int lane_of_value(int value) noexcept { return value; }
-  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
 
   /// Value First in both lanes.
   template <int First>
   PINNQUAD_ALWAYS_INLINE PackNeonDouble repeat() const noexcept {
     return {vdupq_laneq_f64(value, First)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackNeonDouble repeat(const double* x) noexcept { return broadcast(*x); }
-  static PINNQUAD_ALWAYS_INLINE PackNeonDouble repeat_last(PackNeonDouble v) noexcept { return v.repeat<0>(); }
-  static PINNQUAD_ALWAYS_INLINE PackNeonDouble from_scalar(double v) noexcept { return broadcast(v); }
-  static PINNQUAD_ALWAYS_INLINE PackNeonDouble collect(const PackNeonDouble* sum) noexcept { return *sum; }
   template <int Count>
   PINNQUAD_ALWAYS_INLINE PackNeonDouble head() const noexcept {
     static_assert(Count == 1 || Count == 2);
@@ -139,16 +111,6 @@ struct PackNeonDouble {
   /// Sum over the lanes, in every one.
   PINNQUAD_ALWAYS_INLINE PackNeonDouble sum_of_values() const noexcept { return broadcast(vaddvq_f64(value)); }
   PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+w"(value)); }
-  PINNQUAD_ALWAYS_INLINE double first_value() const noexcept { return vgetq_lane_f64(value, 0); }
-  /// y[0, Count) and nothing behind.
-  template <int Count>
-  PINNQUAD_ALWAYS_INLINE void store_values(double* y) const noexcept {
-    if constexpr (Count == width) {
-      store(y);
-    } else {
-      vst1q_lane_f64(y, value, 0);
-    }
-  }
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

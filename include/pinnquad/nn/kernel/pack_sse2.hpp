@@ -19,19 +19,21 @@ namespace pinnquad::detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// 4 floats in one register. Product and sum are rounded once where the processor has the instruction without AVX2.
-struct PackSse2 {
-  using Scalar = float;
+struct PackSse2 : OneColumn<PackSse2, float, 4> {
   static constexpr VectorUnit unit = VectorUnit::sse2;
 #if defined(__FMA__) || defined(__FMA4__)
   static constexpr bool fused = true;
 #else
   static constexpr bool fused = false;
 #endif
-  static constexpr int width = 4;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 1;
 
   __m128 value;
+
+  PackSse2() = default;
+  PINNQUAD_ALWAYS_INLINE PackSse2(__m128 v) noexcept : value(v) {}
+  using OneColumn::repeat;
 
   static PINNQUAD_ALWAYS_INLINE PackSse2 load(const float* p) noexcept { return {_mm_loadu_ps(p)}; }
   static PINNQUAD_ALWAYS_INLINE PackSse2 broadcast(float v) noexcept { return {_mm_set1_ps(v)}; }
@@ -49,12 +51,8 @@ struct PackSse2 {
   static PINNQUAD_ALWAYS_INLINE PackSse2 square_root(PackSse2 a) noexcept { return {_mm_sqrt_ps(a.value)}; }
   /// max(0, v) with v as the second operand: the instruction returns it when either is NaN.
   static PINNQUAD_ALWAYS_INLINE PackSse2 positive_part(PackSse2 a) noexcept {
-    if constexpr (finite_math_only) {  // the operands of max may be swapped, the bits not
-      const __m128i bits = _mm_castps_si128(a.value);
-      return {_mm_castsi128_ps(_mm_andnot_si128(_mm_cmplt_epi32(bits, _mm_set1_epi32(above_negatives)), bits))};
-    } else {
-      return {_mm_max_ps(_mm_setzero_ps(), a.value)};
-    }
+    if constexpr (finite_math_only) return positive_part_by_bits(a);
+    return {_mm_max_ps(_mm_setzero_ps(), a.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackSse2 where_positive(PackSse2 gate, PackSse2 a) noexcept {
     return {_mm_and_ps(_mm_cmpgt_ps(gate.value, _mm_setzero_ps()), a.value)};
@@ -66,24 +64,14 @@ struct PackSse2 {
   }
 
   // A layer in registers (register_layer.hpp): four rows, one input.
-  static constexpr int columns = 1;
-  static constexpr int values = 4;
-  static constexpr int blocks_per_register = 1;
   static constexpr int blocks_at_once = 3;
   static constexpr int chains = 2;
-
-  static constexpr int lane_of_value(int value) noexcept { return value; }
-  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
 
   /// Value First in every lane.
   template <int First>
   PINNQUAD_ALWAYS_INLINE PackSse2 repeat() const noexcept {
     return {_mm_shuffle_ps(value, value, First * 0x55)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackSse2 repeat(const float* x) noexcept { return broadcast(*x); }
-  static PINNQUAD_ALWAYS_INLINE PackSse2 repeat_last(PackSse2 v) noexcept { return v.repeat<0>(); }
-  static PINNQUAD_ALWAYS_INLINE PackSse2 from_scalar(float v) noexcept { return broadcast(v); }
-  static PINNQUAD_ALWAYS_INLINE PackSse2 collect(const PackSse2* sum) noexcept { return *sum; }
   /// The first Count values, zero behind them.
   template <int Count>
   PINNQUAD_ALWAYS_INLINE PackSse2 head() const noexcept {
@@ -97,30 +85,20 @@ struct PackSse2 {
   }
   /// Is worked out here: the compiler may not put it off to where it is used.
   PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+x"(value)); }
-  PINNQUAD_ALWAYS_INLINE float first_value() const noexcept { return _mm_cvtss_f32(value); }
-  /// y[0, Count) and nothing behind.
-  template <int Count>
-  PINNQUAD_ALWAYS_INLINE void store_values(float* y) const noexcept {
-    if constexpr (Count == width) {
-      store(y);
-    } else {
-      alignas(16) float lane[width];
-      store(lane);
-      for (int i = 0; i < Count; ++i) y[i] = lane[i];
-    }
-  }
 };
 
 /// 2 doubles in one register; rounded as floats are.
-struct PackSse2Double {
-  using Scalar = double;
+struct PackSse2Double : OneColumn<PackSse2Double, double, 2> {
   static constexpr VectorUnit unit = VectorUnit::sse2;
   static constexpr bool fused = PackSse2::fused;
-  static constexpr int width = 2;
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;
 
   __m128d value;
+
+  PackSse2Double() = default;
+  PINNQUAD_ALWAYS_INLINE PackSse2Double(__m128d v) noexcept : value(v) {}
+  using OneColumn::repeat;
 
   static PINNQUAD_ALWAYS_INLINE PackSse2Double load(const double* p) noexcept { return {_mm_loadu_pd(p)}; }
   static PINNQUAD_ALWAYS_INLINE PackSse2Double broadcast(double v) noexcept { return {_mm_set1_pd(v)}; }
@@ -138,36 +116,22 @@ struct PackSse2Double {
   }
   static PINNQUAD_ALWAYS_INLINE PackSse2Double square_root(PackSse2Double a) noexcept { return {_mm_sqrt_pd(a.value)}; }
   static PINNQUAD_ALWAYS_INLINE PackSse2Double positive_part(PackSse2Double a) noexcept {
-    if constexpr (finite_math_only) {  // integers of 64 bits are not compared before SSE 4.2
-      return {_mm_set_pd(detail::positive_part(_mm_cvtsd_f64(_mm_unpackhi_pd(a.value, a.value))),
-                         detail::positive_part(_mm_cvtsd_f64(a.value)))};
-    } else {
-      return {_mm_max_pd(_mm_setzero_pd(), a.value)};
-    }
+    if constexpr (finite_math_only) return positive_part_by_bits(a);
+    return {_mm_max_pd(_mm_setzero_pd(), a.value)};
   }
   static PINNQUAD_ALWAYS_INLINE PackSse2Double where_positive(PackSse2Double gate, PackSse2Double a) noexcept {
     return {_mm_and_pd(_mm_cmpgt_pd(gate.value, _mm_setzero_pd()), a.value)};
   }
 
   // A layer in registers (register_layer.hpp): two rows, one input.
-  static constexpr int columns = 1;
-  static constexpr int values = 2;
-  static constexpr int blocks_per_register = 1;
   static constexpr int blocks_at_once = 6;
   static constexpr int chains = 1;
-
-  static constexpr int lane_of_value(int value) noexcept { return value; }
-  static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
 
   /// Value First in both lanes.
   template <int First>
   PINNQUAD_ALWAYS_INLINE PackSse2Double repeat() const noexcept {
     return {_mm_shuffle_pd(value, value, First * 3)};
   }
-  static PINNQUAD_ALWAYS_INLINE PackSse2Double repeat(const double* x) noexcept { return broadcast(*x); }
-  static PINNQUAD_ALWAYS_INLINE PackSse2Double repeat_last(PackSse2Double v) noexcept { return v.repeat<0>(); }
-  static PINNQUAD_ALWAYS_INLINE PackSse2Double from_scalar(double v) noexcept { return broadcast(v); }
-  static PINNQUAD_ALWAYS_INLINE PackSse2Double collect(const PackSse2Double* sum) noexcept { return *sum; }
   template <int Count>
   PINNQUAD_ALWAYS_INLINE PackSse2Double head() const noexcept {
     static_assert(Count == 1 || Count == 2);
@@ -178,16 +142,6 @@ struct PackSse2Double {
     return {_mm_add_pd(value, _mm_unpackhi_pd(value, value))};
   }
   PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+x"(value)); }
-  PINNQUAD_ALWAYS_INLINE double first_value() const noexcept { return _mm_cvtsd_f64(value); }
-  /// y[0, Count) and nothing behind.
-  template <int Count>
-  PINNQUAD_ALWAYS_INLINE void store_values(double* y) const noexcept {
-    if constexpr (Count == width) {
-      store(y);
-    } else {
-      _mm_store_sd(y, value);
-    }
-  }
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
