@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "support/hub_motion.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 #include "support/uneven_airframe.hpp"
@@ -33,17 +34,13 @@ TEST_CASE_TEMPLATE("each hub's force across its axis, summed about the centre of
     const auto airframe =
         draw % 2 == 0 ? pinnquad::PaperQuadrotor::value<Scalar>() : pinnquad::test::uneven_airframe<Scalar>();
     const RotorCondition<Scalar> c = condition<Scalar>(random);
-    const auto velocity = c.air_relative_velocity_m_s.template cast<double>().eval();
-    const auto rates = c.body_rates_rad_s.template cast<double>().eval();
     pinnquad::Vector3<double> force = pinnquad::Vector3<double>::Zero(), torque = force;
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto& hub = airframe.rotors[i];
-      const auto arm = pinnquad::Vector3<Scalar>(hub.x_m, hub.y_m, hub.z_m).template cast<double>().eval();
-      const auto axis = pinnquad::Vector3<Scalar>(hub.axis[0], hub.axis[1], hub.axis[2]).template cast<double>().eval();
-      const pinnquad::Vector3<double> v = velocity + pinnquad::cross<double>(rates, arm);
-      const pinnquad::Vector3<double> f = -0.031 * static_cast<double>(c.rotor_thrust_N[i]) * (v - axis * v.dot(axis));
+      const auto hub = pinnquad::test::hub_motion(c, airframe.rotors[i]);
+      const pinnquad::Vector3<double> across = hub.velocity - hub.axis * hub.velocity.dot(hub.axis);
+      const pinnquad::Vector3<double> f = -0.031 * static_cast<double>(c.rotor_thrust_N[i]) * across;
       force += f;
-      torque += pinnquad::cross<double>(arm, f);
+      torque += pinnquad::cross<double>(hub.arm, f);
     }
     const auto wrench = RotorDrag{0.031}.wrench(c, airframe);
     CHECK(pinnquad::test::distance(wrench.force_N, force) <= rounding<Scalar>(100) * 10.0);
