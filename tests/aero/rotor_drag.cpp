@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "support/hub_motion.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
+#include "support/uneven_airframe.hpp"
 
 using pinnquad::RotorCondition;
 using pinnquad::RotorDrag;
@@ -25,33 +27,24 @@ RotorCondition<Scalar> condition(RandomStates& random) {
 }
 }  // namespace
 
-TEST_CASE_TEMPLATE("each hub's force, summed about the centre of gravity in three dimensions", Scalar, float, double) {
-  const auto airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+TEST_CASE_TEMPLATE("each hub's force across its axis, summed about the centre of gravity: upright and tilted rotors",
+                   Scalar, float, double) {
   RandomStates random(120);
   for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
+    const auto airframe =
+        draw % 2 == 0 ? pinnquad::PaperQuadrotor::value<Scalar>() : pinnquad::test::uneven_airframe<Scalar>();
     const RotorCondition<Scalar> c = condition<Scalar>(random);
-    const RotorDrag drag{0.031};
-    double force[3] = {}, torque[3] = {};
+    pinnquad::Vector3<double> force = pinnquad::Vector3<double>::Zero(), torque = force;
     for (std::size_t i = 0; i < 4; ++i) {
-      // v + omega x r with all components, then r x F
-      const double r[3] = {static_cast<double>(airframe.rotors[i].x_m), static_cast<double>(airframe.rotors[i].y_m),
-                           0.0};
-      const double w[3] = {static_cast<double>(c.body_rates_rad_s[0]), static_cast<double>(c.body_rates_rad_s[1]),
-                           static_cast<double>(c.body_rates_rad_s[2])};
-      const double v[2] = {static_cast<double>(c.air_relative_velocity_m_s[0]) + w[1] * r[2] - w[2] * r[1],
-                           static_cast<double>(c.air_relative_velocity_m_s[1]) + w[2] * r[0] - w[0] * r[2]};
-      const double scale = -0.031 * static_cast<double>(c.rotor_thrust_N[i]);
-      const double f[3] = {scale * v[0], scale * v[1], 0.0};
-      for (int k = 0; k < 3; ++k) force[k] += f[k];
-      torque[0] += r[1] * f[2] - r[2] * f[1];
-      torque[1] += r[2] * f[0] - r[0] * f[2];
-      torque[2] += r[0] * f[1] - r[1] * f[0];
+      const auto hub = pinnquad::test::hub_motion(c, airframe.rotors[i]);
+      const pinnquad::Vector3<double> across = hub.velocity - hub.axis * hub.velocity.dot(hub.axis);
+      const pinnquad::Vector3<double> f = -0.031 * static_cast<double>(c.rotor_thrust_N[i]) * across;
+      force += f;
+      torque += pinnquad::cross<double>(hub.arm, f);
     }
-    const auto wrench = drag.wrench(c, airframe);
-    for (int k = 0; k < 3; ++k) {
-      CHECK(std::fabs(static_cast<double>(wrench.force_N[k]) - force[k]) <= rounding<Scalar>(100) * 10.0);
-      CHECK(std::fabs(static_cast<double>(wrench.torque_N_m[k]) - torque[k]) <= rounding<Scalar>(100) * 10.0);
-    }
+    const auto wrench = RotorDrag{0.031}.wrench(c, airframe);
+    CHECK(pinnquad::test::distance(wrench.force_N, force) <= rounding<Scalar>(100) * 10.0);
+    CHECK(pinnquad::test::distance(wrench.torque_N_m, torque) <= rounding<Scalar>(100) * 10.0);
   }
 }
 

@@ -2,6 +2,7 @@
 """loop flies a model from its block as the compiled model flies: of a model of a user's
 own (a column, a window, a wrench, another activation) the same figures as its header's; what it can't fly is refused. It flies the controllers that one ships: what a bias
 that learns in flight is worth."""
+import csv
 import json
 import re
 from pathlib import Path
@@ -208,7 +209,33 @@ def test_a_bias_at_its_bound_is_said(pinnquad):
     assert "warning" not in pinnquad(*words).out
 
 
+def test_many_seeds(pinnquad):
+    """Seeds of vehicles and winds: a row each, the same bits in any order; a folder goes on with what it has not flown."""
+    words = f"loop {MODELS}/structured_quadrotor.block --controllers adaptive --conditions drawn --duration 15 --out"
+    pinnquad(f"{words} some --seeds 3")
+    first = Path("some/loop.journal").read_text()
+    said = pinnquad(f"{words} some --seeds 5")
+    assert Path("some/loop.journal").read_text().startswith(first), "what was flown is flown once"
+    pinnquad(f"{words} whole --seeds 5")
+    assert Path("some/rows.csv").read_bytes() == Path("whole/rows.csv").read_bytes()
+    rows = list(csv.DictReader(Path("some/rows.csv").open()))
+    assert [row["seed"] for row in rows] == ["1", "2", "3", "4", "5"] and all(row["crashed"] == "false" for row in rows)
+    for name, least, most in (("mass_factor", 0.85, 1.15), ("inertia_factor", 0.85, 1.15), ("thrust_factor", 0.85, 1.15),
+                              ("rotor_factor", 0.85, 1), ("wind_north_m_s", -8, 8), ("wind_east_m_s", -8, 8)):
+        drawn = [float(row[name]) for row in rows]
+        assert len(set(drawn)) == 5 and all(least <= value <= most for value in drawn), (name, drawn)
+    errors = sorted(float(row["rmse_cm"]) for row in rows)
+    summary, = json.loads(Path("some/loop.json").read_text())["summary"]
+    assert summary["flights"] == 5 and summary["lost"] == 0, summary
+    assert summary["rmse_cm"]["median"] == errors[2] and summary["rmse_cm"]["worst"] == errors[-1], (summary, errors)
+    assert re.search(rf"^  adaptive +drawn .* {errors[2]:.2f} .* {errors[-1]:.2f} +0 of 5$", said.out, re.M), said.out
+    heavy = float(next(row["rmse_cm"] for row in csv.DictReader(Path("some/rows.csv").open())))
+    pinnquad(f"{words} some --seeds 1 --airframe reference_1.5kg")
+    assert float(next(csv.DictReader(Path("some/rows.csv").open()))["rmse_cm"]) != heavy, "another plan flies anew"
+
+
 @pytest.mark.parametrize("words, keyword", [
+    ("--seeds 0", "--seeds"), ("--duration 5", "--duration"), ("--seeds 2 --guard none", "--guard"), ("--out own --guard none", "--guard"),
     ("--controllers autopilot", "--controllers"), ("--controllers mppi", "--controllers"), ("--conditions snow", "--conditions"),
     ("--controllers pid --guard none", "--guard")])
 def test_controllers_refused(pinnquad, words, keyword):

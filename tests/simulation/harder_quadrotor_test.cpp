@@ -10,7 +10,6 @@
 
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/vehicle/inverse.hpp"
-#include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
 using pinnquad::Commands;
@@ -21,7 +20,6 @@ using pinnquad::HarderQuadrotor;
 using pinnquad::State;
 using pinnquad::Status;
 using pinnquad::Vector3;
-using pinnquad::test::RandomStates;
 
 namespace {
 
@@ -42,30 +40,6 @@ HarderQuadrotor vehicle(const HarderConditions& conditions = {}, std::uint64_t s
 }
 
 }  // namespace
-
-TEST_CASE("commands -> motion -> commands through all of its effects, to 1e-9") {
-  RandomStates random(200);
-  for (const HarderConditions& conditions : {HarderConditions{}, worst()}) {
-    const HarderQuadrotor quadrotor = vehicle(conditions);
-    REQUIRE(quadrotor.status() == Status::ok);
-    double furthest = 0;
-    for (int draw = 0; draw < 10 * pinnquad::test::draws; ++draw) {
-      State<double> state = random.state<double>();
-      if (draw % 2 == 1) {  // low and moderate, on its legs some of the time
-        state.position_m[2] = 0.877 - random.scalar<double>(0.1, 0.6);
-        state.attitude = pinnquad::from_euler<double>(
-            {random.scalar<double>(-0.5, 0.5), random.scalar<double>(-0.5, 0.5), random.scalar<double>(-3.0, 3.0)});
-      }
-      const double time_s = random.scalar<double>(0.0, 60.0);
-      const Commands<double> u = random.commands<double>();
-      const auto motion = quadrotor.evaluate(state, u, time_s).motion;
-      Commands<double> again{};
-      REQUIRE(inverse_commands(quadrotor, state, motion, time_s, again) == Status::ok);
-      furthest = std::max(furthest, pinnquad::test::distance(again, u));
-    }
-    CHECK(furthest <= 1e-9);
-  }
-}
 
 TEST_CASE("hover has a trim: near the rigid body's in calm air, more with a weak rotor, a payload, an old battery") {
   HarderConditions calm;

@@ -232,8 +232,9 @@ TEST_CASE("numbers that no quadrotor has make no airframe") {
   refused("roll_effectiveness_rad_s2", [](Identification& found) { found.effectiveness_rad_s2[0] = {3, 0.5}; });
   refused("pitch_effectiveness_rad_s2", [](Identification& found) { found.effectiveness_rad_s2[1] = {2300, 50}; });
   refused("yaw_effectiveness_rad_s2", [](Identification& found) { found.effectiveness_rad_s2[2] = {300, 5}; });
-  refused("inertia_x", [](Identification& found) { found.effectiveness_rad_s2 = {{{1400, 5}, {1400, 5}, {3, 1}}},
-                                                   found.thrust_m_s2 = {2.6, 0.1}; });
+  refused("inertia_x", [](Identification& found) {
+    found.effectiveness_rad_s2 = {{{1400, 5}, {1400, 5}, {3, 1}}}, found.thrust_m_s2 = {2.6, 0.1};
+  });
   // what the flights do not tell to a half is not taken, and refuses nothing
   Identification vague = usual;
   vague.lag_s = {1.33, 1.2};

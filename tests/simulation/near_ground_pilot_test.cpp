@@ -135,19 +135,6 @@ TEST_CASE("low heights are asked for more often than high ones") {
   CHECK(low > 6 * ticks / 10);
 }
 
-TEST_CASE("the near-ground pilot: the same engine state, the same set points") {
-  Pilot a(std::mt19937_64(9)), b(std::mt19937_64(9)), c(std::mt19937_64(10));
-  bool differs = false;
-  for (int i = 0; i < 5000; ++i) {
-    const SetPoint<double> x = a(State<double>{}, i * tick_s), y = b(State<double>{}, i * tick_s),
-                           z = c(State<double>{}, i * tick_s);
-    REQUIRE((x.velocity_m_s - y.velocity_m_s).norm() == 0);
-    REQUIRE((x.stick_rad_s - y.stick_rad_s).norm() == 0);
-    differs |= (x.velocity_m_s - z.velocity_m_s).norm() != 0;
-  }
-  CHECK(differs);
-}
-
 TEST_CASE("far inside the box no leg is turned back: neither its size nor the room to brake has a say") {
   NearGroundStyle style, other;
   style.farthest_m = 1e5;

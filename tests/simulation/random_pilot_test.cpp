@@ -88,19 +88,6 @@ TEST_CASE("outside the box every target leads back") {
   }
 }
 
-TEST_CASE("the same engine state, the same set points") {
-  Pilot a(std::mt19937_64(9)), b(std::mt19937_64(9)), c(std::mt19937_64(10));
-  bool differs = false;
-  for (int i = 0; i < 2000; ++i) {
-    const SetPoint<double> x = a(State<double>{}, i * tick_s), y = b(State<double>{}, i * tick_s),
-                           z = c(State<double>{}, i * tick_s);
-    REQUIRE((x.velocity_m_s - y.velocity_m_s).norm() == 0);
-    REQUIRE((x.stick_rad_s - y.stick_rad_s).norm() == 0);
-    differs |= (x.velocity_m_s - z.velocity_m_s).norm() != 0;
-  }
-  CHECK(differs);
-}
-
 TEST_CASE("past the easing speed less velocity is asked for, at the greatest speed none") {
   const PilotStyle style;
   const double easing_m_s = style.easing_share * style.max_speed_m_s;

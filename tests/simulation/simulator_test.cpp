@@ -163,6 +163,20 @@ TEST_CASE("what ends a flight ends it for good, with time and state") {
     CHECK(recorded.report.rows == 20);
     CHECK(recorded.report.last.time_s == doctest::Approx(1.0).epsilon(1e-9));
     CHECK(recorded.report.last.body.position_m[2] == doctest::Approx(-35));
+    CHECK(recorded.flight.size() == 20);
+  }
+  SUBCASE("a pilot who asks for what is no number") {
+    const auto broken = [](const State<double>& /*state*/, double time_s) {
+      SetPoint<double> set_point;
+      if (time_s > 2) set_point.velocity_m_s[0] = std::numeric_limits<double>::quiet_NaN();
+      return set_point;
+    };
+    FlightPlan plan;
+    plan.samples = 100;
+    const RecordedFlight recorded = fly(vehicle(), broken, plan);
+    CHECK(recorded.report.status == Status::not_finite);
+    CHECK(recorded.report.rows == 40);
+    CHECK(recorded.report.last.time_s == doctest::Approx(2).epsilon(0.01));
   }
   SUBCASE("an airframe that can't fly") {
     Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();

@@ -195,23 +195,6 @@ TEST_CASE("fly 2 s, switch, fly on: the bits of the compile-time vehicle from th
   check_switch(GroundEffectModel::conyers, fixed(GroundEffect<Conyers>{}));
 }
 
-TEST_CASE("a choice that stays is a flight of the compile-time vehicle") {
-  const auto hash = [](const auto& quadrotor) {
-    FlightPlan plan;
-    static_cast<FlightPlan&>(plan) = low_start();
-    plan.samples = 60;
-    return content_hash(fly(quadrotor, pilot(), plan).flight);
-  };
-  const std::uint64_t none = hash(switched()), conyers = hash(switched(GroundEffectModel::conyers));
-  const std::uint64_t cheeseman_bennett = hash(switched(GroundEffectModel::cheeseman_bennett));
-  CHECK(none == hash(fixed<>()));
-  CHECK(cheeseman_bennett == hash(fixed(GroundEffect<CheesemanBennett>{})));
-  CHECK(conyers == hash(fixed(GroundEffect<Conyers>{})));
-  CHECK(conyers != none);
-  CHECK(conyers != cheeseman_bennett);
-  CHECK(cheeseman_bennett != none);
-}
-
 TEST_CASE("hover near the ground needs 1 / r of the command") {
   const auto calm = [](GroundEffectModel model) { return flight_vehicle<AgileFlight>(airframe, model); };
   constexpr double agreement = 2e-6;  // of the inverse's rounds

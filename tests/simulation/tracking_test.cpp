@@ -109,15 +109,7 @@ TEST_CASE("a network that knows the formula tracks like the formula; a broken on
   CHECK(zeroed.rmse_m > 5 * analytic.rmse_m);
 }
 
-TEST_CASE("where the network declines the fallback flies, and is counted by Status") {
-  const TrackingResult<double> analytic = tracked(analytic_inverse());
-  const TrackingResult<double> never = tracked(FakeNetwork({0.0f, -1.0f}));
-  constexpr double float_rounding_m = 1e-6;  // the guard's inputs and commands are float, the formula between is not
-  CHECK(std::abs(never.rmse_m - analytic.rmse_m) <= float_rounding_m);
-  CHECK(never.status == Status::ok);
-  CHECK(never.fallback.fallbacks() == never.fallback.asked);
-  CHECK(never.fallback.of(Status::outside_envelope) == never.fallback.asked);
-
+TEST_CASE("where the network declines for a while the fallback flies, and is counted by Status") {
   const TrackingResult<double> slow_only = tracked(FakeNetwork({1.0f, 4.0f}));
   CHECK(slow_only.fallback.asked == 15000);
   CHECK(slow_only.fallback.of(Status::outside_envelope) == slow_only.fallback.fallbacks());
@@ -319,16 +311,6 @@ TEST_CASE("a controller that changes to another airframe and other limits flies 
   CHECK(before == unchanged);
   CHECK(after == wanted);
   CHECK(after != before);
-}
-
-TEST_CASE("mirror symmetry: the mirrored course is missed by as much") {
-  FigureEight<double> right = course(), left = course();
-  left.half_width_m = -left.half_width_m;
-  const AnalyticInverse<Vehicle> inverse(vehicle());
-  const FlightController<double> controller;
-  constexpr double chaos = 1e-9;  // rounding, grown over 30 s in a stable loop
-  CHECK(track(vehicle(), right, controller, inverse).rmse_m ==
-        doctest::Approx(track(vehicle(), left, controller, inverse).rmse_m).epsilon(chaos));
 }
 
 TEST_CASE("float flies it too") {

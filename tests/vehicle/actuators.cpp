@@ -133,22 +133,3 @@ TEST_CASE_TEMPLATE("one airframe by both builds of the step: the general one giv
   CHECK(pinnquad::test::distance(at_a.body.velocity_m_s, at_b.body.velocity_m_s) <= 1e-5);
   CHECK(pinnquad::test::distance(at_a.body.body_rates_rad_s, at_b.body.body_rates_rad_s) <= 1e-4);
 }
-
-TEST_CASE("rotor drag on a tilted rotor has no part along its axis; a raised hub feels roll and pitch rates") {
-  Airframe<double> a = uneven_airframe<double>();
-  RotorCondition<double> condition;
-  condition.rotor_thrust_N = {0.0, 3.0, 0.0, 0.0};
-  condition.air_relative_velocity_m_s = Vector3<double>(4, -3, 2);
-  condition.body_rates_rad_s = Vector3<double>(1, 2, -0.5);
-  const auto& hub = a.rotors[1];
-  const Vector3<double> axis = to_vector(hub.axis), arm(hub.x_m, hub.y_m, hub.z_m);
-  Wrench<double> w = RotorDrag{0.03}.wrench(condition, a);
-  CHECK(std::fabs(w.force_N.dot(axis)) <= 1e-14);
-  const Vector3<double> v = condition.air_relative_velocity_m_s + cross<double>(condition.body_rates_rad_s, arm);
-  CHECK(pinnquad::test::distance(w.force_N, Vector3<double>(-0.09 * (v - axis * v.dot(axis)))) <= 1e-14);
-  CHECK(pinnquad::test::distance(w.torque_N_m, cross<double>(arm, w.force_N)) <= 1e-14);
-  a.rotors[1].axis = {0, 0, -1};  // upright and raised
-  a.rotors[1].z_m = -0.1;
-  w = RotorDrag{0.03}.wrench(condition, a);
-  CHECK(w.force_N[0] == doctest::Approx(-0.09 * (4 + 2 * -0.1 - -0.5 * a.rotors[1].y_m)));
-}

@@ -72,24 +72,6 @@ double round_trip(const Vehicle& vehicle, const State<Scalar>& state, const Comm
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("commands -> motion -> commands, without effects", Scalar, float, double) {
-  RandomStates random(100);
-  const Quadrotor<Scalar> vehicle(pinnquad::PaperQuadrotor::value<Scalar>());
-  for (int draw = 0; draw < draws; ++draw) {
-    CHECK(round_trip(vehicle, random.state<Scalar>(), random.commands<Scalar>(), Scalar(0)) <=
-          flight_tolerance<Scalar>);
-  }
-}
-
-TEST_CASE_TEMPLATE("commands -> motion -> commands, with density, wind and drag", Scalar, float, double) {
-  RandomStates random(101);
-  const Airborne<Scalar> vehicle = airborne<Scalar>();
-  for (int draw = 0; draw < draws; ++draw) {
-    const Scalar time = random.scalar<Scalar>(0.0, 20.0);
-    CHECK(round_trip(vehicle, random.state<Scalar>(), random.commands<Scalar>(), time) <= flight_tolerance<Scalar>);
-  }
-}
-
 TEST_CASE_TEMPLATE("commands -> motion -> commands in ground effect", Scalar, float, double) {
   // commands above 0.2: the equation is solved relative to the thrust. Tilt below 60 degrees, ratios below 1.5: one
   // solution
@@ -121,14 +103,30 @@ struct Push {
     return result;
   }
 };
+/// Lift that grows with the square of thrust: no affine effect, but a mild one.
+struct Quadratic {
+  template <class Scalar>
+  pinnquad::Wrench<Scalar> wrench(const pinnquad::RotorCondition<Scalar>& condition,
+                                  const pinnquad::Airframe<Scalar>&) const noexcept {
+    pinnquad::Wrench<Scalar> result;
+    result.force_N[2] = Scalar(-0.005) * condition.rotors.force_N[2] * condition.rotors.force_N[2];
+    return result;
+  }
+};
 }  // namespace
 
-TEST_CASE_TEMPLATE("commands -> motion -> commands, with an effect that makes torque", Scalar, float, double) {
-  RandomStates random(106);
-  const Quadrotor<Scalar, Push> vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::Site<Scalar>{}, Push{});
+TEST_CASE_TEMPLATE("commands -> motion -> commands: without effects, in wind, with torque, of one nearly affine",
+                   Scalar, float, double) {
+  RandomStates random(100);
+  const pinnquad::Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
   for (int draw = 0; draw < draws; ++draw) {
-    CHECK(round_trip(vehicle, random.state<Scalar>(), random.commands<Scalar>(), Scalar(0)) <=
-          flight_tolerance<Scalar>);
+    const State<Scalar> state = random.state<Scalar>();
+    const Commands<Scalar> u = random.commands<Scalar>();
+    const Scalar time_s = random.scalar<Scalar>(0.0, 20.0);
+    CHECK(round_trip(Quadrotor<Scalar>(airframe), state, u, time_s) <= flight_tolerance<Scalar>);
+    CHECK(round_trip(airborne<Scalar>(), state, u, time_s) <= flight_tolerance<Scalar>);
+    CHECK(round_trip(Quadrotor<Scalar, Push>(airframe), state, u, time_s) <= flight_tolerance<Scalar>);
+    CHECK(round_trip(Quadrotor<Scalar, Quadratic>(airframe), state, u, time_s) <= 10 * ground_effect_tolerance<Scalar>);
   }
 }
 
@@ -241,29 +239,21 @@ TEST_CASE_TEMPLATE("almost without thrust in ground effect there still is a solu
   }
 }
 
-TEST_CASE_TEMPLATE("commands -> motion -> commands, rotor by rotor: ground effect with torque, rotor drag", Scalar,
-                   float, double) {
-  using Vehicle = Quadrotor<Scalar, pinnquad::StandardAtmosphere, pinnquad::QuadraticDrag, pinnquad::RotorDrag,
-                            pinnquad::RotorGroundEffect<pinnquad::Conyers>>;
+TEST_CASE_TEMPLATE("commands -> motion -> commands: rotor drag tilts what ground effect sees, of one ratio or by rotor",
+                   Scalar, float, double) {
+  using pinnquad::Conyers, pinnquad::QuadraticDrag, pinnquad::RotorDrag;
+  const pinnquad::Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  const auto site = pinnquad::paper_site<Scalar>();
   RandomStates random(107);
-  const Vehicle vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), {}, {}, {}, {});
+  const Quadrotor<Scalar, QuadraticDrag, RotorDrag, pinnquad::GroundEffect<Conyers>> one_ratio(airframe, site);
+  const Quadrotor<Scalar, pinnquad::StandardAtmosphere, QuadraticDrag, RotorDrag, pinnquad::RotorGroundEffect<Conyers>>
+      by_rotor(airframe, site);
   for (int draw = 0; draw < draws; ++draw) {
     State<Scalar> state = random.state<Scalar>();
     state.position_m[2] = Scalar(0.877) - random.scalar<Scalar>(0.3, 1.5);
-    CHECK(round_trip(vehicle, state, random.commands<Scalar>(), Scalar(0)) <= ground_effect_tolerance<Scalar>);
-  }
-}
-
-TEST_CASE_TEMPLATE("rotor drag tilts what ground effect sees: the two together still have one exact inverse", Scalar,
-                   float, double) {
-  using Vehicle =
-      Quadrotor<Scalar, pinnquad::QuadraticDrag, pinnquad::RotorDrag, pinnquad::GroundEffect<pinnquad::Conyers>>;
-  RandomStates random(108);
-  const Vehicle vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::paper_site<Scalar>(), {}, {}, {});
-  for (int draw = 0; draw < draws; ++draw) {
-    State<Scalar> state = random.state<Scalar>();
-    state.position_m[2] = Scalar(0.877) - random.scalar<Scalar>(0.05, 1.5);
-    CHECK(round_trip(vehicle, state, random.commands<Scalar>(), Scalar(0)) <= ground_effect_tolerance<Scalar>);
+    const Commands<Scalar> u = random.commands<Scalar>();
+    CHECK(round_trip(one_ratio, state, u, Scalar(0)) <= ground_effect_tolerance<Scalar>);
+    CHECK(round_trip(by_rotor, state, u, Scalar(0)) <= ground_effect_tolerance<Scalar>);
   }
 }
 
@@ -331,26 +321,4 @@ TEST_CASE("beyond the gain of 1 there is a least force: less has no solution, an
   least.linear_m_s2[2] += 0.5;
   CHECK(pinnquad::inverse_commands(point.vehicle, point.state, least, 0.0, u) == Status::no_solution);
   CHECK(u == before);
-}
-
-namespace {
-/// Lift that grows with the square of thrust: no affine effect, but a mild one.
-struct Quadratic {
-  template <class Scalar>
-  pinnquad::Wrench<Scalar> wrench(const pinnquad::RotorCondition<Scalar>& condition,
-                                  const pinnquad::Airframe<Scalar>&) const noexcept {
-    pinnquad::Wrench<Scalar> result;
-    result.force_N[2] = Scalar(-0.005) * condition.rotors.force_N[2] * condition.rotors.force_N[2];
-    return result;
-  }
-};
-}  // namespace
-
-TEST_CASE_TEMPLATE("an effect that is only nearly affine is iterated to the same end", Scalar, float, double) {
-  const Quadrotor<Scalar, Quadratic> vehicle(pinnquad::PaperQuadrotor::value<Scalar>(), pinnquad::Site<Scalar>{}, {});
-  RandomStates random(109);
-  for (int draw = 0; draw < draws; ++draw) {
-    CHECK(round_trip(vehicle, random.state<Scalar>(), random.commands<Scalar>(), Scalar(0)) <=
-          10 * ground_effect_tolerance<Scalar>);
-  }
 }

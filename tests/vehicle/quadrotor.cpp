@@ -296,22 +296,6 @@ TEST_CASE("an effect that makes its wrench where it is bound acts, and the inver
   static_assert(pinnquad::uses_rotor_wrench<TenthLost> && !pinnquad::changes_surroundings<TenthLost>);
 }
 
-TEST_CASE_TEMPLATE("thrust and torque scale with the density over that of sea level", Scalar, float, double) {
-  const Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
-  const Quadrotor<Scalar, pinnquad::StandardAtmosphere> thin(airframe, Site<Scalar>{}, pinnquad::StandardAtmosphere{});
-  State<Scalar> high;
-  high.position_m[2] = Scalar(-3000);
-  const Commands<Scalar> u{Scalar(0.4), Scalar(0.5), Scalar(0.6), Scalar(0.8)};
-  const auto low = Bare<Scalar>(airframe).evaluate({}, u, Scalar(0));
-  const auto up = thin.evaluate(high, u, Scalar(0));
-  const double ratio = 0.90925 / 1.2250;  // the table's densities
-  CHECK(static_cast<double>(up.rotors.force_N[2] / low.rotors.force_N[2]) == doctest::Approx(ratio).epsilon(1e-4));
-  for (int axis = 0; axis < 3; ++axis) {
-    CHECK(static_cast<double>(up.rotors.torque_N_m[axis] / low.rotors.torque_N_m[axis]) ==
-          doctest::Approx(ratio).epsilon(1e-4));
-  }
-}
-
 // In time
 
 TEST_CASE_TEMPLATE("a short step follows the motion that evaluate() gives", Scalar, float, double) {

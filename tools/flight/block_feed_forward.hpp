@@ -16,8 +16,8 @@
 namespace pinnquad {
 
 /// Of features that are known at run time alone, with a window that looks back or with none.
-template <class Scalar, int MostSamples>
-class InputHistory<programs::FlightFeatures, Scalar, MostSamples, void> {
+template <int Most, class Scalar, int MostSamples>
+class InputHistory<programs::FlightFeatures<Most>, Scalar, MostSamples, void> {
  public:
   using Inputs = programs::FlightInputs<Scalar>;
   using Present = RunTimeInputs<Scalar>;
@@ -83,11 +83,16 @@ decltype(auto) with_feed_forward(const pinnquad::BlockModel& model, const Guard&
                                  const std::vector<double>& columns, const Fly& fly) {
   return model.with([&](const auto& own) {
     using Scalar = std::decay_t<decltype(*own.parameters())>;
-    using Inverse = pinnquad::InverseDynamics<RunTimeView<FlightFeatures, Scalar>, Guard>;
-    using History = pinnquad::InputHistory<FlightFeatures, Scalar>;
-    const Inverse inverse(RunTimeView<FlightFeatures, Scalar>(own), guard);
-    return fly(pinnquad::NetworkInverse<Inverse, MeasuredColumns<Scalar>>(inverse, {ground_z_m, &columns},
-                                                                          History(own.features())));
+    const auto fly_with = [&](auto features) {
+      using Features = decltype(features);
+      using Inverse = pinnquad::InverseDynamics<RunTimeView<Features, Scalar>, Guard>;
+      using History = pinnquad::InputHistory<Features, Scalar>;
+      const Inverse inverse(RunTimeView<Features, Scalar>(own), guard);
+      return fly(pinnquad::NetworkInverse<Inverse, MeasuredColumns<Scalar>>(inverse, {ground_z_m, &columns},
+                                                                            History(own.features())));
+    };
+    constexpr int few = 24;  // each tick takes the time of all that there is room for
+    return own.features().size() <= few ? fly_with(FlightFeatures<few>{}) : fly_with(FlightFeatures<>{});
   });
 }
 

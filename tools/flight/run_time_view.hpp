@@ -34,12 +34,13 @@ struct FlightInputs : pinnquad::MotionInputsWithAltitude<Scalar> {
   bool complete = false;                              ///< all of them are there
 };
 
-/// Features of a flight's rows: windows, columns, the altitude among them. The angular acceleration, where a model has
-/// one, comes first: the guards that fly ask for its place.
+/// Features of a flight's rows, `Most` at most: windows, columns, the altitude among them. The angular acceleration,
+/// where a model has one, comes first: the guards that fly ask for its place.
+template <int Most = pinnquad::RunTimeFeatures::most_features>
 struct FlightFeatures {
   template <class Scalar>
   using Inputs = FlightInputs<Scalar>;
-  static constexpr int size = 3 + pinnquad::RunTimeFeatures::most_features;
+  static constexpr int size = 3 + Most;
   static constexpr int angular_acceleration = 0;
   static constexpr auto names = no_names<std::size_t(size)>();
   static constexpr auto units = names;
@@ -56,7 +57,7 @@ struct FlightFeatures {
     if (!in.complete) return;
     std::vector<pinnquad::RunTimeInputs<Scalar>> taps = in.taps;
     static_cast<pinnquad::MotionInputsWithAltitude<Scalar>&>(taps.front()) = in;
-    Scalar own[pinnquad::RunTimeFeatures::most_features];
+    Scalar own[Most];
     in.features->extract(taps.data(), static_cast<Scalar*>(own));
     for (int i = 0; i < in.features->size(); ++i) x[place(*in.features, i)] = own[i];
   }

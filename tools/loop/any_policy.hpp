@@ -22,10 +22,12 @@ class AnyPolicy {
 
   pinnquad::Status operator()(const State& state, const Motion& wanted, std::uint64_t time_us,
                               Commands& commands) noexcept {
+    if (held_->answers++ % measured_every != 0) return held_->answer(state, wanted, time_us, commands);
     const Timed timed(*held_);
     return held_->answer(state, wanted, time_us, commands);
   }
   void learn(std::uint64_t now_us, bool known, const State& state, const Commands& commands) noexcept {
+    if (held_->lessons++ % measured_every != 0) return held_->learn(now_us, known, state, commands);
     const Timed timed(*held_);
     held_->learn(now_us, known, state, commands);
   }
@@ -34,11 +36,13 @@ class AnyPolicy {
   pinnquad::FallbackCount count() const noexcept { return held_->count(); }
   /// A bias that it learns stands at its bound.
   bool at_bound() const noexcept { return held_->at_bound(); }
-  /// Of the policy alone, since it was made.
-  double busy_s() const noexcept { return std::chrono::duration<double>(held_->busy).count(); }
+  /// Of the policy alone, since it was made: by one call of `measured_every`, for a clock takes as long as a tick of
+  /// some.
+  double busy_s() const noexcept { return measured_every * std::chrono::duration<double>(held_->busy).count(); }
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr unsigned measured_every = 17;  ///< a multiple of no period of a policy
   template <class Policy>
   using AtBound = decltype(std::declval<const Policy&>().at_bound());
   struct Any {
@@ -50,6 +54,7 @@ class AnyPolicy {
     virtual pinnquad::FallbackCount count() const noexcept = 0;
     virtual bool at_bound() const noexcept = 0;
     Clock::duration busy{0};
+    unsigned answers = 0, lessons = 0;
   };
   template <class Policy>
   struct Held final : Any {

@@ -18,9 +18,10 @@ struct LoopCondition {
   double battery = 1;  ///< thrust of all
   double error = 0;    ///< of mass, inertia and thrust, either way by seed
   bool at_half = false;
+  bool drawn = false;  ///< wind, rotor and errors are bounds, within which a seed draws each
 };
 
-inline constexpr std::array<LoopCondition, 12> loop_conditions = {{
+inline constexpr std::array<LoopCondition, 13> loop_conditions = {{
     {"calm", "as the controller knows it"},
     {"wind_4", "wind of 4 m/s", 4},
     {"wind_8", "wind of 8 m/s", 8},
@@ -33,6 +34,8 @@ inline constexpr std::array<LoopCondition, 12> loop_conditions = {{
     {"payload_half", "20 % heavier from half time on", 0, false, 1.2, 1, 1, 0, true},
     {"weak_rotor_half", "one rotor makes 80 % from half time on", 0, false, 1, 0.8, 1, 0, true},
     {"battery_half", "all rotors make 88 % from half time on", 0, false, 1, 1, 0.88, 0, true},
+    {"drawn", "gusty wind to 8 m/s, one rotor at 85 to 100 %, mass, inertia, thrust within 15 %", 8, true, 1, 0.85, 1,
+     0.15, false, true},
 }};
 
 /// White noise of what a controller sees, a standard deviation for each sample of each axis; and its delay.

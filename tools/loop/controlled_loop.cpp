@@ -121,6 +121,12 @@ ControlledLoop::ControlledLoop(const LoopSetting& setting)
     if (time_s > 0) point.position_m[0] += 50;
     return point;
   }};
+  if (!setting.waypoints.empty()) {
+    const WaypointPath path =
+        waypoints_for(setting.waypoints, detail::center_for(ground_z_m, range_), ground_z_m, setting.airframe);
+    setting_.duration_s = std::max(setting_.duration_s, path.duration_s());
+    at_once_[setting.waypoints] = any(std::optional(path));
+  }
   Status status = told_.status();
   Commands<double> trim{};
   if (status == Status::ok) status = hover_trim(told_, eight->center_m, trim);
@@ -132,12 +138,6 @@ ControlledLoop::ControlledLoop(const LoopSetting& setting)
 AnyTrajectory ControlledLoop::trajectory(const std::string& name, std::uint64_t seed) const {
   if (name == "random") {
     return required(any(random_path_for(setting_.airframe, told_.site().ground_z_m, range_, seed)));
-  }
-  if (is_waypoint_file(name)) {
-    const double ground_z_m = told_.site().ground_z_m;
-    const WaypointPath path =
-        waypoints_for(name, detail::center_for(ground_z_m, range_), ground_z_m, setting_.airframe);
-    return AnyTrajectory{[path](double time_s) { return path.sample(time_s); }};
   }
   return required(at_once_.at(name));
 }
@@ -204,7 +204,13 @@ nlohmann::json ControlledLoop::fly(const LoopFlight& flight, const LoopGains& ga
                         {"effort_1_s", effort / (ticks * period_s)},
                         {"step_ns", 1e9 * policy.busy_s() / ticks},
                         {"bias_at_bound_share", at_bound / ticks},
-                        {"answered_share", nullptr}};
+                        {"answered_share", nullptr},
+                        {"wind_north_m_s", world.drawn().wind_north_m_s},
+                        {"wind_east_m_s", world.drawn().wind_east_m_s},
+                        {"mass_factor", world.drawn().mass},
+                        {"inertia_factor", world.drawn().inertia},
+                        {"thrust_factor", world.drawn().thrust},
+                        {"rotor_factor", world.drawn().rotor}};
   const auto recovered = errors.recovery_s(onset_s, usual_m);
   if (recovered && !crashed) row["recovery_s"] = *recovered;
   if (flown.fallback.asked > 0) row["answered_share"] = answered_share(flown.fallback);

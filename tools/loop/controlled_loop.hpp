@@ -28,6 +28,7 @@ struct LoopSetting {
   bool harder = false;
   LoopSensors sensors{};
   double duration_s = 40;
+  std::string waypoints{};  ///< a file of them, flown to its end: another trajectory by its name
 };
 
 struct LoopFlight {
@@ -43,11 +44,13 @@ class ControlledLoop {
   static constexpr double settled_s = 10;  ///< figures are of what comes after
   static constexpr double lost_m = 10;     ///< so far off, a vehicle is lost
 
-  /// Throws std::invalid_argument, one line, of an airframe or an envelope that holds no flight.
+  /// Throws std::invalid_argument, one line, of an airframe or an envelope that holds no flight; InputError of a file.
   explicit ControlledLoop(const LoopSetting& setting);
 
-  /// By name, or a file of waypoints. Throws std::invalid_argument where the envelope holds none, InputError of a file.
+  /// By name. Throws std::invalid_argument where the envelope holds none.
   AnyTrajectory trajectory(const std::string& name, std::uint64_t seed) const;
+  /// With the duration of its waypoints.
+  const LoopSetting& setting() const noexcept { return setting_; }
 
   /// A row of figures; with the error over time where the condition changes at half time, of the first seed.
   /// `feeds_back`: the controller does so itself, and the outer loop adds nothing.

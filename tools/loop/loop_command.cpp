@@ -6,10 +6,10 @@
 // Or vehicles that nobody knows, by what is guessed or learnt of them.
 //   pinnquad loop --vehicles 20 --controllers start,true_inverse --out flown
 #include <algorithm>
-#include <atomic>
-#include <cmath>
+#include <array>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -22,15 +22,17 @@
 #include "command_line/interrupt.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
-#include "command_line/parallel.hpp"
 #include "flight/block_loop.hpp"
 #include "flight/loop_figures.hpp"
 #include "flight/waypoints.hpp"
 #include "loop/controlled_loop.hpp"
+#include "loop/loop_flights.hpp"
 #include "loop/loop_model.hpp"
 #include "loop/loop_verdict.hpp"
+#include "loop/quantile.hpp"
 #include "loop/vehicles.hpp"
 #include "pinnquad/exported/model.hpp"
+#include "pinnquad/io/atomic_file.hpp"
 
 namespace {
 
@@ -41,6 +43,8 @@ struct LoopOptions : programs::LoopModelOptions {
   std::string guard = "envelope";
   std::vector<std::string> controllers, conditions;
   programs::VehiclesOptions unknown;
+  std::optional<int> seeds;
+  std::optional<double> duration_s;
   bool json = false;
 };
 
@@ -123,70 +127,135 @@ void print_json(const nlohmann::json& value) {
   std::printf("%s\n", value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-void print_errors(const LoopOptions& options, const std::vector<std::string>& conditions,
-                  const std::vector<nlohmann::json>& rows, const std::string& airframe, double duration_s) {
-  programs::print_verdict(programs::controllers_verdict(rows, conditions.size()));
-  programs::print_entry(
-      "trajectory", programs::in_words("%s, flown by %s for %.0f s, with noise in what controllers see",
-                                       printable(options.trajectory).c_str(), printable(airframe).c_str(), duration_s));
-  programs::print_line(programs::in_words("RMSE of the position in cm, of what comes after %.0f s",
-                                          programs::ControlledLoop::settled_s));
+/// Controllers down, conditions across: of one seed.
+void print_errors(const std::vector<programs::LoopSpread>& spreads, std::size_t conditions) {
   constexpr std::size_t beside = 5;  // conditions in one table: no line is too wide
-  for (std::size_t first = 0; first < conditions.size(); first += beside) {
-    const std::size_t last = std::min(conditions.size(), first + beside);
+  for (std::size_t first = 0; first < conditions; first += beside) {
+    const std::size_t last = std::min(conditions, first + beside);
     std::printf("  %-18s", "");
-    for (std::size_t c = first; c < last; ++c) std::printf(" %15s", conditions[c].c_str());
+    for (std::size_t c = first; c < last; ++c) std::printf(" %15s", spreads[c].condition.c_str());
     std::printf("\n");
-    for (const std::size_t begin : programs::best_first(rows, conditions.size())) {
-      std::printf("  %-18s", rows[begin]["controller"].get<std::string>().c_str());
+    for (const std::size_t begin : programs::best_first(spreads, conditions)) {
+      std::printf("  %-18s", spreads[begin].controller.c_str());
       for (std::size_t c = first; c < last; ++c) {
-        const nlohmann::json& row = rows[begin + c];
-        const bool lost = row["crashed"].get<bool>();
-        std::printf(" %15s", lost ? "lost" : programs::in_words("%.2f", row["rmse_cm"].get<double>()).c_str());
+        const programs::LoopSpread& each = spreads[begin + c];
+        std::printf(" %15s", each.lost > 0 ? "lost" : programs::in_words("%.2f", each.rmse_cm.front()).c_str());
       }
       std::printf("\n");
     }
   }
-  for (const std::string& line : programs::bias_warnings(rows)) programs::print_message("warning: " + line);
 }
 
-/// Controllers side by side, each under each condition.
+/// How the errors of many seeds are spread.
+void print_spreads(const std::vector<programs::LoopSpread>& spreads, std::size_t conditions) {
+  std::printf("  %-18s %-16s %8s %8s %8s %8s %12s\n", "", "", "5 %", "median", "95 %", "worst", "lost");
+  for (const std::size_t begin : programs::best_first(spreads, conditions)) {
+    for (std::size_t c = 0; c < conditions; ++c) {
+      const programs::LoopSpread& each = spreads[begin + c];
+      std::printf("  %-18s %-16s", each.controller.c_str(), each.condition.c_str());
+      for (const double share : {0.05, 0.5, 0.95, 1.0}) std::printf(" %8.2f", programs::quantile(each.rmse_cm, share));
+      std::printf(" %5zu of %zu\n", each.lost, each.flights());
+    }
+  }
+}
+
+nlohmann::json spread_json(const programs::LoopSpread& spread) {
+  nlohmann::json rmse_cm = {{"5 %", nullptr}, {"median", nullptr}, {"95 %", nullptr}, {"worst", nullptr}};
+  if (!spread.rmse_cm.empty()) {
+    rmse_cm = {{"5 %", programs::quantile(spread.rmse_cm, 0.05)},
+               {"median", programs::quantile(spread.rmse_cm, 0.5)},
+               {"95 %", programs::quantile(spread.rmse_cm, 0.95)},
+               {"worst", programs::quantile(spread.rmse_cm, 1)}};
+  }
+  return {{"controller", spread.controller},
+          {"condition", spread.condition},
+          {"flights", spread.flights()},
+          {"lost", spread.lost},
+          {"rmse_cm", rmse_cm}};
+}
+
+/// A line for each flight, in their order; the same bits whatever the machine, so that two folders can be compared.
+void write_rows(const std::string& path, const std::vector<nlohmann::json>& rows) {
+  constexpr std::array<const char*, 18> columns = {
+      "controller",     "condition",     "trajectory",      "seed",           "rmse_cm",       "worst_cm",
+      "recovery_s",     "crashed",       "saturated_share", "answered_share", "effort_1_s",    "bias_at_bound_share",
+      "wind_north_m_s", "wind_east_m_s", "mass_factor",     "inertia_factor", "thrust_factor", "rotor_factor"};
+  AtomicFile file(path);
+  for (const char* name : columns) file.stream() << (name == columns.front() ? "" : ",") << name;
+  for (const nlohmann::json& row : rows) {
+    for (const char* name : columns) {
+      const nlohmann::json& value = row[name];
+      file.stream() << (name == columns.front() ? '\n' : ',');
+      if (value.is_string()) file.stream() << value.get<std::string>();
+      if (!value.is_string() && !value.is_null()) file.stream() << value;
+    }
+  }
+  file.stream() << '\n';
+  file.commit();
+}
+
+/// True where it flies controllers; else the model as feed-forward.
+bool compares_controllers(const LoopOptions& options) {
+  return !options.controllers.empty() || !options.conditions.empty() || options.seeds || options.duration_s ||
+         !options.unknown.out.empty();
+}
+
+/// Controllers side by side, each under each condition, of each seed.
 int fly_controllers(const LoopOptions& options, const programs::LoopModel& given) {
   programs::LoopSetting setting{given.model, given.columns, given.airframe.value, given.battery};
-  if (programs::is_waypoint_file(options.trajectory)) {
-    setting.duration_s = std::max(setting.duration_s, programs::read_waypoints(options.trajectory).duration_s());
-  }
+  setting.duration_s = options.duration_s.value_or(setting.duration_s);
+  if (programs::is_waypoint_file(options.trajectory)) setting.waypoints = options.trajectory;
   const programs::ControlledLoop loop(setting);
   const auto conditions = programs::names_or(options.conditions, {"calm"});
   std::vector<programs::LoopFlight> flights;
   for (const std::string& controller :
        programs::names_or(options.controllers, {"pid", "formula", "indi", "structured", "adaptive"})) {
     for (const std::string& condition : conditions) {
-      flights.push_back({controller, condition, options.trajectory, "equal"});
+      for (int seed = 1; seed <= options.seeds.value_or(1); ++seed) {
+        flights.push_back({controller, condition, options.trajectory, "equal", seed});
+      }
     }
   }
-  static_cast<void>(loop.trajectory(options.trajectory, 1));
-  std::vector<nlohmann::json> rows(flights.size());
-  std::atomic<std::size_t> finished{0};
-  programs::run_parallel(
-      std::to_string(flights.size()) + " flights", flights.size(), std::max(1u, std::thread::hardware_concurrency()),
-      [&] { return static_cast<double>(finished.load()) / static_cast<double>(flights.size()); },
-      [&](std::size_t i) {
-        programs::stop_if_interrupted();
-        rows[i] = loop.fly(flights[i], {}, programs::loop_policy);
-        rows[i].erase("series");
-        ++finished;
-      });
-  programs::stop_if_interrupted();
-  if (options.json) {
-    print_json({{"path", given.model.path()},
-                {"airframe", given.airframe.name},
-                {"trajectory", options.trajectory},
-                {"duration_s", setting.duration_s},
-                {"rows", rows}});
-  } else {
-    print_errors(options, conditions, rows, given.airframe.name, setting.duration_s);
+  static_cast<void>(loop.trajectory(options.trajectory, 1));  // refused before there is a folder
+  const std::string& out = options.unknown.out;
+  std::optional<programs::LoopJournal> journal;
+  if (!out.empty()) journal.emplace(out, programs::plan_of(loop.setting(), given.airframe.name));
+  const std::vector<nlohmann::json> rows =
+      programs::rows_of(flights, journal ? &*journal : nullptr, std::max(1U, std::thread::hardware_concurrency()),
+                        [&](const programs::LoopFlight& flight) {
+                          nlohmann::json row = loop.fly(flight, {}, programs::loop_policy);
+                          row.erase("series");
+                          return row;
+                        });
+  const std::vector<programs::LoopSpread> spreads = programs::loop_spreads(rows);
+  nlohmann::json report = {{"path", given.model.path()},         {"airframe", given.airframe.name},
+                           {"trajectory", options.trajectory},   {"duration_s", loop.setting().duration_s},
+                           {"summary", nlohmann::json::array()}, {"rows", rows}};
+  for (const programs::LoopSpread& each : spreads) report["summary"].push_back(spread_json(each));
+  if (!out.empty()) {
+    write_rows(out + "/rows.csv", rows);
+    AtomicFile file(out + "/loop.json");
+    file.stream() << report.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    file.commit();
   }
+  if (options.json) {
+    print_json(report);
+    return 0;
+  }
+  programs::print_verdict(programs::controllers_verdict(spreads, conditions.size()));
+  programs::print_entry(
+      "trajectory", programs::in_words("%s, flown by %s for %.0f s, with noise in what controllers see",
+                                       printable(options.trajectory).c_str(), printable(given.airframe.name).c_str(),
+                                       loop.setting().duration_s));
+  programs::print_line(programs::in_words("RMSE of the position in cm, of what comes after %.0f s",
+                                          programs::ControlledLoop::settled_s));
+  if (options.seeds.value_or(1) == 1) {
+    print_errors(spreads, conditions.size());
+  } else {
+    print_spreads(spreads, conditions.size());
+  }
+  for (const std::string& line : programs::bias_warnings(rows)) programs::print_message("warning: " + line);
+  if (!out.empty()) programs::print_line("each flight: " + printable(out) + "/rows.csv");
   return 0;
 }
 
@@ -230,7 +299,7 @@ int loop(const LoopOptions& options) {
   require_names("--conditions", options.conditions, programs::names_of(programs::loop_conditions), "a model");
   const programs::LoopModel given = programs::read_loop_model(options);
   const BlockModel& model = given.model;
-  if (!options.controllers.empty() || !options.conditions.empty()) return fly_controllers(options, given);
+  if (compares_controllers(options)) return fly_controllers(options, given);
   const programs::LoopFlights flights = programs::fly_loop(
       model, {options.trajectory, given.airframe.value, options.guard == "envelope", given.columns, given.battery});
   programs::stop_if_interrupted();
@@ -282,20 +351,27 @@ Command loop_command(CLI::App& program) {
     return names;
   };
   add_names(*line, "--controllers", options->controllers, with(of_model, vehicle_controllers()),
-            "fly these (docs/loop.md; default: pid,formula,indi,structured,adaptive): " + listed(of_model))
+            "fly these (default: pid,formula,indi,structured,adaptive): " + listed(of_model))
       ->excludes(guard);
   add_names(*line, "--conditions", options->conditions, with(under, vehicle_conditions()),
-            "fly controllers under these (docs/loop.md; default: calm): " + listed(under))
+            "fly controllers under these (default: calm): " + listed(under))
       ->excludes(guard);
+  CLI::Option* seeds = add_number(*line, "--seeds", options->seeds, 1, 1'000'000,
+                                  "flights of each controller, each with its own noise, wind, vehicle");
+  CLI::Option* duration = add_number(*line, "--duration", options->duration_s, 15.0, 3600.0,
+                                     "of their flights (default: 40), s; errors are of what comes after 10 s");
+  seeds->excludes(guard);
+  duration->excludes(guard);
   VehiclesOptions& unknown = options->unknown;
   CLI::Option* vehicles = add_number(*line, "--vehicles", unknown.vehicles, std::size_t{1}, std::size_t{10'000},
-                                     "fly so many vehicles that nobody knows, no model (docs/onboard.md), by " +
-                                         listed(vehicle_controllers()) + "; under " + listed(vehicle_conditions()))
+                                     "fly so many unknown vehicles, no model, by " + listed(vehicle_controllers()) +
+                                         "; under " + listed(vehicle_conditions()))
                               ->default_str("");
-  for (const char* other : {"--column", "--airframe", "--battery", "--battery-charge", "--trajectory", "--guard"}) {
+  for (const char* other : {"--column", "--airframe", "--battery", "--battery-charge", "--trajectory", "--guard",
+                            "--seeds", "--duration"}) {
     vehicles->excludes(line->get_option(other));
   }
-  add_number(*line, "--seed", unknown.seed, std::uint64_t{0}, most_seed, "seed of vehicles, noise and wind")
+  add_number(*line, "--seed", unknown.seed, std::uint64_t{0}, most_seed, "of these vehicles, their noise and wind")
       ->needs(vehicles);
   line->add_option("--start", unknown.start, "first guess: numbers within 40 %, or by mass and propeller")
       ->capture_default_str()
@@ -305,12 +381,13 @@ Command loop_command(CLI::App& program) {
   add_number(*line, "--draw", unknown.drawn, std::size_t{0}, std::size_t{9'999},
              "vehicle whose learnt slopes are drawn, from 0 on")
       ->needs(vehicles);
-  add_path(*line, "--out", unknown.out, "FOLDER", "folder for their loop.json and slopes_*.svg")->needs(vehicles);
+  add_path(*line, "--out", unknown.out, "FOLDER", "folder of loop.json, rows.csv; the same command goes on in it")
+      ->excludes(guard);
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(
       "Examples:\n"
       "  pinnquad loop trained.block --battery 3x2200 --battery-charge 40\n"
-      "  pinnquad loop trained.block --controllers adaptive,indi --conditions calm,payload\n"
+      "  pinnquad loop trained.block --controllers adaptive --conditions drawn --seeds 1000 --out flown\n"
       "  pinnquad loop --vehicles 20 --out flown\n"
       "Exit codes: 0; 1 do not fly: the model loses the vehicle, flies it worse than no model, or answers nothing; 2\n"
       "bad input or a file that can't be read; 130 interrupted.");

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -45,31 +45,60 @@ inline FlightVerdict loop_verdict(const nlohmann::json& report) {
   return verdict;
 }
 
-/// The first row of each controller, the one with the least errors first; rows are by controller, then by condition.
-inline std::vector<std::size_t> best_first(const std::vector<nlohmann::json>& rows, std::size_t conditions) {
-  const auto error = [&](std::size_t begin) {
+/// Rows of one controller under one condition, of all seeds: how many lost the vehicle, and the others' errors.
+struct LoopSpread {
+  std::string controller, condition;
+  std::size_t lost = 0;
+  std::vector<double> rmse_cm;
+
+  std::size_t flights() const { return lost + rmse_cm.size(); }
+};
+
+/// Rows are by controller, then by condition, then by seed.
+inline std::vector<LoopSpread> loop_spreads(const std::vector<nlohmann::json>& rows) {
+  std::vector<LoopSpread> spreads;
+  for (const nlohmann::json& row : rows) {
+    const std::string controller = row["controller"], condition = row["condition"];
+    if (spreads.empty() || spreads.back().controller != controller || spreads.back().condition != condition) {
+      spreads.push_back({controller, condition, 0, {}});
+    }
+    if (row["crashed"].get<bool>()) {
+      ++spreads.back().lost;
+    } else {
+      spreads.back().rmse_cm.push_back(row["rmse_cm"]);
+    }
+  }
+  return spreads;
+}
+
+/// The first spread of each controller: the one that loses fewest vehicles first, then by the geometric mean of the
+/// others' errors. Each controller has as many as there are conditions.
+inline std::vector<std::size_t> best_first(const std::vector<LoopSpread>& spreads, std::size_t conditions) {
+  const auto lost_and_error = [&](std::size_t begin) {
+    std::size_t lost = 0, kept = 0;
     double sum = 0;
     for (std::size_t i = begin; i < begin + conditions; ++i) {
-      if (rows[i]["crashed"].get<bool>()) return std::numeric_limits<double>::infinity();
-      sum += std::log(rows[i]["rmse_cm"].get<double>());
+      lost += spreads[i].lost;
+      kept += spreads[i].rmse_cm.size();
+      for (const double error : spreads[i].rmse_cm) sum += std::log(error);
     }
-    return sum;
+    return std::pair(lost, kept > 0 ? sum / static_cast<double>(kept) : 0.0);
   };
   std::vector<std::size_t> order;
-  for (std::size_t begin = 0; begin < rows.size(); begin += conditions) order.push_back(begin);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return error(a) < error(b); });
+  for (std::size_t begin = 0; begin < spreads.size(); begin += conditions) order.push_back(begin);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return lost_and_error(a) < lost_and_error(b); });
   return order;
 }
 
-/// The same of controllers side by side: those that fly the model.
-inline FlightVerdict controllers_verdict(const std::vector<nlohmann::json>& rows, std::size_t conditions) {
-  const std::vector<std::size_t> order = best_first(rows, conditions);
-  FlightVerdict verdict(rows[order.front()]["controller"].get<std::string>() + " has the least error");
-  for (const nlohmann::json& row : rows) {
-    const std::string controller = row["controller"];
-    const bool by_model = controller.find("structured") == 0 || controller == "adaptive";
-    if (!by_model || !row["crashed"].get<bool>()) continue;
-    verdict.refuse(controller + " loses the vehicle under " + row["condition"].get<std::string>(), livelier_flight);
+/// The verdict of controllers side by side: by those that fly the model.
+inline FlightVerdict controllers_verdict(const std::vector<LoopSpread>& spreads, std::size_t conditions) {
+  FlightVerdict verdict(spreads[best_first(spreads, conditions).front()].controller + " has the least error");
+  for (const LoopSpread& each : spreads) {
+    const bool by_model = each.controller.find("structured") == 0 || each.controller == "adaptive";
+    if (!by_model || each.lost == 0) continue;
+    const std::string times = each.flights() == 1 ? "" : in_words(" in %zu of %zu flights", each.lost, each.flights());
+    verdict.refuse(each.controller + " loses the vehicle under " + each.condition + times, livelier_flight);
   }
   verdict.then("the bench, propellers off (docs/in_flight.md)");
   return verdict;

@@ -16,6 +16,7 @@
 #include "command_line/folders.hpp"
 #include "command_line/parallel.hpp"
 #include "loop/any_policy.hpp"
+#include "loop/quantile.hpp"
 #include "loop/unknown_vehicle.hpp"
 #include "loop/vehicle_course.hpp"
 #include "model/learnt_vehicle.hpp"
@@ -394,16 +395,6 @@ class Flown {
   double lost_at_s_ = -1, saturated_share_ = 0;
   std::optional<Chart> picture_;
 };
-
-/// The value below which a share of all lie; NaN of none.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
-}
 
 void print_vehicles(const VehiclesOptions& options, const std::vector<nlohmann::json>& rows) {
   std::printf(

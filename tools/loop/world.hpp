@@ -28,6 +28,12 @@ class LoopWorld {
             double control_period_s, double half_s, std::uint64_t seed, double* voltage_V)
       : LoopWorld(Draw(told, still, condition, seed), site, condition, sensors, control_period_s, half_s, voltage_V) {}
 
+  /// Factors of mass, inertia, all thrust and the weakest rotor's, and the wind, m/s towards north and east.
+  struct Drawn {
+    double mass = 1, inertia = 1, thrust = 1, rotor = 1, wind_north_m_s = 0, wind_east_m_s = 0;
+  };
+  const Drawn& drawn() const noexcept { return drawn_; }
+
   pinnquad::Status step(pinnquad::VehicleState<double>& state, const Commands& commands, double step_s) noexcept {
     const bool changed = !at_half_ || state.time_s >= half_s_;
     const pinnquad::SwitchedQuadrotor& vehicle = changed ? after_ : before_;
@@ -62,28 +68,36 @@ class LoopWorld {
     pinnquad::SwitchedEffects effects;
     Commands strength{1, 1, 1, 1};
     Engine engine;
+    Drawn drawn;
 
     Draw(const pinnquad::Airframe<double>& airframe, const pinnquad::SwitchedEffects& still,
          const LoopCondition& condition, std::uint64_t seed)
         : told(airframe), flown(airframe), effects(still), engine(0x6c6f6f70u + 7919 * seed) {
       const double heading = pinnquad::uniform(engine, 0, 6.283185307179586);
       const std::array<double, 2> to = {std::cos(heading), std::sin(heading)};
-      switch_effect(effects, pinnquad::ConstantWind{{condition.wind_m_s * to[0], condition.wind_m_s * to[1], 0}});
+      const double wind_m_s = condition.wind_m_s * (condition.drawn ? pinnquad::uniform_01(engine) : 1);
+      drawn.wind_north_m_s = wind_m_s * to[0];
+      drawn.wind_east_m_s = wind_m_s * to[1];
+      switch_effect(effects, pinnquad::ConstantWind{{drawn.wind_north_m_s, drawn.wind_east_m_s, 0}});
       const auto weak = static_cast<std::size_t>(pinnquad::uniform_index(engine, pinnquad::rotor_count));
+      drawn.rotor = condition.drawn ? pinnquad::uniform(engine, condition.rotor, 1) : condition.rotor;
       for (double& each : strength) each = condition.battery;
-      strength[weak] *= condition.rotor;
-      const auto wrong = [&] { return 1 + (engine() >> 63 != 0 ? condition.error : -condition.error); };
-      flown.mass_kg *= condition.mass * wrong();
-      const double inertia = wrong();
-      for (double& each : flown.inertia_kg_m2) each *= inertia;
-      const double thrust = wrong();
-      flown.thrust_coefficient *= thrust;
-      flown.power_coefficient *= thrust;
+      strength[weak] *= drawn.rotor;
+      const auto wrong = [&] {
+        if (condition.drawn) return 1 + pinnquad::uniform(engine, -condition.error, condition.error);
+        return 1 + (engine() >> 63 != 0 ? condition.error : -condition.error);
+      };
+      drawn.mass = condition.mass * wrong();
+      flown.mass_kg *= drawn.mass;
+      drawn.inertia = wrong();
+      for (double& each : flown.inertia_kg_m2) each *= drawn.inertia;
+      drawn.thrust = wrong();
+      flown.thrust_coefficient *= drawn.thrust;
+      flown.power_coefficient *= drawn.thrust;
       if (!condition.gusts) return;
       constexpr double height_m = 20;
       switch_effect(effects, pinnquad::DrydenTurbulence<>(
-                                 engine, pinnquad::DrydenParameters::low_altitude(condition.wind_m_s, height_m),
-                                 condition.wind_m_s, to));
+                                 engine, pinnquad::DrydenParameters::low_altitude(wind_m_s, height_m), wind_m_s, to));
     }
   };
 
@@ -91,6 +105,7 @@ class LoopWorld {
             const LoopSensors& sensors, double control_period_s, double half_s, double* voltage_V)
       : before_(quadrotor_with(draw.effects, draw.told, site)),
         after_(quadrotor_with(draw.effects, draw.flown, site)),
+        drawn_(draw.drawn),
         strength_(draw.strength),
         at_half_(condition.at_half),
         half_s_(half_s),
@@ -100,6 +115,7 @@ class LoopWorld {
         late_(static_cast<std::size_t>(std::lround(sensors.delay_s / control_period_s))) {}
 
   pinnquad::SwitchedQuadrotor before_, after_;
+  Drawn drawn_;
   Commands strength_;
   bool at_half_;
   double half_s_;

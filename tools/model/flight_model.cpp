@@ -133,7 +133,7 @@ class FlightModelOf : public FlightModel {
 template <class Scalar>
 std::unique_ptr<const FlightModel> flight_model_of(const pinnquad::RunTimeModel<Scalar>& model,
                                                    const pinnquad::Airframe<float>& airframe, ReplayGuard guard) {
-  using View = RunTimeView<FlightFeatures, Scalar>;
+  using View = RunTimeView<FlightFeatures<>, Scalar>;
   if (guard == ReplayGuard::training) {
     using Inverse = pinnquad::InverseDynamics<View, pinnquad::TrainingGuard>;
     return std::make_unique<FlightModelOf<Inverse>>(model, pinnquad::TrainingGuard());

@@ -49,7 +49,7 @@ struct CoreFeatures {
 };
 
 /// Features of a core with a window or the battery voltage. One set for the program: `of` says which.
-struct PastCoreFeatures : FlightFeatures {
+struct PastCoreFeatures : FlightFeatures<> {
   static constexpr std::array<const char*, 1> column_names = {pinnquad::BatteryVoltage::name};
   static constexpr std::array<const char*, 1> column_units = {pinnquad::BatteryVoltage::unit};
 
@@ -59,7 +59,7 @@ struct PastCoreFeatures : FlightFeatures {
 
   template <class Scalar>
   static void extract(const FlightInputs<Scalar>& in, Scalar* x) noexcept {
-    FlightFeatures::extract(in, x);
+    FlightFeatures<>::extract(in, x);
     for (int i = 0; i < size; ++i) last<Scalar>[std::size_t(i)] = x[i];
   }
   /// True for a model that a core can fly: of the motion, its past, and the battery voltage.
@@ -132,7 +132,7 @@ namespace pinnquad {
 /// Of a core, which gives it the motion and the voltage.
 template <class Scalar, int MostSamples>
 class InputHistory<programs::PastCoreFeatures, Scalar, MostSamples, void> {
-  using All = InputHistory<programs::FlightFeatures, Scalar>;
+  using All = InputHistory<programs::FlightFeatures<>, Scalar>;
 
  public:
   using Inputs = typename All::Inputs;

@@ -4,8 +4,12 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
 
 #include "pinnquad/aero/wind.hpp"
+#include "pinnquad/core/lanes.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/core/scalar_math.hpp"
 
@@ -84,9 +88,20 @@ class DrydenTurbulence {
   /// One component at a distance along the field, m/s: 0 along the wind, 1 across (to its right), 2 down.
   template <class Real>
   Real gust(std::size_t axis, Real along_m) const noexcept {
-    std::array<Real, waves> wave;  // all before they are added up: so the compiler takes several at once
-    for (std::size_t i = 0; i < waves; ++i) {
-      wave[i] = cosine_of_turns(Real(wave_number_1_m_[axis][i]) * along_m + Real(phase_turns_[axis][i]));
+    std::array<Real, waves> wave;
+    if constexpr (std::is_same_v<Real, double> && waves % native_lanes<double> == 0) {
+      using Several = Lanes<double, native_lanes<double>>;
+      for (std::size_t i = 0; i < waves; i += Several::count) {
+        Several number_1_m, turns;
+        std::memcpy(&number_1_m.part, &wave_number_1_m_[axis][i], sizeof number_1_m.part);
+        std::memcpy(&turns.part, &phase_turns_[axis][i], sizeof turns.part);
+        const Several cosines = cosine_of_turns(number_1_m * Several(along_m) + turns);
+        std::memcpy(&wave[i], &cosines.part, sizeof cosines.part);
+      }
+    } else {
+      for (std::size_t i = 0; i < waves; ++i) {
+        wave[i] = cosine_of_turns(Real(wave_number_1_m_[axis][i]) * along_m + Real(phase_turns_[axis][i]));
+      }
     }
     Real sum(0);
     for (const Real& one : wave) sum += one;
