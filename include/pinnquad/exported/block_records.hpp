@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reads the records of a model block (exported/model_block.hpp), compares them with a shape, and checks all that a block
-// states beside it, for whoever opens it (exported/model_view.hpp, exported/run_time_model.hpp).
+// Reads the records of a model block (exported/model_block.hpp), compares them with a shape, and checks all that a
+// block states beside it, for whoever opens it (exported/model_view.hpp, exported/run_time_model.hpp).
 #pragma once
 
 #include <cstddef>

@@ -25,7 +25,8 @@ inline constexpr std::size_t model_block_alignment = 8;
 /// Byte offsets of the header's fields, and what they hold:
 ///   magic, u32 model_format_version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754),
 ///   u32 inputs, u32 outputs, u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(),
-///   u64 training data hash, u64 contents_hash of the header beside it (exported/contents_hash.hpp), u64 hash_of_block().
+///   u64 training data hash, u64 contents_hash of the header beside it (exported/contents_hash.hpp), u64
+///   hash_of_block().
 /// The records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow:
 /// input mean and standard deviation, output mean and standard deviation, envelope lower and upper, golden features,
 /// golden commands, parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before
