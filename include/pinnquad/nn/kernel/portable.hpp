@@ -139,10 +139,14 @@ PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, Bias bias, 
     detail::multiply_held<Rows, Columns>(weight, Columns, bias, x, y, activate);
   } else {
     static_assert(std::is_pointer_v<X>, "pinnquad: inputs that are taken in parts stand in a row");
-    for (int row = 0; row < Rows; ++row) y[row] = bias[row];
     const Scalar* const sums = y;
-    for (int part = 0; part < last; part += width) {
-      detail::multiply_held<Rows, width>(weight + part, Columns, sums, x + part, y, detail::Activate<void>{});
+    if constexpr (parts == 2) {
+      detail::multiply_held<Rows, width>(weight, Columns, bias, x, y, detail::Activate<void>{});
+    } else {  // one copy of the code for all parts but the last
+      for (int row = 0; row < Rows; ++row) y[row] = bias[row];
+      for (int part = 0; part < last; part += width) {
+        detail::multiply_held<Rows, width>(weight + part, Columns, sums, x + part, y, detail::Activate<void>{});
+      }
     }
     detail::multiply_held<Rows, Columns - last>(weight + last, Columns, sums, x + last, y, activate);
   }
