@@ -15,8 +15,8 @@ document=$root/docs/footprint.md
 compiler="arm-none-eabi-g++ $(arm-none-eabi-g++ -dumpfullversion)"
 
 # Assumed for the estimates: clock in MHz and cycles per instruction
-m4_clock=168 m4_cycles=2.4
-m7_clock=216 m7_cycles=1.3
+m4_clock=168 m4_cycles=2.7
+m7_clock=216 m7_cycles=1.55
 
 thousands() { sed ':again; s/\([0-9]\)\([0-9]\{3\}\)\($\|,\)/\1,\2\3/; t again' <<<"$1"; }
 estimate() { awk -v n="$1" -v mhz="$2" -v cycles="$3" 'BEGIN { printf "%.0f", n * cycles / mhz }'; }

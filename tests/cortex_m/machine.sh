@@ -153,10 +153,10 @@ judge_forward() {
   if [ "$(largest instructions "$output")" != "$(smallest instructions "$output")" ]; then
     reject "instructions depend on the data" "$(smallest instructions "$output") to $(largest instructions "$output")"
   fi
-  if [ "$(smallest instructions "$output")" -lt 12250 ]; then reject "instructions" "fewer than loads and products"; fi
-  at_most "instructions" "$(largest instructions "$output")" 15100
-  at_most "stack" "$(largest stack "$output")" 300
-  at_most "code" "$(code_bytes "$image")" 2048
+  if [ "$(smallest instructions "$output")" -lt 9190 ]; then reject "instructions" "fewer than loads of two weights and products"; fi
+  at_most "instructions" "$(largest instructions "$output")" 13500
+  at_most "stack" "$(largest stack "$output")" 330
+  at_most "code" "$(code_bytes "$image")" 1850
   at_most "static RAM" "$(ram_bytes "$image")" 0
   if [ "$(weight_bytes "$image")" != 25516 ]; then reject "flash" "not the weights: $(weight_bytes "$image") B"; fi
 }

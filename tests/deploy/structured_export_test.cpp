@@ -86,14 +86,14 @@ bool compare(bool with_residual) {
   settings.seeds = 1;
   settings.residual.epochs = 8;
   if (!with_residual) settings.residual.least_gain = 1;
-  const StructuredFit fit = fit_structured<Features, Features>(split, airframe, settings).best();
+  const StructuredFits::Fit fit = fit_structured<Features, Features>(split, airframe, settings).best();
   const GroundModel<float>& value = fit.model;
   using Setting = Context<Features, GivenAirframe, AxisCommandOutputs>;
   using Base = TrainedModel<MonotoneBase<Features>, Setting>;
   using Whole = TrainedModel<MonotonePredictor<Features, StructuredResidual<residual_inputs<Features>>>, Setting>;
   const StructuredSet by_name =
       structured_set(by_name_of<Features>(), airframe, detail::residual_trainer<StructuredResidual<32>>());
-  const StructuredFit named = fit_structured(by_name, nullptr, split, settings).best();
+  const StructuredFits::Fit named = fit_structured(by_name, nullptr, split, settings).best();
   CHECK(named.parameters == fit.parameters);
   CHECK(text_of(named.model, split.train) == text_of(value, split.train));
   const auto same_as = [&](auto tag) {

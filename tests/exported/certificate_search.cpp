@@ -329,7 +329,7 @@ class SumsInDouble {
     outputs_.prepare(model.airframe());
     mix_ = detail::signed_mix(model.airframe());
   }
-  std::array<double, 4> operator()(const std::vector<RunTimeInputs<double>>& taps) {
+  std::array<double, 4> operator()(const std::vector<RunTimeFeatures::Inputs<double>>& taps) {
     model_.features().extract(taps.data(), x_.data());
     const auto& scales = model_.scales();
     largest_ = 1;
@@ -383,11 +383,11 @@ Refuted search_of(const RunTimeModel<Scalar>& model, const BlockModel::ProvenSig
   SumsInDouble<Scalar> sums_of(model);
   RandomStates random(engine());
   const auto taps = std::size_t(model.features().window().taps);
-  std::vector<RunTimeInputs<double>> motion(taps);
+  std::vector<RunTimeFeatures::Inputs<double>> motion(taps);
   Refuted found;
   for (int pair = 0; pair < pairs; ++pair) {
     const double largest = std::pow(10.0, uniform(engine, -1, 2));
-    for (RunTimeInputs<double>& tap : motion) {
+    for (RunTimeFeatures::Inputs<double>& tap : motion) {
       tap.linear_acceleration_m_s2 = random.vector<double>(largest);
       tap.angular_acceleration_rad_s2 = random.vector<double>(3 * largest);
       tap.velocity_m_s = random.vector<double>(largest);
@@ -401,7 +401,7 @@ Refuted search_of(const RunTimeModel<Scalar>& model, const BlockModel::ProvenSig
     const auto axis = std::size_t(pair % 3);
     const bool held = pair % 2 == 0;
     const double step = (pair % 4 < 2 ? 1 : -1) * std::pow(10.0, uniform(engine, -3, 3));
-    std::vector<RunTimeInputs<double>> more = motion;
+    std::vector<RunTimeFeatures::Inputs<double>> more = motion;
     for (std::size_t tap = 0; tap < (held ? taps : 1); ++tap) {
       more[tap].angular_acceleration_rad_s2[int(axis)] += step;
       for (int i = 0; i < model.features().column_count(); ++i) {

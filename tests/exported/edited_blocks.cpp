@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A block that was edited under a right checksum is refused: a number out of its range by the name of its record,
-// any other one by the hashes over the contents and the records. In flight it is a Status, and the view is untouched.
+// any other one by the block's hash. In flight it is a Status, and the view is untouched.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -160,41 +160,4 @@ TEST_CASE("a bit of any byte: no reader takes the block, though its checksum was
   CHECK(taken<OwnRacer>(model_block<OwnRacer>()) == "");
   using Five = test::ModelOf<Network<float, InputSize<16>, Dense<5>>, PaperFeatures, test::FiveOutputs>;
   CHECK(taken<Five>(test::drawn_block(test::drawn_model<Five>(1))) == "");
-}
-
-TEST_CASE("a block of an older writer, which has no hash over its records, is taken") {
-  const Bytes block = whole();
-  auto records = records_of(block);
-  find(records, BlockRecord::contents).bytes.resize(8);
-  CHECK(refusal(with_records(block, records)) == "");
-}
-
-TEST_CASE("an older writer's copies are hashed as they are, and its word that there is a certificate is asked") {
-  const Bytes block = whole();
-  auto records = records_of(block);
-  Bytes signs(12, 1), range(8 * sizeof(float), 0);
-  signs[0] = signs[4] = 0xff;  // -1
-  records.push_back({static_cast<unsigned>(BlockRecord::slope_signs), signs});
-  records.push_back({static_cast<unsigned>(BlockRecord::residual_range), range});
-  records.push_back({static_cast<unsigned>(BlockRecord::certificate), Bytes(96, 0)});
-  BlockBytes older = with_records(block, records);
-  CHECK(refusal(older) == "");
-  const Bytes made(older.data(), older.data() + older.size());
-  for (const BlockRecord type : {BlockRecord::slope_signs, BlockRecord::residual_range}) {
-    BlockBytes other(made);
-    std::size_t at = ModelBlockHeader::size + ModelBlockHeader::record_counts;
-    while ((detail::read_u32(&other[at]) & 0x7fffu) != static_cast<unsigned>(type)) {
-      at += ModelBlockHeader::record_head + ModelBlockHeader::padded(detail::read_u32(&other[at + 4]));
-    }
-    other[at + ModelBlockHeader::record_head] ^= 2;
-    other.seal_checksum();
-    CHECK(refusal(other).find("record contents") != std::string::npos);
-  }
-  auto demo = records_of(model_block<OwnRacer>());
-  demo.push_back({static_cast<unsigned>(BlockRecord::certificate), Bytes(96, 0)});  // of a network
-  const BlockBytes unproven = with_records(model_block<OwnRacer>(), demo);
-  ModelView<OwnRacer> view;
-  CHECK(ModelView<OwnRacer>::open(unproven.data(), unproven.size(), view) == Status::block_corrupt);
-  CHECK_THROWS_WITH_AS(BlockModel("own.block", Bytes(unproven.data(), unproven.data() + unproven.size())),
-                       doctest::Contains("record certificate"), InputError);
 }

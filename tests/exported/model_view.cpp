@@ -255,7 +255,7 @@ TEST_CASE("lengths and counts that do not agree are corrupt, however large") {
     CHECK(changed([&](BlockBytes& block) { block.set_u32(Header::golden_vectors, golden); }) == Status::block_corrupt);
   }
   BlockBytes block(model_block<SmallModel>());
-  for (const std::uint32_t length : {0u, 4u, 59u}) {
+  for (const std::uint32_t length : {0u, 4u, 75u}) {
     block.set_u32(Header::length, length);
     block.seal();
     CHECK(opened(block) == Status::block_corrupt);

@@ -288,36 +288,37 @@ void draw(RandomStates& random, detail::WindowInputs<Tap, Scalar, Window>& in) {
 // the same as a run-time model asks for them; columns in the order of the features
 
 template <class Scalar>
-void take(const MotionInputs<Scalar>& in, RunTimeInputs<Scalar>& to, std::size_t&) {
+void take(const MotionInputs<Scalar>& in, RunTimeFeatures::Inputs<Scalar>& to, std::size_t&) {
   static_cast<MotionInputs<Scalar>&>(to) = in;
 }
 template <class Scalar>
-void take(const MotionInputsWithAltitude<Scalar>& in, RunTimeInputs<Scalar>& to, std::size_t&) {
+void take(const MotionInputsWithAltitude<Scalar>& in, RunTimeFeatures::Inputs<Scalar>& to, std::size_t&) {
   static_cast<MotionInputsWithAltitude<Scalar>&>(to) = in;
 }
 template <class Base, class Scalar, class... Column>
-void take(const detail::InputsWithColumns<Base, Scalar, Column...>& in, RunTimeInputs<Scalar>& to, std::size_t& at) {
+void take(const detail::InputsWithColumns<Base, Scalar, Column...>& in, RunTimeFeatures::Inputs<Scalar>& to,
+          std::size_t& at) {
   take(static_cast<const Base&>(in), to, at);
   for (const Scalar value : in.columns) to.columns[at++] = value;
 }
 template <class Scalar>
-void take(const WindInputs<Scalar>& in, RunTimeInputs<Scalar>& to, std::size_t& at) {
+void take(const WindInputs<Scalar>& in, RunTimeFeatures::Inputs<Scalar>& to, std::size_t& at) {
   take(static_cast<const MotionInputs<Scalar>&>(in), to, at);
   to.columns[at++] = in.wind_m_s;
   to.columns[at++] = in.pull_N;
 }
 template <class Inputs, class Scalar>
-RunTimeInputs<Scalar> tap_of(const Inputs& in) {
-  RunTimeInputs<Scalar> to;
+RunTimeFeatures::Inputs<Scalar> tap_of(const Inputs& in) {
+  RunTimeFeatures::Inputs<Scalar> to;
   std::size_t at = 0;
   take(in, to, at);
   return to;
 }
 template <class Features, class Scalar>
-std::vector<RunTimeInputs<Scalar>> taps_of(const typename Features::template Inputs<Scalar>& in) {
+std::vector<RunTimeFeatures::Inputs<Scalar>> taps_of(const typename Features::template Inputs<Scalar>& in) {
   if constexpr (is_windowed<Features>) {
     using Tap = typename Features::TapFeatures::template Inputs<Scalar>;
-    std::vector<RunTimeInputs<Scalar>> taps = {tap_of<Tap, Scalar>(in)};
+    std::vector<RunTimeFeatures::Inputs<Scalar>> taps = {tap_of<Tap, Scalar>(in)};
     for (const Tap& other : in.others) taps.push_back(tap_of<Tap, Scalar>(other));
     return taps;
   } else {

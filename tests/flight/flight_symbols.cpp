@@ -140,7 +140,7 @@ unsigned char fly(const Trajectory& trajectory, const FeedForward& feed_forward,
 template <class Scalar>
 struct RunTimeAsked {
   pinnquad::RunTimeModel<Scalar> model;
-  pinnquad::RunTimeInputs<Scalar> taps[2];
+  pinnquad::RunTimeFeatures::Inputs<Scalar> taps[2];
   Scalar x[64], work[256], u[4];
   pinnquad::Certificate certificate;
 };
@@ -233,13 +233,6 @@ unsigned char pinnquad_flight_parts_of_motion(const float* state, const float* w
   const Status status = history.take(present, time_s);
   Past::extract(history.inputs(), x);
   return static_cast<unsigned char>(status == Status::ok ? Past::check(history.inputs()) : status);
-}
-
-unsigned char pinnquad_flight_self_test_reported(float* largest_difference) {
-  pinnquad::SelfTestReport<float> report;
-  const Status status = pinnquad::self_test(guarded(), report);
-  *largest_difference = report.largest_difference;
-  return static_cast<unsigned char>(status);
 }
 
 unsigned char pinnquad_flight_self_test() {

@@ -189,7 +189,7 @@ TEST_CASE_TEMPLATE("a core that learns makes the commands of the loop's policy, 
     const auto slope = static_cast<double>(policy.certificate()[axis + 1].forward.slope());
     CHECK(certificate->slope[axis] * slope == doctest::Approx(1).epsilon(1e-6));
   }
-  const AffineInverse<float> inverse = affine_inverse(policy.forward());
+  const pinnquad::detail::AffineInverse<float> inverse = pinnquad::detail::affine_inverse(policy.forward());
   const detail::SignedMix<float>& mix = policy.bias().mix();
   std::size_t answered = 0;
   REQUIRE(asked.size() > 1000);

@@ -41,7 +41,7 @@ void ask(const RunTimeModel<Scalar>& model) {
   Commands<Scalar> u{};
   model.commands(model.scales().lower, u.data(), work.data());
   model.commands(model.scales().upper, u.data(), work.data());
-  std::vector<RunTimeInputs<Scalar>> taps(std::size_t(features.window().taps));
+  std::vector<RunTimeFeatures::Inputs<Scalar>> taps(std::size_t(features.window().taps));
   expect(features.asks_for_altitude() == (features.check(taps.data()) == Status::not_finite),
          "an altitude is asked for");
   for (auto& tap : taps) tap.altitude_m = Scalar(1);

@@ -151,7 +151,7 @@ void take_outputs(const std::string& path, TomlTable& root, ForeignMeaning& mean
         "the motor commands [\"u1\", \"u2\", \"u3\", \"u4\"] in the network's order, or the names of another output "
         "schema";
     meaning.outputs = texts_of(table, *names, expected);
-    if (!find_schema(meaning.outputs, meaning.schema, static_cast<const OutputSchemas*>(nullptr))) {
+    if (!find_schema(meaning.outputs, meaning.schema, static_cast<const RunTimeOutputs<double>::Schemas*>(nullptr))) {
       table.refuse(*names, expected, "[" + listed(meaning.outputs, [](const std::string& name) {
                                        return "\"" + printable(name) + "\"";
                                      }) + "]");

@@ -20,7 +20,7 @@ template <int Most, class Scalar, int MostSamples>
 class InputHistory<programs::FlightFeatures<Most>, Scalar, MostSamples, void> {
  public:
   using Inputs = programs::FlightInputs<Scalar>;
-  using Present = RunTimeInputs<Scalar>;
+  using Present = RunTimeFeatures::Inputs<Scalar>;
 
   /// The features must stay where they are.
   explicit InputHistory(const RunTimeFeatures& features)
@@ -70,7 +70,7 @@ struct MeasuredColumns {
   const std::vector<double>* columns = nullptr;
 
   void operator()(const pinnquad::State<double>& state, std::uint64_t /*time_us*/,
-                  pinnquad::RunTimeInputs<Scalar>& present) const noexcept {
+                  pinnquad::RunTimeFeatures::Inputs<Scalar>& present) const noexcept {
     present.altitude_m = static_cast<Scalar>(ground_z_m - state.position_m[2]);
     for (std::size_t i = 0; i < columns->size(); ++i) present.columns[i] = static_cast<Scalar>((*columns)[i]);
   }

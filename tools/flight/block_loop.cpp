@@ -69,9 +69,9 @@ ModelRange range_of(const BlockModel& model) {
         {std::string(features[i].name), std::string(features[i].unit), lower[at], upper[at], features.is_column(i)});
   }
   range.of = [&features](const ModelRange::Motion& motion) {
-    RunTimeInputs<double> lasting;
+    RunTimeFeatures::Inputs<double> lasting;
     static_cast<ModelRange::Motion&>(lasting) = motion;
-    const std::vector<RunTimeInputs<double>> taps(std::size_t(features.window().taps), lasting);
+    const std::vector<RunTimeFeatures::Inputs<double>> taps(std::size_t(features.window().taps), lasting);
     std::vector<double> x(std::size_t(features.size()));
     features.extract(taps.data(), x.data());
     return x;

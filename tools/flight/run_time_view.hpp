@@ -30,8 +30,8 @@ constexpr std::array<const char*, Size> no_names() {
 template <class Scalar>
 struct FlightInputs : pinnquad::MotionInputsWithAltitude<Scalar> {
   const pinnquad::RunTimeFeatures* features = nullptr;
-  std::vector<pinnquad::RunTimeInputs<Scalar>> taps;  ///< the present first
-  bool complete = false;                              ///< all of them are there
+  std::vector<pinnquad::RunTimeFeatures::Inputs<Scalar>> taps;  ///< the present first
+  bool complete = false;                                        ///< all of them are there
 };
 
 /// Features of a flight's rows, `Most` at most: windows, columns, the altitude among them. The angular acceleration,
@@ -55,7 +55,7 @@ struct FlightFeatures {
   static void extract(const FlightInputs<Scalar>& in, Scalar* x) noexcept {
     for (int i = 0; i < size; ++i) x[i] = Scalar(0);
     if (!in.complete) return;
-    std::vector<pinnquad::RunTimeInputs<Scalar>> taps = in.taps;
+    std::vector<pinnquad::RunTimeFeatures::Inputs<Scalar>> taps = in.taps;
     static_cast<pinnquad::MotionInputsWithAltitude<Scalar>&>(taps.front()) = in;
     Scalar own[Most];
     in.features->extract(taps.data(), static_cast<Scalar*>(own));

@@ -121,7 +121,7 @@ struct Shaking {
   void add_to(Accelerations<double>& wanted, std::uint64_t time_us) const noexcept {
     if (!(strength > 0 && seconds_of(time_us) < until_s)) return;
     const Accelerations<double> added =
-        excitation(ExcitationSettings<double>{}, time_us, slopes, {strength, strength, strength, strength});
+        excitation(OnboardSettings<double>::Excitation{}, time_us, slopes, {strength, strength, strength, strength});
     wanted.linear_m_s2 += added.linear_m_s2;
     wanted.angular_rad_s2 += added.angular_rad_s2;
   }

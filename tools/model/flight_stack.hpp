@@ -33,7 +33,7 @@ struct CoreFeatures {
   }
   template <class Scalar>
   static void extract(const pinnquad::MotionInputs<Scalar>& in, Scalar* x) noexcept {
-    pinnquad::RunTimeInputs<Scalar> inputs;
+    pinnquad::RunTimeFeatures::Inputs<Scalar> inputs;
     static_cast<pinnquad::MotionInputs<Scalar>&>(inputs) = in;
     for (int i = 0; i < size; ++i) x[i] = Scalar(0);
     if (of != nullptr) of->extract(&inputs, x);

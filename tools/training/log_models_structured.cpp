@@ -113,7 +113,7 @@ std::shared_ptr<const TrainedNetwork> fit_structured_kind(const FitTask& task) {
   altitude.taken = fits.altitude.taken;
   altitude.error_with = fits.altitude.error_with.value_or(pinnquad::not_a_number);
   altitude.error_without = fits.altitude.error_without.value_or(pinnquad::not_a_number);
-  const pinnquad::StructuredFit& best = fits.best();
+  const pinnquad::StructuredFits::Fit& best = fits.best();
   const pinnquad::StructuredSet& set = best.with_altitude ? *higher : lower;
   return std::make_shared<StructuredNetwork>(best.model, set.context(pinnquad::detail::fitted_rows(split, settings)),
                                              task.training, altitude, best.slopes, settings.fit_validation);

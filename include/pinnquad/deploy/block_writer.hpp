@@ -16,7 +16,6 @@
 
 #include "pinnquad/core/body.hpp"
 #include "pinnquad/deploy/provenance.hpp"
-#include "pinnquad/exported/block_contents.hpp"
 #include "pinnquad/exported/model_block.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/version.hpp"
@@ -53,33 +52,6 @@ std::uint64_t double_bits(double value);
 
 /// Where a model comes from and how it was judged: name and value in turn.
 std::vector<std::string> provenance_texts(const WrittenRecords& records);
-
-/// Numbers of a header that a block's other records round: the range of the commands, the clock's two, the allocation.
-/// None where what those hold, and the airframe, give them to the bit: contents_hash is over them (exported/
-/// block_contents.hpp). A tilted rotor's torque is a sum of products, which a compiler may round otherwise.
-template <class Scalar>
-std::vector<std::uint64_t> unrounded_numbers(const WrittenRecords& records) {
-  const auto exact = [](double value, double held) { return double_bits(value) == double_bits(held); };
-  const double lower = records.facts.command_lower, upper = records.facts.command_upper;
-  const double period = records.facts.sample_period_s, lag = records.facts.lag_removed_s;
-  bool same = exact(lower, static_cast<double>(static_cast<Scalar>(lower))) &&
-              exact(upper, static_cast<double>(static_cast<Scalar>(upper))) &&
-              exact(period, seconds_of(nanoseconds(period))) && exact(lag, seconds_of(nanoseconds(lag)));
-  if (sizeof(Scalar) < sizeof(double)) {
-    const AllocationMatrix<double> own = allocation(records.airframe);
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      for (std::size_t k = 0; k < own[i].size(); ++k) same = same && exact(records.allocation[i][k], own[i][k]);
-    }
-    for (const auto& rotor : records.airframe.rotors) same = same && is_upright(rotor);
-  }
-  std::vector<std::uint64_t> numbers;
-  if (same) return numbers;
-  for (const double number : {lower, upper, period, lag}) numbers.push_back(double_bits(number));
-  for (const auto& row : records.allocation) {
-    for (const double entry : row) numbers.push_back(double_bits(entry));
-  }
-  return numbers;
-}
 
 /// The records of a block: their counts, then each.
 template <class Scalar>
@@ -130,16 +102,11 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
   std::vector<std::uint64_t> airframe;
   each_number(records.airframe, [&](auto number) { airframe.push_back(double_bits(static_cast<double>(number))); });
   record(BlockRecord::vehicle, mandatory, airframe, records.flown_airframe, records.vehicle_name);
-  record(BlockRecord::contents, mandatory, records.contents_hash, std::uint64_t{0});
-  const std::size_t own = out.bytes.size() - 8;  // of the hash over all records, when they are there
   if (!records.affine.empty()) record(BlockRecord::affine, optional, records.affine);
   if (const auto& trust = records.trust) {
     record(BlockRecord::trust, optional, double_bits(trust->squared_distance_limit),
            double_bits(trust->residual_factor), double_bits(trust->residual_limit),
            double_bits(trust->residual_cleared), double_bits(trust->update_period_s), trust->mean, trust->whitening);
-  }
-  if (const auto numbers = unrounded_numbers<Scalar>(records); !numbers.empty()) {
-    record(BlockRecord::unrounded, optional, numbers);
   }
   if (facts.has_bias) record(BlockRecord::bias, optional, facts.bias_time_constants_s);
   const std::vector<unsigned char> provenance = closed(provenance_texts(records));
@@ -147,9 +114,6 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
     throw std::invalid_argument("export: name, training data and loss of a model are too long together");
   }
   record(BlockRecord::provenance, optional, provenance);
-  Bytes hash;
-  hash.add(hash_of_records(out.bytes.data(), out.bytes.size(), out.bytes.data() + own));
-  std::copy(hash.bytes.begin(), hash.bytes.end(), out.bytes.begin() + static_cast<std::ptrdiff_t>(own));
   Bytes all;
   all.add(count);
   all.add(static_cast<std::uint32_t>(out.bytes.size()));
@@ -157,10 +121,10 @@ std::vector<unsigned char> block_records(const WrittenRecords& records) {
   return std::move(all.bytes);
 }
 
-/// The fixed header of a block, but for its length.
+/// The fixed header of a block, but for its length and its own hash.
 struct BlockCounts {
   std::uint64_t scalar_bytes, inputs, outputs, parameters, golden_vectors, training_rows, shape_hash,
-      training_data_hash;
+      training_data_hash, contents_hash;
 };
 
 /// Header, records, scalars, checksum. Throws std::invalid_argument where a count does not fit its 32 bits.

@@ -84,9 +84,9 @@ LearntModel<Scalar> learnt_model(const OnboardInverse<Scalar>& learner, const st
   }
   using Model = LearntModel<Scalar>;
   using Base = typename Model::Network;
-  using Sum = AffineSum<Scalar>;
+  using Sum = detail::AffineSum<Scalar>;
   Model model{GivenAirframe(airframe, airframe_in<double>(flown))};
-  const AffineInverse<Scalar> inverse = affine_inverse(learner.forward());
+  const detail::AffineInverse<Scalar> inverse = detail::affine_inverse(learner.forward());
   // places among InverseFeatures: own rate and product of the axis, and the rest of AffineSum's
   constexpr int rates = 4, products = 7, velocity = 13, squares = 16;
   for (int k = 0; k < 4; ++k) {

@@ -22,19 +22,19 @@
 
 namespace pinnquad {
 
-/// A structured model of one seed: judged, exported and asked as any other.
-struct StructuredFit : detail::SeedFit {
-  GroundModel<float> model;
-};
-
 /// The fits of all seeds that were finished, in the order of the seeds. A model has its residual where that helps.
 struct StructuredFits {
+  /// A structured model of one seed: judged, exported and asked as any other.
+  struct Fit : detail::SeedFit {
+    GroundModel<float> model;
+  };
+
   FitWork::Altitude altitude;
-  std::vector<StructuredFit> models;
+  std::vector<Fit> models;
 
   /// The model with the least error on the validation rows. Throws std::logic_error where no model was finished.
-  const StructuredFit& best() const {
-    const auto less = [](const StructuredFit& a, const StructuredFit& b) {
+  const Fit& best() const {
+    const auto less = [](const Fit& a, const Fit& b) {
       return is_finite(a.validation_error) && !(b.validation_error <= a.validation_error);  // NaN is the worst
     };
     if (models.empty()) throw std::logic_error("structured fit: no model was finished");

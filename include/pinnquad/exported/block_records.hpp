@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reads the records of a model block (exported/model_block.hpp), and compares them with a shape.
+// Reads the records of a model block (exported/model_block.hpp), compares them with a shape, and checks all that a
+// block states beside it, for whoever opens it (exported/model_view.hpp, exported/run_time_model.hpp).
 #pragma once
 
 #include <cstddef>
@@ -41,28 +42,17 @@ struct BlockRecords : ModelFacts {
   const Scalar* allocation = nullptr;
   const unsigned char* airframe = nullptr;  ///< f64
   const Scalar* flown_airframe = nullptr;
-  std::uint64_t contents_hash = 0;
-  const unsigned char* records_hash = nullptr;  ///< u64, of all records
-  const unsigned char* trust = nullptr;         ///< five f64
-  const unsigned char* slope_signs = nullptr;   ///< of an older writer, as the next
-  const Scalar* residual_range = nullptr;
+  const unsigned char* trust = nullptr;  ///< five f64
   const Scalar* affine = nullptr;
-  const unsigned char* unrounded = nullptr;  ///< twenty f64
-  const unsigned char* whole = nullptr;      ///< the first record
-  std::size_t whole_bytes = 0;
   std::uint32_t seen = 0;  ///< a bit per type
   StatedFault fault{};     ///< where take() refuses
 
   constexpr bool said(BlockRecord record) const noexcept { return (seen >> static_cast<unsigned>(record) & 1u) != 0; }
-  /// An older writer's word that its monotony is proven.
-  constexpr bool claims_proof() const noexcept {
-    return said(BlockRecord::slope_signs) || said(BlockRecord::certificate);
-  }
   /// Says all that a block must.
   constexpr bool describes_itself() const noexcept {
-    constexpr BlockRecord must[] = {BlockRecord::commands,   BlockRecord::clock,   BlockRecord::window,
-                                    BlockRecord::allocation, BlockRecord::answer,  BlockRecord::features,
-                                    BlockRecord::outputs,    BlockRecord::vehicle, BlockRecord::contents};
+    constexpr BlockRecord must[] = {BlockRecord::commands,   BlockRecord::clock,  BlockRecord::window,
+                                    BlockRecord::allocation, BlockRecord::answer, BlockRecord::features,
+                                    BlockRecord::outputs,    BlockRecord::vehicle};
     bool all = true;
     for (const BlockRecord record : must) all = all && said(record);
     return all;
@@ -76,8 +66,7 @@ struct BlockRecords : ModelFacts {
         record_lengths(sizeof(Scalar), static_cast<std::uint32_t>(inputs), static_cast<std::uint32_t>(outputs_count));
     const std::uint32_t sized = lengths.of[static_cast<unsigned>(type)];
     fault = {StatedNumber::layout};
-    const bool is_older = type == BlockRecord::contents && length == 8;
-    if (sized != 0 && length != sized && !is_older) return Status::block_corrupt;
+    if (sized != 0 && length != sized) return Status::block_corrupt;
     const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes));  // at a multiple of 8
     const BlockText text{bytes, length};
     const FiniteNumber finite{};
@@ -117,8 +106,6 @@ struct BlockRecords : ModelFacts {
         beats_linear_regression = (bits & judged_bits(false, true)) != 0;
         break;
       }
-      case BlockRecord::slope_signs: slope_signs = bytes; break;
-      case BlockRecord::residual_range: residual_range = scalars; break;
       case BlockRecord::answer: answer = text; break;
       case BlockRecord::features: features = text; break;
       case BlockRecord::outputs: outputs = text; break;
@@ -130,10 +117,6 @@ struct BlockRecords : ModelFacts {
         vehicle_name = {bytes + exact + flown, length - exact - flown};
         break;
       }
-      case BlockRecord::contents:
-        contents_hash = read_u64(bytes);
-        if (!is_older) records_hash = bytes + 8;
-        break;
       case BlockRecord::trust: {
         double limits[5];
         std::memcpy(static_cast<double*>(limits), bytes, sizeof limits);
@@ -145,7 +128,6 @@ struct BlockRecords : ModelFacts {
         if (!is_triangle(mean + inputs, inputs)) return refuse(StatedNumber::trust_whitening);
         break;
       }
-      case BlockRecord::certificate: break;
       case BlockRecord::provenance: {
         provenance = text;
         std::uint32_t ends = 0;
@@ -161,7 +143,6 @@ struct BlockRecords : ModelFacts {
         affine = scalars;
         if (!are_finite(finite, scalars, length / sizeof(Scalar))) return refuse(StatedNumber::affine);
         break;
-      case BlockRecord::unrounded: unrounded = bytes; break;
     }
     fault = {};
     return Status::ok;
@@ -188,15 +169,13 @@ Status read_records(const unsigned char* first, std::size_t available, std::size
   if (bytes % 8 != 0 || bytes > available - Header::record_counts) return Status::block_corrupt;
   const unsigned char* at = first + Header::record_counts;
   std::size_t left = bytes;
-  records.whole = at;
-  records.whole_bytes = bytes;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (left < Header::record_head) return Status::block_corrupt;
     const std::uint32_t word = read_u32(at);
     const std::uint32_t length = read_u32(at + 4);
     if (word > 0xffff || length > left - Header::record_head) return Status::block_corrupt;
     const std::uint32_t type = word & (mandatory_record - 1u);
-    if (is_block_record(type)) {
+    if (type >= 1 && type <= block_record_types) {
       if ((records.seen >> type & 1u) != 0) return Status::block_corrupt;
       records.seen |= 1u << type;
       const Status status =
@@ -216,6 +195,44 @@ Status read_records(const unsigned char* first, std::size_t available, std::size
   if (records.fault.number != StatedNumber::none) return Status::block_corrupt;
   size = Header::record_counts + bytes;
   return Status::ok;
+}
+
+/// The scalars of a block, in the block.
+template <class Scalar>
+struct BlockNumbers {
+  const Scalar* first = nullptr;
+  std::size_t inputs = 0, outputs = 0, golden = 0, parameter_count = 0;
+
+  Scales<Scalar> scales() const noexcept {
+    const Scalar* output = first + 2 * inputs;
+    const Scalar* envelope = output + 2 * outputs;
+    return {first, first + inputs, output, output + outputs, envelope, envelope + inputs};
+  }
+  const Scalar* golden_features() const noexcept { return first + 4 * inputs + 2 * outputs; }
+  const Scalar* golden_commands() const noexcept { return golden_features() + golden * inputs; }
+  const Scalar* parameters() const noexcept { return golden_commands() + golden * rotor_count; }
+};
+
+/// The first fault of the numbers of a block whose records were read and fit its shape, and of its hash.
+template <class Scalar>
+StatedNumber fault_of_block(const unsigned char* block, const BlockRecords<Scalar>& said,
+                            const BlockNumbers<Scalar>& numbers) noexcept {
+  using Header = ModelBlockHeader;
+  const Scales<Scalar> scales = numbers.scales();
+  const std::size_t inputs = numbers.inputs;
+  const Scalar* features = numbers.golden_features();
+  const Scalar* commands = numbers.golden_commands();
+  const StatedNumber fault = fault_of_numbers(
+      FiniteNumber{}, scales, inputs, numbers.outputs, numbers.parameters(), numbers.parameter_count,
+      [&](std::size_t i) { return features + i * inputs; }, [&](std::size_t i) { return commands + i * rotor_count; },
+      numbers.golden);
+  if (fault != StatedNumber::none) return fault;
+  if (said.trust != nullptr) {
+    const auto* mean = static_cast<const Scalar*>(static_cast<const void*>(said.trust + 5 * sizeof(double)));
+    if (!inside_envelope(scales.lower, mean, scales.upper, inputs)) return StatedNumber::trust_mean;
+  }
+  const bool same = hash_of_block(block, read_u32(block + Header::length)) == read_u64(block + Header::own_hash);
+  return same ? StatedNumber::none : StatedNumber::contents;
 }
 
 /// Entries of a matrix that is stored row by row.

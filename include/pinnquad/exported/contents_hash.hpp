@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Two hashes that header and block state of a model. shape_hash: what its numbers are for. contents_hash: all that
-// counts. The writer makes them (deploy/header_writer.hpp); compiler and readers make them again, and refuse a model
-// that was edited afterwards. They find accidents, not forgeries.
+// Two hashes that header and block state of a model. shape_hash: what its numbers are for. contents_hash: all of a
+// header that counts. The writer makes them (deploy/header_writer.hpp); the compiler makes them again, and refuses a
+// header that was edited afterwards; a block has a hash of its own beside them. They find accidents, not forgeries.
 //   contents_hash = sum over the facts of FNV-1a(name, value), in words of 32 bits: no order plays a part
 #pragma once
 
@@ -20,12 +20,13 @@
 
 namespace pinnquad {
 
-/// The format of blocks, and of both hashes: this library writes it and reads no other one.
-inline constexpr int model_format_version = 4;
+/// The format of blocks: this library writes it and reads no other one.
+inline constexpr int model_format_version = 5;
 
 namespace detail {
 
-/// The records that a reader of this format must understand, as contents_hash says them.
+/// Words that contents_hash begins with: its own format, and the records that a reader must understand.
+inline constexpr int contents_format = 4;
 inline constexpr std::array<std::string_view, 7> known_records = {"answer",  "commands",   "clock", "window",
                                                                   "columns", "allocation", "base"};
 
@@ -139,7 +140,7 @@ constexpr std::uint64_t contents_hash_of() noexcept {
   using Window = WindowOf<Features>;
   std::uint64_t sum = 0;
   const auto add = [&sum](std::string_view name, const auto& value) { sum += constant_hash(name, value); };
-  add("format_version", model_format_version);
+  add("format_version", contents_format);
   add("training_data_hash", M::training_data_hash);
   add("training_rows", M::training_rows);
   if constexpr (is_detected<StatedVerdictOf, M>) {

@@ -25,7 +25,8 @@ inline constexpr std::size_t model_block_alignment = 8;
 /// Byte offsets of the header's fields, and what they hold:
 ///   magic, u32 model_format_version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754),
 ///   u32 inputs, u32 outputs, u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(),
-///   u64 training data hash.
+///   u64 training data hash, u64 contents_hash of the header beside it (exported/contents_hash.hpp), u64
+///   hash_of_block().
 /// The records follow: u32 number of them, u32 bytes of them all, and each of them. Scalars follow:
 /// input mean and standard deviation, output mean and standard deviation, envelope lower and upper, golden features,
 /// golden commands, parameters (row-major, as in an exported header). The last four bytes are the CRC-32 of all before
@@ -41,7 +42,9 @@ struct ModelBlockHeader {
   static constexpr std::size_t training_rows = 36;
   static constexpr std::size_t shape_hash = 40;
   static constexpr std::size_t training_data_hash = 48;
-  static constexpr std::size_t size = 56;
+  static constexpr std::size_t contents_hash = 56;
+  static constexpr std::size_t own_hash = 64;
+  static constexpr std::size_t size = 72;
   static constexpr std::size_t checksum_size = 4;
   static constexpr std::size_t record_counts = 8;  ///< number of the records and bytes of them all, before the first
   static constexpr std::size_t record_head = 8;    ///< of each record: its type and length
@@ -62,24 +65,16 @@ enum class BlockRecord : std::uint16_t {
   allocation = 5,  ///< 16 scalars, row-major
   base = 6,        ///< description of what the outputs add to
   verdict = 7,     ///< u32 detail::judged_bits(), u32 0; optional
-  // an older writer said twice what parameters and airframe say: contents_hash is over 8 and 9; 10 is skipped
-  slope_signs = 8,     ///< 12 x i8: of du_i/d(angular acceleration), rotor by rotor about x, y, z; optional
-  residual_range = 9,  ///< scalars: lower bounds of all outputs, then upper ones; optional
   // with those a block describes itself (exported/run_time_model.hpp)
-  answer = 11,    ///< description of the predictor (model/description.hpp)
-  features = 12,  ///< name and unit of each feature, every text closed by a 0
-  outputs = 13,   ///< description of the output schema, then name and unit of each output, every text closed by a 0
-  vehicle = 14,   ///< each_number() of the airframe in f64, the same in scalars as it flies, its name
-  contents = 15,  ///< u64 contents_hash of the header beside it (exported/contents_hash.hpp), u64 hash_of_records();
-                  ///< an older writer left the second one out
-  trust = 16,  ///< f64 limit of the squared distance; factor, limit, cleared, period of the command residual; scalars:
+  answer = 8,    ///< description of the predictor (model/description.hpp)
+  features = 9,  ///< name and unit of each feature, every text closed by a 0
+  outputs = 10,  ///< description of the output schema, then name and unit of each output, every text closed by a 0
+  vehicle = 11,  ///< each_number() of the airframe in f64, the same in scalars as it flies, its name
+  trust = 12,  ///< f64 limit of the squared distance; factor, limit, cleared, period of the command residual; scalars:
                ///< means of all features, whitening triangle column by column; optional
-  certificate = 17,  ///< of an older writer, 12 f64; read as the word that there is one; optional
-  provenance = 18,   ///< name and value in turn, every text closed by a 0; optional
-  affine = 19,       ///< scalars: commands at outputs 0, then by each output, of a schema that no library has; optional
-  bias = 20,         ///< scalars: time constants of the bias of the four signed sums, s, 0 none is learnt; optional
-  unrounded = 21,    ///< f64 of the header that the records above round: lower and upper command, sample period s, lag
-                     ///< removed s, 16 of the allocation; where contents_hash can't be computed from those; optional
+  provenance = 13,  ///< name and value in turn, every text closed by a 0; optional
+  affine = 14,      ///< scalars: commands at outputs 0, then by each output, of a schema that no library has; optional
+  bias = 15,        ///< scalars: time constants of the bias of the four signed sums, s, 0 none is learnt; optional
 };
 
 /// Bit of a record's type: a reader that does not know the record refuses the block.
@@ -87,10 +82,7 @@ inline constexpr std::uint16_t mandatory_record = 0x8000;
 
 namespace detail {
 
-inline constexpr std::uint32_t block_record_types = 21;
-PINNQUAD_ALWAYS_INLINE constexpr bool is_block_record(std::uint32_t type) noexcept {
-  return type >= 1 && type <= block_record_types && type != 10;
-}
+inline constexpr std::uint32_t block_record_types = 15;
 
 /// The most bytes of a block's provenance.
 inline constexpr std::uint32_t longest_provenance = 4096;
@@ -117,28 +109,9 @@ struct RecordLengths {
 };
 constexpr RecordLengths record_lengths(std::uint32_t scalar, std::uint32_t inputs, std::uint32_t outputs) noexcept {
   constexpr std::uint32_t rotors = rotor_count;
-  return {{0,
-           8 + 2 * scalar,
-           8,
-           8,
-           0,
-           4 * rotors * scalar,
-           0,
-           8,
-           3 * rotors,
-           2 * outputs * scalar,
-           0,
-           0,
-           0,
-           0,
-           0,
-           16,
-           5 * 8 + (inputs + std::uint32_t(triangle(inputs))) * scalar,
-           12 * 8,
-           0,
-           rotors * (1 + outputs) * scalar,
-           4 * scalar,
-           (4 + 4 * rotors) * 8}};
+  return {{0, 8 + 2 * scalar, 8, 8, 0, 4 * rotors * scalar, 0, 8, 0, 0, 0, 0,
+           5 * 8 + (inputs + std::uint32_t(triangle(inputs))) * scalar, 0, rotors * (1 + outputs) * scalar,
+           4 * scalar}};
 }
 
 /// The bytes of texts, each closed by a 0.
@@ -275,6 +248,18 @@ inline Status check_block(const unsigned char* block, std::size_t available, con
                     read_u32(block + Header::parameters) == expected.parameters &&
                     read_u64(block + Header::shape_hash) == expected.shape_hash;
   return fits ? Status::ok : Status::block_incompatible;
+}
+
+/// FNV-1a over the words of 32 bits of a block, but for this hash and the checksum: an edited block is refused, though
+/// its checksum was made again. `length`: of the block, a multiple of 4.
+inline std::uint64_t hash_of_block(const unsigned char* block, std::size_t length) noexcept {
+  using Header = ModelBlockHeader;
+  std::uint64_t hash = Fnv1a{}.hash;
+  for (std::size_t at = 0; at < length - Header::checksum_size; at += 4) {
+    if (at == Header::own_hash) at = Header::size;
+    hash = (hash ^ read_u32(block + at)) * ConstantHash::prime;
+  }
+  return hash;
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

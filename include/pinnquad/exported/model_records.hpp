@@ -146,12 +146,7 @@ constexpr bool same_allocation(const Get& get, const Expected& expected) noexcep
 }
 
 constexpr std::uint32_t nanoseconds(double seconds) noexcept { return static_cast<std::uint32_t>(seconds * 1e9 + 0.5); }
-/// The double nearest to it, under any maths: contents_hash is over its bits. A compiler that may rearrange maths, as
-/// PX4's is, makes a division by a constant a product, whose last bit is another; it does not know a volatile's value.
-inline double seconds_of(std::uint32_t nanoseconds) noexcept {
-  const volatile double per_second = 1e9;
-  return nanoseconds / per_second;
-}
+constexpr double seconds_of(std::uint32_t nanoseconds) noexcept { return nanoseconds / 1e9; }
 
 constexpr bool same_period_ns(std::uint32_t a, std::uint32_t b) noexcept {
   const std::uint32_t difference = a < b ? b - a : a - b;

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "pinnquad/core/finite.hpp"
-#include "pinnquad/exported/block_contents.hpp"
+#include "pinnquad/exported/block_records.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/exported/model_block.hpp"
 #include "pinnquad/model/predictor.hpp"
@@ -128,14 +128,9 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
     if (golden == 0 || Layout::length(golden) != whole - record_bytes) return Status::block_corrupt;
     // aligned, and of this scalar type: the header says so
     const auto* scalars = static_cast<const Scalar*>(static_cast<const void*>(bytes + Header::size + record_bytes));
-    const detail::BlockNumbers<Scalar> numbers{scalars,
-                                               Layout::inputs,
-                                               Layout::outputs,
-                                               golden,
-                                               Layout::parameter_count,
-                                               detail::read_u32(bytes + Header::training_rows),
-                                               detail::read_u64(bytes + Header::training_data_hash)};
-    if (!sound(numbers, records)) return Status::block_corrupt;
+    const detail::BlockNumbers<Scalar> numbers{scalars, Layout::inputs, Layout::outputs, golden,
+                                               Layout::parameter_count};
+    if (!sound(bytes, records, numbers)) return Status::block_corrupt;
 
     copy(scalars + Layout::input_mean, view.input.mean);
     copy(scalars + Layout::input_deviation, view.input.standard_deviation);
@@ -198,18 +193,13 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
     std::memcpy(&to, from, sizeof to);
   }
 
-  static bool sound(const detail::BlockNumbers<Scalar>& numbers, const detail::BlockRecords<Scalar>& records) noexcept {
-    constexpr auto allocation = pinnquad::allocation(airframe_value<typename ShapeType::Vehicle, double>());
-    constexpr detail::TorqueSigns signs = motor_torque_signs<typename ShapeType::Vehicle>();
-    const detail::BlockVehicle vehicle{detail::first_of<double>(allocation), detail::first_of<int>(signs)};
-    using detail::StatedNumber;
-    bool sound = detail::fault_of_block(records, numbers, vehicle) == StatedNumber::none;
+  static bool sound(const unsigned char* block, const detail::BlockRecords<Scalar>& records,
+                    const detail::BlockNumbers<Scalar>& numbers) noexcept {
+    bool sound = detail::fault_of_block(block, records, numbers) == detail::StatedNumber::none;
     if constexpr (has_certificate<ShapeType>) {
       constexpr auto certified =
           detail::certified_vehicle<typename ShapeType::Outputs>(airframe_value<typename ShapeType::Vehicle, Scalar>());
       sound &= certificate_of<ShapeType>(certified, numbers.parameters(), numbers.scales()).proven();
-    } else {
-      sound &= !records.said(BlockRecord::certificate);
     }
     return sound;
   }

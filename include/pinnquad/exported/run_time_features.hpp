@@ -16,29 +16,18 @@ namespace pinnquad {
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// A motion as any model may ask for it.
-template <class Scalar>
-struct RunTimeInputs : MotionInputsWithAltitude<Scalar> {
-  static constexpr int most_columns = 32;
-  std::array<Scalar, most_columns> columns{};  ///< in the order of RunTimeFeatures::column()
-};
-
-/// As of motions; columns linearly.
-template <class Scalar>
-RunTimeInputs<Scalar> interpolated(const RunTimeInputs<Scalar>& a, const RunTimeInputs<Scalar>& b,
-                                   Scalar share) noexcept {
-  using Motion = MotionInputsWithAltitude<Scalar>;
-  RunTimeInputs<Scalar> result;
-  static_cast<Motion&>(result) = interpolated(static_cast<const Motion&>(a), static_cast<const Motion&>(b), share);
-  for (std::size_t i = 0; i < result.columns.size(); ++i) {
-    result.columns[i] = a.columns[i] + share * (b.columns[i] - a.columns[i]);
-  }
-  return result;
-}
-
 /// The texts are read where they stand: they must stay there.
 class RunTimeFeatures {
  public:
+  static constexpr int most_features = 512;
+  static constexpr int most_columns = 32;
+
+  /// A motion as any model may ask for it.
+  template <class Scalar>
+  struct Inputs : MotionInputsWithAltitude<Scalar> {
+    std::array<Scalar, most_columns> columns{};  ///< in the order of column()
+  };
+
   /// The instants of a window, as detail::TapWindow.
   struct Window {
     static constexpr int most_taps = 64;
@@ -62,9 +51,6 @@ class RunTimeFeatures {
     int offset(int tap) const noexcept { return causal ? Causal::offset(taps, tap) : Centred::offset(taps, tap); }
     double offset_s(int tap) const noexcept { return offset(tap) * period_s; }
   };
-
-  static constexpr int most_features = 512;
-  static constexpr int most_columns = RunTimeInputs<float>::most_columns;
 
   /// A name and a unit.
   struct Named {
@@ -101,7 +87,7 @@ class RunTimeFeatures {
   int size() const noexcept { return size_; }
   const Named& operator[](int feature) const noexcept { return features_[feature].named; }
   const Window& window() const noexcept { return window_; }
-  /// Columns that it asks for, in the order of RunTimeInputs::columns.
+  /// Columns that it asks for, in the order of Inputs::columns.
   int column_count() const noexcept { return column_count_; }
   const Named& column(int index) const noexcept { return columns_[index]; }
   bool is_column(int feature) const noexcept { return features_[feature].source > altitude; }
@@ -125,7 +111,7 @@ class RunTimeFeatures {
   /// `inputs`: of each tap, the present one first. The first Status that is not ok: of the motion of every tap that is
   /// asked for something; `not_finite` for the altitude and columns that are asked for.
   template <class Scalar>
-  Status check(const RunTimeInputs<Scalar>* inputs) const noexcept {
+  Status check(const Inputs<Scalar>* inputs) const noexcept {
     for (int tap = 0; tap < window_.taps; ++tap) {
       const Status checked = check_tap(inputs[tap], tap);
       if (checked != Status::ok) return checked;
@@ -134,12 +120,12 @@ class RunTimeFeatures {
   }
   /// Checks the present instant alone: a window may still lack its past.
   template <class Scalar>
-  Status check_present(const RunTimeInputs<Scalar>& inputs) const noexcept {
+  Status check_present(const Inputs<Scalar>& inputs) const noexcept {
     return check_tap(inputs, 0);
   }
   /// Fills x[0..size()), physical units.
   template <class Scalar>
-  void extract(const RunTimeInputs<Scalar>* inputs, Scalar* x) const noexcept {
+  void extract(const Inputs<Scalar>* inputs, Scalar* x) const noexcept {
     for (int tap = 0; tap < window_.taps; ++tap) {
       Scalar named[NamedFeatures::size];
       NamedFeatures::extract(static_cast<const MotionInputs<Scalar>&>(inputs[tap]), static_cast<Scalar*>(named));
@@ -152,7 +138,7 @@ class RunTimeFeatures {
 
  private:
   template <class Scalar>
-  Status check_tap(const RunTimeInputs<Scalar>& inputs, int tap) const noexcept {
+  Status check_tap(const Inputs<Scalar>& inputs, int tap) const noexcept {
     bool finite = true;
     for (int i = 0; i < size_; ++i) {
       if (features_[i].tap != tap || features_[i].source < altitude) continue;
@@ -170,7 +156,7 @@ class RunTimeFeatures {
   };
 
   template <class Scalar>
-  static const Scalar& beside_motion(const RunTimeInputs<Scalar>& inputs, int source) noexcept {
+  static const Scalar& beside_motion(const Inputs<Scalar>& inputs, int source) noexcept {
     return source == altitude ? inputs.altitude_m : inputs.columns[std::size_t(source - altitude - 1)];
   }
 
@@ -233,6 +219,19 @@ class RunTimeFeatures {
   int size_ = 0;
   int column_count_ = 0;
 };
+
+/// As of motions; columns linearly.
+template <class Scalar>
+RunTimeFeatures::Inputs<Scalar> interpolated(const RunTimeFeatures::Inputs<Scalar>& a,
+                                             const RunTimeFeatures::Inputs<Scalar>& b, Scalar share) noexcept {
+  using Motion = MotionInputsWithAltitude<Scalar>;
+  RunTimeFeatures::Inputs<Scalar> result;
+  static_cast<Motion&>(result) = interpolated(static_cast<const Motion&>(a), static_cast<const Motion&>(b), share);
+  for (std::size_t i = 0; i < result.columns.size(); ++i) {
+    result.columns[i] = a.columns[i] + share * (b.columns[i] - a.columns[i]);
+  }
+  return result;
+}
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace pinnquad

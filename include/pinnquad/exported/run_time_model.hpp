@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "pinnquad/exported/block_contents.hpp"
+#include "pinnquad/exported/block_records.hpp"
 #include "pinnquad/exported/run_time_features.hpp"
 #include "pinnquad/exported/run_time_network.hpp"
 #include "pinnquad/exported/run_time_outputs.hpp"
@@ -54,9 +54,11 @@ class RunTimeModel {
     return numbers_.golden_features() + vector * features_.size();
   }
   const Scalar* golden_commands(int vector) const noexcept { return numbers_.golden_commands() + vector * rotor_count; }
-  std::uint32_t training_rows() const noexcept { return numbers_.training_rows; }
-  std::uint64_t training_data_hash() const noexcept { return numbers_.training_data_hash; }
-  std::uint64_t shape_hash() const noexcept { return shape_hash_; }
+  std::uint32_t training_rows() const noexcept { return detail::read_u32(block_ + Layout::training_rows); }
+  std::uint64_t training_data_hash() const noexcept { return detail::read_u64(block_ + Layout::training_data_hash); }
+  std::uint64_t shape_hash() const noexcept { return detail::read_u64(block_ + Layout::shape_hash); }
+  /// As the header beside the block states it.
+  std::uint64_t contents_hash() const noexcept { return detail::read_u64(block_ + Layout::contents_hash); }
 
   /// Entries of Scalar that commands() works in.
   std::size_t workspace() const noexcept {
@@ -151,8 +153,8 @@ class RunTimeModel {
     }
     if (checked != Status::ok) {
       if (!detail::has_magic(block)) return refuse(fault, checked, "a model block", "another file");
-      static_assert(model_format_version == 4);
-      fault = {"format 4 of a model block (of another: train and export again)", "",
+      static_assert(model_format_version == 5);
+      fault = {"format 5 of a model block (of another: train and export again)", "",
                static_cast<double>(detail::read_u32(block + Layout::version))};
       return checked;
     }
@@ -181,17 +183,15 @@ class RunTimeModel {
     if (behind - record_bytes != scalars * sizeof(Scalar)) {
       return refuse(fault, Status::block_corrupt, "counts that fit its length", "others");
     }
-    numbers_ = {static_cast<const Scalar*>(static_cast<const void*>(block + Layout::size + record_bytes)),
-                inputs,
-                outputs,
-                golden,
-                parameters,
-                detail::read_u32(block + Layout::training_rows),
-                detail::read_u64(block + Layout::training_data_hash)};
+    numbers_ = {static_cast<const Scalar*>(static_cast<const void*>(block + Layout::size + record_bytes)), inputs,
+                outputs, golden, parameters};
     scales_ = numbers_.scales();
-    shape_hash_ = detail::read_u64(block + Layout::shape_hash);
+    block_ = block;
     const Status described = describe(inputs, outputs, parameters, fault);
-    return described == Status::ok ? sound(fault) : described;
+    if (described != Status::ok) return described;
+    const detail::StatedNumber number = detail::fault_of_block(block, records_, numbers_);
+    return number == detail::StatedNumber::none ? Status::ok
+                                                : refuse(fault, Status::block_corrupt, detail::StatedFault{number});
   }
 
   static Status refuse(BlockFault& fault, Status status, const char* expected, const char* found) noexcept {
@@ -237,8 +237,8 @@ class RunTimeModel {
     if (!detail::same_allocation<Scalar>(detail::RowMajorAllocation<Scalar>{records_.allocation}, expected)) {
       return corrupt("the allocation of its airframe", "another");
     }
-    return own_shape_hash() == shape_hash_ ? Status::ok
-                                           : corrupt("a description that its shape's hash is of", "another");
+    return own_shape_hash() == shape_hash() ? Status::ok
+                                            : corrupt("a description that its shape's hash is of", "another");
   }
 
   /// True where each column that it says is one: a column may have the name of what is worked out from the motion.
@@ -314,16 +314,6 @@ class RunTimeModel {
     return fnv.hash;
   }
 
-  /// Numbers and contents, as ModelView::open() wants them.
-  Status sound(BlockFault& fault) const noexcept {
-    const AllocationMatrix<double> own = allocation(airframe_);
-    const detail::TorqueSigns signs = motor_torque_signs(airframe_);
-    const detail::BlockVehicle vehicle{detail::first_of<double>(own), detail::first_of<int>(signs)};
-    const detail::StatedNumber number = detail::fault_of_block(records_, numbers_, vehicle);
-    if (number == detail::StatedNumber::none) return Status::ok;
-    return refuse(fault, Status::block_corrupt, detail::StatedFault{number});
-  }
-
   RunTimeNetwork network_;
   RunTimeFeatures features_;
   RunTimeOutputs<Scalar> outputs_;
@@ -333,7 +323,7 @@ class RunTimeModel {
   std::string_view schema_, output_texts_;
   detail::BlockNumbers<Scalar> numbers_;
   detail::Scales<Scalar> scales_{};
-  std::uint64_t shape_hash_ = 0;
+  const unsigned char* block_ = nullptr;
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

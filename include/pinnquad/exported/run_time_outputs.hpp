@@ -16,12 +16,12 @@
 
 namespace pinnquad {
 
+namespace detail {
+
 /// The output schemas of the library. A block names one by its description.
 using OutputSchemas =
     std::tuple<CommandOutputs, RotorSpeedOutputs, AxisCommandOutputs, WrenchOutputs, AccelerationOutputs,
                ResidualOutputs<LinearizedBase>, ResidualOutputs<RigidBodyBase>, SignedSumsOn<RigidBodyBase>>;
-
-namespace detail {
 
 template <class Schema, class List>
 inline constexpr bool is_among = false;
@@ -51,9 +51,10 @@ inline namespace PINNQUAD_INSTRUCTION_SET {
 /// Commands of outputs, and their derivatives, in `Number`.
 template <class Number>
 class RunTimeOutputs {
-  using Settings = detail::SchemaSettings<Number, OutputSchemas>;
+  using Settings = detail::SchemaSettings<Number, detail::OutputSchemas>;
 
  public:
+  using Schemas = detail::OutputSchemas;
   /// Features that a base may read: the first of them.
   static constexpr int base_features = 16;
   /// Outputs that a schema may have.
@@ -174,7 +175,7 @@ class RunTimeOutputs {
  private:
   template <class Use, std::size_t... Place>
   static void each_of(const Use& use, std::index_sequence<Place...>) noexcept {
-    (use(std::tuple_element_t<Place, OutputSchemas>{}, Place), ...);
+    (use(std::tuple_element_t<Place, Schemas>{}, Place), ...);
   }
   template <class Use>
   static void each_schema(const Use& use) noexcept {
@@ -182,7 +183,7 @@ class RunTimeOutputs {
   }
   template <class Schema, std::size_t... Place>
   static constexpr std::size_t place_among(std::index_sequence<Place...>) noexcept {
-    return ((std::is_same_v<Schema, std::tuple_element_t<Place, OutputSchemas>> ? Place : 0) + ...);
+    return ((std::is_same_v<Schema, std::tuple_element_t<Place, Schemas>> ? Place : 0) + ...);
   }
   template <class Schema>
   static constexpr std::size_t place_of = place_among<Schema>(std::make_index_sequence<Settings::count>{});

@@ -40,8 +40,6 @@ enum class StatedNumber : std::uint8_t {
   trust_period_s,
   trust_mean,
   trust_whitening,
-  unrounded,
-  certificate,
   r_squared,
   judged_figures,
   seed,
@@ -98,8 +96,6 @@ inline constexpr StatedRange stated_ranges[] = {
     {1e-5, longest_clock_s, false, "a period of 0.00001 to 4 s (record trust, update_period_s)", ""},
     {0, 0, false, "a mean inside the envelope (record trust, distribution_mean)", "one outside of it"},
     {0, 0, false, "numbers, above 0 on the diagonal (record trust, whitening)", "others"},
-    {0, 0, false, "numbers that round to those of commands, clock and allocation (record unrounded)", "others"},
-    {0, 0, false, "the slopes and bounds that its weights give (record certificate)", "others"},
     {-no_bound, 1, false, "an R^2 of at most 1 (record provenance)", "another"},
     {0, 0, false, "a verdict that its R^2 bear out (records verdict and provenance)", "another"},
     {0, 0, false, "a seed that is a whole number (record provenance)", "another"},
@@ -113,7 +109,7 @@ inline constexpr StatedRange stated_ranges[] = {
      "another"},
     {0, 0, false, "golden commands that are numbers", "NaN or Inf"},
     {0, 0, false, "golden vectors of numbers inside the envelope", "one outside of it"},
-    {0, 0, false, "contents of which its hash is (record contents)", "others: it was edited after its export"},
+    {0, 0, false, "contents of which its hash is", "others: it was edited after its export"},
 };
 static_assert(sizeof stated_ranges / sizeof stated_ranges[0] == std::size_t(StatedNumber::count));
 

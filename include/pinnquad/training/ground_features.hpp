@@ -61,7 +61,7 @@ GroundFeatures::EachRow rows_of_features() {
 template <class Scalar>
 class RunTimeFlightInputs {
  public:
-  using Inputs = RunTimeInputs<Scalar>;
+  using Inputs = RunTimeFeatures::Inputs<Scalar>;
 
   RunTimeFlightInputs(const RunTimeFeatures& features, const FlightRows& rows)
       : features_(&features), rows_(rows), kept_(features.window().taps > 1 ? 128 : 0) {

@@ -147,7 +147,7 @@ TEST_CASE("of errors that are not finite none is the best") {
   StructuredSettings settings = quick(Altitude::no);
   settings.seeds = 1;
   StructuredFits fits = fitted(settings);
-  const StructuredFit one = fits.models.front();
+  const StructuredFits::Fit one = fits.models.front();
   fits.models.assign(4, one);
   const double errors[] = {std::nan(""), 0.2, 0.1, std::nan("")};
   for (std::size_t i = 0; i < 4; ++i) fits.models[i].validation_error = errors[i];

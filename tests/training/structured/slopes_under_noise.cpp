@@ -45,7 +45,7 @@ Flight flown(double gyro_noise_rad_s, std::size_t samples) {
   return flight;
 }
 
-StructuredFit fitted(const Flight& flight, bool pinned = false) {
+StructuredFits::Fit fitted(const Flight& flight, bool pinned = false) {
   StructuredSettings settings;
   settings.residual.epochs = 3;
   settings.altitude = StructuredSettings::Altitude::no;
@@ -59,14 +59,14 @@ const Flight& noisy() {
   static const Flight flight = flown(0.03, quiet().size());
   return flight;
 }
-const StructuredFit& noisy_fit() {
-  static const StructuredFit fit = fitted(noisy());
+const StructuredFits::Fit& noisy_fit() {
+  static const StructuredFits::Fit fit = fitted(noisy());
   return fit;
 }
 
-Certificate certificate_of_fit(const StructuredFit& fit) { return *fit.model.written.certificate; }
+Certificate certificate_of_fit(const StructuredFits::Fit& fit) { return *fit.model.written.certificate; }
 
-double error_on(const StructuredFit& fit, const Flight& flight) {
+double error_on(const StructuredFits::Fit& fit, const Flight& flight) {
   const RowSet rows(flight, {0, flight.size()});
   return model_errors(fit.model, rows).mean.mean_absolute;
 }
@@ -79,7 +79,7 @@ using Setting = Context<InverseFeatures, PaperQuadrotor, AxisCommandOutputs>;
 }  // namespace
 
 TEST_CASE("noise of the gyro bends the slopes of least squares; those by smoothed rows are the airframe's") {
-  const StructuredFit& fit = noisy_fit();
+  const StructuredFits::Fit& fit = noisy_fit();
   const Certificate certificate = certificate_of_fit(fit);
   CHECK(certificate.proven());
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -108,7 +108,7 @@ TEST_CASE("of a quiet flight least squares are kept to the bit, with intervals")
   const Flight flight = flown(0, 2500);
   const Dataset dataset(flight);
   const RowSplit split = split_for_training(dataset);
-  const StructuredFit fit = fitted(flight);
+  const StructuredFits::Fit fit = fitted(flight);
   const auto context = make_context<Setting>(split.train);
   const auto base = monotone_base<Setting>(fit_monotone_base(context, split.train));
   CHECK_FALSE(fit.slopes.smoothed());
@@ -125,7 +125,7 @@ TEST_CASE("of a quiet flight least squares are kept to the bit, with intervals")
 }
 
 TEST_CASE("pinned slopes are not measured, nor those about the axes of a window, nor of few rows") {
-  const StructuredFit pinned = fitted(flown(0.03, 1500), true);
+  const StructuredFits::Fit pinned = fitted(flown(0.03, 1500), true);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CHECK_FALSE(pinned.slopes.of[1 + axis].known);
     CHECK(certificate_of_fit(pinned).slope[axis] == doctest::Approx(own[axis]).epsilon(1e-5));
@@ -230,7 +230,7 @@ TEST_CASE("neighbours are a tenth of a second away, and none is beyond a gap or 
 }
 
 TEST_CASE("rows to judge by are nearer to the truth than those with noise, and all else is as it was") {
-  const StructuredFit& fit = noisy_fit();
+  const StructuredFits::Fit& fit = noisy_fit();
   const RowSet rows(noisy(), {100, 600});
   const Dataset dataset(noisy());
   const FitContext context = fit_context(make_context<Setting>(split_for_training(dataset).train));

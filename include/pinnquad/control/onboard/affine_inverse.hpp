@@ -9,7 +9,7 @@
 #include "pinnquad/control/onboard/forward_model.hpp"
 #include "pinnquad/nn/kernel/portable.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
 /// y = constant + by . x + by_turn wdot, of one signed sum. x: s_z, the own body rate and the product of the two others
 /// (roll, pitch, yaw; none of thrust), v_x, v_y, v_z, v_z |v_z|. wdot: the own angular acceleration. In that order and
@@ -24,7 +24,7 @@ struct AffineSum {
   Scalar by_total{0};  ///< that of the sum of thrust, which is in the others already; a bias of it is not
 
   /// `k`: which sum it is.
-  Scalar of(std::size_t k, const detail::SumMotion<Scalar>& motion) const noexcept {
+  Scalar of(std::size_t k, const SumMotion<Scalar>& motion) const noexcept {
     const Vector3<Scalar>&v = motion.velocity_m_s, &w = motion.body_rates_rad_s;
     const auto axis = k == 0 ? 0 : static_cast<int>(k) - 1;
     const std::array<Scalar, feature_count> x{motion.accelerations[0],
@@ -49,10 +49,10 @@ template <class Scalar>
 AffineInverse<Scalar> affine_inverse(const ForwardModel<Scalar>& model) noexcept {
   using Sum = AffineSum<Scalar>;
   AffineInverse<Scalar> inverse{};
-  std::array<std::array<Scalar, detail::rise_term>, 4> by_term{};
+  std::array<std::array<Scalar, rise_term>, 4> by_term{};
   for (std::size_t k = 0; k < 4; ++k) {
     const Scalar by_own = Scalar(1) / model[k].slope();
-    for (std::size_t i = 0; i < detail::rise_term; ++i) by_term[k][i] = -model[k].theta[i] * by_own;
+    for (std::size_t i = 0; i < rise_term; ++i) by_term[k][i] = -model[k].theta[i] * by_own;
     inverse[k].constant = by_term[k][0];
     inverse[k].by_turn = by_own;
   }
@@ -73,4 +73,4 @@ AffineInverse<Scalar> affine_inverse(const ForwardModel<Scalar>& model) noexcept
   return inverse;
 }
 
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

@@ -7,25 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "pinnquad/control/onboard/onboard_settings.hpp"
 #include "pinnquad/dynamics/state.hpp"
 
 namespace pinnquad {
-
-/// Two sines on each sum, of frequencies that none of the others has.
-template <class Scalar>
-struct ExcitationSettings {
-  /// The two of a sum.
-  struct Sines {
-    Scalar slow, fast;        ///< amplitudes, m/s^2 (thrust, along z) or rad/s^2
-    Scalar slow_Hz, fast_Hz;  ///< multiples of 0.1 Hz: it repeats every 10 s
-  };
-  std::array<Sines, 4> sums{
-      Sines{Scalar(0.6), Scalar(0.8), Scalar(0.7), Scalar(1.7)}, Sines{Scalar(2), Scalar(5), Scalar(1.1), Scalar(2.3)},
-      Sines{Scalar(2), Scalar(5), Scalar(1.4), Scalar(2.9)}, Sines{Scalar(0.5), Scalar(1.5), Scalar(0.5), Scalar(1.3)}};
-  Scalar most_of_sum = Scalar(0.4);    ///< no sine asks for more of a signed sum of thrust fractions
-  Scalar share_unknown = Scalar(0.7);  ///< of them, where nobody asked for sines, while the sum is unknown
-  Scalar rise_s = Scalar(0.3);
-};
 
 namespace detail {
 /// Amplitudes of a sum's sines.
@@ -35,8 +20,8 @@ struct SineAmplitudes {
 };
 /// Within the authority of the sum. `slope`: its acceleration for each unit of it.
 template <class Scalar>
-SineAmplitudes<Scalar> sine_amplitudes(const ExcitationSettings<Scalar>& settings, std::size_t k, Scalar slope,
-                                       Scalar share) noexcept {
+SineAmplitudes<Scalar> sine_amplitudes(const typename OnboardSettings<Scalar>::Excitation& settings, std::size_t k,
+                                       Scalar slope, Scalar share) noexcept {
   const auto& sines = settings.sums[k];
   const Scalar most = settings.most_of_sum * (slope < Scalar(0) ? -slope : slope);
   return {share * (sines.slow < most ? sines.slow : most), share * (sines.fast < most ? sines.fast : most)};
@@ -51,7 +36,7 @@ Scalar sine_time_s(std::uint64_t since_us) noexcept {
 
 /// The accelerations to add at a time after the first: along z, m/s^2, and angular, rad/s^2. `slopes`: of the sums.
 template <class Scalar>
-Accelerations<Scalar> excitation(const ExcitationSettings<Scalar>& settings, std::uint64_t since_us,
+Accelerations<Scalar> excitation(const typename OnboardSettings<Scalar>::Excitation& settings, std::uint64_t since_us,
                                  const std::array<Scalar, 4>& slopes, const std::array<Scalar, 4>& shares) noexcept {
   using std::sin;
   constexpr Scalar two_pi = Scalar(6.283185307179586);

@@ -90,7 +90,7 @@ class OnboardInverse {
     const Accelerations<Scalar> added = sines(now_us);
     const detail::SumMotion<Scalar> motion = detail::sum_motion(
         motion_inputs(state, {wanted.linear_m_s2 + added.linear_m_s2, wanted.angular_rad_s2 + added.angular_rad_s2}));
-    const AffineInverse<Scalar> inverse = affine_inverse(forward());
+    const detail::AffineInverse<Scalar> inverse = detail::affine_inverse(forward());
     const SignedSums<Scalar>& bias = bias_.sums();
     SignedSums<Scalar> sums{};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -128,7 +128,7 @@ class OnboardInverse {
   /// The sums that were proposed last, whether they will fly or not.
   const OnboardCertificate<Scalar>& candidate() const noexcept { return candidate_; }
   const OnboardSettings<Scalar>& settings() const noexcept { return settings_; }
-  const LateralDrag<Scalar>& drag() const noexcept { return drag_; }
+  const detail::LateralDrag<Scalar>& drag() const noexcept { return drag_; }
   const MotionBias<Scalar>& bias() const noexcept { return bias_; }
   std::uint32_t rows() const noexcept { return rows_; }  ///< since the start
   /// The start with the slopes that fly, for limits and desaturation: thrust by coefficient, torques by inertia.
@@ -385,7 +385,7 @@ class OnboardInverse {
   std::array<Scalar, 4> past_square_{}, watched_square_{}, first_square_{};  ///< over two seconds; the first two
   std::array<std::uint32_t, 4> watched_rows_{};
   detail::SineAnswer<Scalar> answer_{}, second_{};  ///< of the rows remembered, and of the last second
-  LateralDrag<Scalar> drag_{};
+  detail::LateralDrag<Scalar> drag_{};
   FlownMotion<Scalar, RotorFollower<Scalar, 0>> motion_;
   detail::LagBank<Scalar> bank_;
   MotionBias<Scalar> bias_;

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "pinnquad/control/onboard/forward_model.hpp"
+#include "pinnquad/control/onboard/onboard_settings.hpp"
 #include "pinnquad/core/finite.hpp"
 
 namespace pinnquad {
@@ -51,19 +52,20 @@ constexpr const char* to_string(OnboardRule rule) noexcept {
   return "unknown rule";
 }
 
-/// Settings of the proof; each of a sum: thrust, roll, pitch, yaw.
+/// Certificate of a signed sum as it flies.
 template <class Scalar>
-struct ProofSettings {
-  Scalar least_rows = Scalar(60);
-  Scalar most_contradiction = Scalar(9);  ///< mean square of the judged rows over that of its own
-  Scalar most_late_s = Scalar(0.012);     ///< a state comes so much later than lag and delay say, by the rise
-  Scalar least_share = Scalar(0.1);       ///< of the sines' acceleration that is made
-  /// Share of the slope by which the slope of the sines may differ; less sharp than its interval.
-  std::array<Scalar, 4> most_disagreement{Scalar(0.25), Scalar(0.5), Scalar(0.5), Scalar(0.25)};
-  std::array<Scalar, 4> most_half_width{Scalar(0.15), Scalar(0.15), Scalar(0.15), Scalar(0.15)};  ///< over the slope
-  /// In units of a sum, over the envelope; wider for yaw, which has little torque and gives way first.
-  std::array<Scalar, 4> most_by_terms{Scalar(1.2), Scalar(0.8), Scalar(0.8), Scalar(1.6)};
+struct OnboardSum {
+  ForwardSum<Scalar> forward{};
+  bool proven = false;                              ///< false: the start's
+  OnboardRule refused_last{OnboardRule::few_rows};  ///< it refused a candidate last; `none` once one flies
+  Scalar half_width{0};          ///< of the slope's interval, in its units; 0 of the start, which has none
+  Scalar terms_bound{0};         ///< most that the other terms ask for beside the start's, in units of the sum
+  Scalar left_square{0};         ///< mean square of its residual in the rows that it is of
+  Scalar gain{1};                ///< mean square of its forward residual over that of the sum that flew before
+  std::uint32_t proven_row = 0;  ///< the row after which it has flown
 };
+template <class Scalar>
+using OnboardCertificate = std::array<OnboardSum<Scalar>, 4>;
 
 namespace detail {
 
@@ -123,7 +125,7 @@ struct SineWitness {
 template <class Scalar>
 OnboardRule refusal(std::size_t k, const ForwardSum<Scalar>& sum, const ForwardSum<Scalar>& start,
                     const SumSolution<Scalar>& solution, Scalar rows, Scalar thrust, const SineWitness<Scalar>& sines,
-                    Scalar propeller_diameter_m, const ProofSettings<Scalar>& settings) noexcept {
+                    Scalar propeller_diameter_m, const typename OnboardSettings<Scalar>::Proof& settings) noexcept {
   const auto magnitude = [](Scalar value) noexcept { return value < Scalar(0) ? -value : value; };
   if (!(rows >= settings.least_rows)) return OnboardRule::few_rows;
   if (!(all_finite(sum.theta) && is_finite(solution.standard_error))) return OnboardRule::not_finite;

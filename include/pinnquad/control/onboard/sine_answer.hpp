@@ -23,7 +23,7 @@ template <class Scalar>
 using AskedSines = std::array<SineWave<Scalar>, 4>;
 /// At `t_s` of the sines.
 template <class Scalar>
-AskedSines<Scalar> asked_sines(Scalar t_s, const ExcitationSettings<Scalar>& settings,
+AskedSines<Scalar> asked_sines(Scalar t_s, const typename OnboardSettings<Scalar>::Excitation& settings,
                                const std::array<Scalar, 4>& amplitudes) noexcept {
   using std::cos;
   using std::sin;
@@ -66,7 +66,7 @@ class SineAnswer {
 
   /// The slope that the sines say, with a sum's lag, rise and damping: Re(a (1 + i d / w) y*) / |y|^2.
   Scalar slope(std::size_t k, const ForwardSum<Scalar>& sum,
-               const ExcitationSettings<Scalar>& settings) const noexcept {
+               const typename OnboardSettings<Scalar>::Excitation& settings) const noexcept {
     const Scalar w = two_pi * settings.sums[k].fast_Hz;
     const Scalar damping = sum.theta[1];
     const Wave y = times(

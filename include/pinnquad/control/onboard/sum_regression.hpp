@@ -10,27 +10,14 @@
 
 #include "pinnquad/control/onboard/forward_model.hpp"
 #include "pinnquad/control/onboard/lag_bank.hpp"
+#include "pinnquad/control/onboard/onboard_settings.hpp"
 #include "pinnquad/control/onboard/triangle.hpp"
 #include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/finite.hpp"
 
 namespace pinnquad {
 
-/// Settings of a SumRegression.
-template <class Scalar>
-struct RegressionSettings {
-  Scalar forget_s = Scalar(20), forget_drag_s = Scalar(30);
-  Scalar repeats = Scalar(3);  ///< rows that say the same, as two of them share a period
-  /// Feedback answers wind with the commands that a row is of, and least squares take one for the other. Rows are
-  /// beside this share of their running means, so long, which the wind is in too; not of yaw.
-  std::array<Scalar, 3> wind_s{Scalar(0.15), Scalar(0.3), Scalar(0.3)};
-  Scalar wind_share = Scalar(0.9);
-  /// So many are one row of roll, pitch or yaw, their mean. Gyro noise, which feedback answers, cancels in rows that
-  /// follow each other.
-  std::uint32_t rows_of_torque = 5;
-  Scalar lag_spread = Scalar(0.7);  ///< standard deviation of log(lag / the start's)
-};
-
+namespace detail {
 /// Drag across the thrust over the mass: a = -(linear + quadratic |v|) v of the two axes across, FRD.
 template <class Scalar>
 struct LateralDrag {
@@ -44,12 +31,11 @@ struct LateralDrag {
   }
 };
 
-namespace detail {
 /// Least squares of all sums at all lags, row by row.
 template <class Scalar>
 class SumRegression {
  public:
-  SumRegression(const RegressionSettings<Scalar>& settings, std::uint32_t period_us) noexcept
+  SumRegression(const typename OnboardSettings<Scalar>::Regression& settings, std::uint32_t period_us) noexcept
       : settings_(settings), period_us_(period_us) {
     using std::exp;
     const Scalar period_s = Scalar(1e-6) * static_cast<Scalar>(period_us);
@@ -234,7 +220,7 @@ class SumRegression {
     }
   }
 
-  RegressionSettings<Scalar> settings_;
+  typename OnboardSettings<Scalar>::Regression settings_;
   std::uint32_t period_us_;
   Scalar root_keep_{0}, root_keep_torque_{0}, root_keep_drag_{0};
   std::array<Scalar, 3> follows_{};

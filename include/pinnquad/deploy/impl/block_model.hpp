@@ -48,15 +48,9 @@ void BlockModel::open_as() {
   }
   take_derivatives(*model);
   row_.emplace(RunTimeRow<Scalar>(*model));
-  const auto& said = model->records();
-  const bool claims_proof = said.claims_proof(), brings_certificate = said.said(BlockRecord::certificate);
   model_ = std::unique_ptr<const RunTimeModel<Scalar>>(std::move(model));
   require_words();
   if (!(golden_difference() <= golden_tolerance)) refuse("golden commands that its weights give", "others");
-  if (!claims_proof) return;
-  const std::optional<Certificate> proof = certificate();
-  if (proof && !proof->proven()) refuse("slopes and bounds of which its certificate is proven", "others");
-  if (!proof && brings_certificate) refuse(detail::StatedNumber::certificate, "others");
 }
 
 PINNQUAD_BODY void BlockModel::open() {
@@ -99,7 +93,7 @@ PINNQUAD_BODY const Airframe<double>& BlockModel::airframe() const {
 }
 
 PINNQUAD_BODY std::uint64_t BlockModel::contents_hash() const {
-  return with([](const auto& model) { return model.records().contents_hash; });
+  return with([](const auto& model) { return model.contents_hash(); });
 }
 
 PINNQUAD_BODY std::vector<std::string> BlockModel::feature_names() const {
@@ -285,8 +279,8 @@ PINNQUAD_BODY void BlockModel::answer(const RowSet& rows,
   with([&](const auto& model) {
     using Scalar = ScalarOf<decltype(model)>;
     const auto taps = std::size_t(model.features().window().taps), size = std::size_t(model.features().size());
-    std::vector<RunTimeInputs<Scalar>> inputs(taps);
-    std::vector<RunTimeInputs<double>> exact(taps);
+    std::vector<RunTimeFeatures::Inputs<Scalar>> inputs(taps);
+    std::vector<RunTimeFeatures::Inputs<double>> exact(taps);
     std::vector<Scalar> x(size), work(model.workspace());
     std::vector<double> exact_x(size);
     BlockModel::AnsweredRow answered;
@@ -296,14 +290,14 @@ PINNQUAD_BODY void BlockModel::answer(const RowSet& rows,
       const detail::RunTimeFlightInputs<double> own_in_double(model.features(), piece);
       for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
         if (!own.read(row, inputs.data())) continue;
-        model.features().extract(static_cast<const RunTimeInputs<Scalar>*>(inputs.data()), x.data());
+        model.features().extract(static_cast<const RunTimeFeatures::Inputs<Scalar>*>(inputs.data()), x.data());
         Commands<Scalar> u{};
         model.commands(x.data(), u.data(), work.data());
         answered.features.assign(x.begin(), x.end());
         answered.commands = detail::in_double(u);
         answered.inside_envelope = model.inside_envelope(x.data());
         if (with_derivatives && own_in_double.read(row, exact.data())) {
-          model.features().extract(static_cast<const RunTimeInputs<double>*>(exact.data()), exact_x.data());
+          model.features().extract(static_cast<const RunTimeFeatures::Inputs<double>*>(exact.data()), exact_x.data());
           answered.derivatives = derivatives(exact_x);
         }
         take(first + row - piece.rows.begin, answered);

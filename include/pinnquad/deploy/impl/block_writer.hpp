@@ -50,8 +50,14 @@ PINNQUAD_BODY std::vector<unsigned char> whole_block(const BlockCounts& counts,
   }
   out.add(counts.shape_hash);
   out.add(counts.training_data_hash);
+  out.add(counts.contents_hash);
+  out.add(std::uint64_t{0});
   out.append(records);
   out.append(scalars);
+  const std::uint64_t own = hash_of_block(out.bytes.data(), length);
+  for (std::size_t byte = 0; byte < sizeof own; ++byte) {
+    out.bytes[ModelBlockHeader::own_hash + byte] = static_cast<unsigned char>(own >> (8 * byte));
+  }
   out.add(crc32(out.bytes.data(), out.bytes.size()));
   return std::move(out.bytes);
 }

@@ -163,7 +163,7 @@ std::uint64_t write_struct(std::ostream& out, const WrittenModel<Scalar>& model)
       << "  using Vehicle = " << vehicle << ";\n"
       << "  using Inputs = Features::Inputs<Scalar>;\n\n";
   out << "  static constexpr int format_version = " << header_format_version << ";\n";
-  write.count("format_version", model_format_version);
+  write.count("format_version", contents_format);
   write.text("name", model.name);
   out << "\n  // provenance\n";
   write.text("training_data", model.training_data);

@@ -18,10 +18,10 @@ std::vector<unsigned char> block_of(const WrittenModel<Scalar>& model) {
   scalars.add(model.golden_features);
   scalars.add(model.golden_commands);
   scalars.add(model.parameters);
-  return whole_block(
-      {sizeof(Scalar), model.input_mean.size(), model.output_mean.size(), model.parameters.size(),
-       model.golden_features.size(), model.training_rows, hash_of_shape(model), model.training_data_hash},
-      block_records<Scalar>(model), scalars.bytes);
+  return whole_block({sizeof(Scalar), model.input_mean.size(), model.output_mean.size(), model.parameters.size(),
+                      model.golden_features.size(), model.training_rows, hash_of_shape(model), model.training_data_hash,
+                      model.contents_hash},
+                     block_records<Scalar>(model), scalars.bytes);
 }
 
 template <class Scalar>

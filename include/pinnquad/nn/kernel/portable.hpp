@@ -49,6 +49,37 @@ struct NoBias {
   PINNQUAD_ALWAYS_INLINE constexpr NoBias operator+(int) const noexcept { return {}; }
 };
 
+#if defined(__ARM_FEATURE_FMA) && defined(__thumb2__) && defined(__GNUC__) && !defined(__clang__) && !defined(__ARMEB__)
+/// True where a load takes two weights, which no compiler does by itself: four of ten instructions would be loads.
+template <class Scalar>
+inline constexpr bool loads_pairs = std::is_same_v<Scalar, float>;
+
+/// Two floats in one register.
+using Pair [[gnu::may_alias, gnu::aligned(4)]] = double;
+PINNQUAD_ALWAYS_INLINE const Pair& pair_at(const float* weights) noexcept {
+  return *reinterpret_cast<const Pair*>(weights);
+}
+
+/// Adds the products of two weights of a row, the first one first, each in one rounding; of one row, or of two.
+PINNQUAD_ALWAYS_INLINE void add_pair(const float* weights, float first, float second, float& sum) noexcept {
+  Pair pair;
+  asm("vldr.64 %P1, %2\n\tvfma.f32 %0, %3, %1\n\tvfma.f32 %0, %4, %p1"
+      : "+t"(sum), "=&t"(pair)
+      : "Uv"(pair_at(weights)), "t"(first), "t"(second));
+}
+PINNQUAD_ALWAYS_INLINE void add_pairs(const float* weights, int stride, float first, float second, float& sum,
+                                      float& below) noexcept {
+  Pair upper, lower;
+  asm("vldr.64 %P2, %4\n\tvldr.64 %P3, %5\n\t"
+      "vfma.f32 %0, %6, %2\n\tvfma.f32 %1, %6, %3\n\tvfma.f32 %0, %7, %p2\n\tvfma.f32 %1, %7, %p3"
+      : "+t"(sum), "+t"(below), "=&t"(upper), "=&t"(lower)
+      : "Uv"(pair_at(weights)), "Uv"(pair_at(weights + stride)), "t"(first), "t"(second));
+}
+#else
+template <class Scalar>
+inline constexpr bool loads_pairs = false;
+#endif
+
 /// y[0, Rows) = activate(start + weight x), one row or two; rows of `weight` are `stride` apart.
 template <int Rows, int Columns, class Scalar, class Start, class Activate>
 PINNQUAD_ALWAYS_INLINE void add_dots(const Scalar* weight, int stride, Start start,
@@ -57,7 +88,18 @@ PINNQUAD_ALWAYS_INLINE void add_dots(const Scalar* weight, int stride, Start sta
   static_assert(Rows == 1 || Rows == rows_at_once);
   Scalar sum = start[0];
   Scalar below = Rows == 2 ? start[Rows - 1] : Scalar(0);
-  unroll<Columns>([&](auto column) PINNQUAD_INLINE_LAMBDA {
+  constexpr int paired = loads_pairs<Scalar> ? Columns / 2 : 0;
+  if constexpr (paired > 0) {
+    unroll<paired>([&](auto pair) PINNQUAD_INLINE_LAMBDA {
+      if constexpr (Rows == 2) {
+        add_pairs(weight + 2 * pair, stride, x[2 * pair], x[2 * pair + 1], sum, below);
+      } else {
+        add_pair(weight + 2 * pair, x[2 * pair], x[2 * pair + 1], sum);
+      }
+    });
+  }
+  unroll<Columns - 2 * paired>([&](auto rest) PINNQUAD_INLINE_LAMBDA {
+    constexpr int column = 2 * paired + rest;
     sum = multiply_add(weight[column], x[column], sum);
     if constexpr (Rows == 2) below = multiply_add(weight[stride + column], x[column], below);
   });
@@ -72,6 +114,7 @@ PINNQUAD_ALWAYS_INLINE void multiply_held(const Scalar* weight, int stride, Star
                                           Activate activate) noexcept {
   Scalar held[static_cast<std::size_t>(Columns)];
   unroll<Columns>([&](auto column) PINNQUAD_INLINE_LAMBDA { held[column] = x[column]; });
+  if constexpr (loads_pairs<Scalar>) PINNQUAD_FORGET(weight);  // a large offset would be added anew for each pair
   // the odd rows first: behind the loop their addresses would be computed anew, each by an instruction
   constexpr int odd = Rows % rows_at_once;
   if constexpr (odd > 0) add_dots<odd, Columns>(weight, stride, start, held, y, activate);
@@ -96,10 +139,14 @@ PINNQUAD_ALWAYS_INLINE void multiply_row_major(const Scalar* weight, Bias bias, 
     detail::multiply_held<Rows, Columns>(weight, Columns, bias, x, y, activate);
   } else {
     static_assert(std::is_pointer_v<X>, "pinnquad: inputs that are taken in parts stand in a row");
-    for (int row = 0; row < Rows; ++row) y[row] = bias[row];
     const Scalar* const sums = y;
-    for (int part = 0; part < last; part += width) {
-      detail::multiply_held<Rows, width>(weight + part, Columns, sums, x + part, y, detail::Activate<void>{});
+    if constexpr (parts == 2) {
+      detail::multiply_held<Rows, width>(weight, Columns, bias, x, y, detail::Activate<void>{});
+    } else {  // one copy of the code for all parts but the last
+      for (int row = 0; row < Rows; ++row) y[row] = bias[row];
+      for (int part = 0; part < last; part += width) {
+        detail::multiply_held<Rows, width>(weight + part, Columns, sums, x + part, y, detail::Activate<void>{});
+      }
     }
     detail::multiply_held<Rows, Columns - last>(weight + last, Columns, sums, x + last, y, activate);
   }

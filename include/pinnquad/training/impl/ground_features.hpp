@@ -36,14 +36,14 @@ template <class Scalar>
 GroundFeatures::EachRow rows_by_name(const std::shared_ptr<const HeldFeatures>& held) {
   return [held](const RowSet& rows, const GroundFeatures::Visit& visit) {
     const RunTimeFeatures& features = held->features;
-    std::vector<RunTimeInputs<Scalar>> taps(static_cast<std::size_t>(features.window().taps));
+    std::vector<RunTimeFeatures::Inputs<Scalar>> taps(static_cast<std::size_t>(features.window().taps));
     std::vector<Scalar> x(static_cast<std::size_t>(features.size()));
     std::vector<double> shown(x.size());
     for (const FlightRows& piece : rows.pieces()) {
       const RunTimeFlightInputs<Scalar> recorded(features, piece);
       for (std::size_t row = piece.rows.begin; row < piece.rows.end; ++row) {
         if (!recorded.read(row, taps.data())) continue;
-        features.extract(static_cast<const RunTimeInputs<Scalar>*>(taps.data()), x.data());
+        features.extract(static_cast<const RunTimeFeatures::Inputs<Scalar>*>(taps.data()), x.data());
         shown.assign(x.begin(), x.end());
         visit(*piece.flight, row, shown.data());
       }
