@@ -215,13 +215,13 @@ inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{})
   std::vector<char> done(jobs.size(), 0);
   std::vector<std::string> refused(jobs.size());
   std::vector<std::atomic<double>> shares(jobs.size());  // 1: it has ended
-  // A parting whole before the next, which shares nothing with it. The longest first, but what needs no seed last:
-  // a kind's first seed has ended when the others of it begin, and no core is idle for long at the end.
+  // a parting whole before the next, which shares nothing with it; in it a seed whole before the next, the longest fits
+  // first: no core is idle for long at the end
   std::vector<std::size_t> order(jobs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto place = [&](const FinishedFit& job) {
     const bool seeded = plan.kinds[job.kind].seeded;
-    return std::make_tuple(job.fold, !seeded, job.seed, plan.kinds.size() - job.kind);
+    return std::make_tuple(job.fold, job.seed, !seeded, plan.kinds.size() - job.kind);
   };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return place(jobs[a]) < place(jobs[b]); });
   std::vector<std::shared_ptr<SharedByFits>> shared(plan.folds.size());

@@ -52,27 +52,19 @@ class StructuredNetwork : public ExportableNetwork {
   pinnquad::FitContext context_;
 };
 
-/// Work of fit_structured(): one fit after the other, with progress; Ctrl-C stops it.
+/// Work of fit_structured(), with progress; Ctrl-C stops it.
 class StructuredWork : public pinnquad::FitWork {
  public:
   StructuredWork(const FitTask& task, int epochs) : task_(task), epochs_(epochs) {}
 
-  void run(std::size_t count, const std::function<bool(std::size_t)>& job) const override {
-    fits_ = static_cast<double>(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!job(i)) throw Interrupted{};
-      done_ += 1;
-    }
-  }
   bool goes_on(int epoch) const override {
-    task_.share_done((done_ + static_cast<double>(epoch) / epochs_) / fits_);
+    task_.share_done(static_cast<double>(epoch) / epochs_);
     return !interrupted();
   }
 
  private:
   const FitTask& task_;
   int epochs_;
-  mutable double fits_ = 1, done_ = 0;
 };
 
 /// As many steps as a recipe takes on the 9,000 training rows of a flight of the paper, over all groups left out.
@@ -117,6 +109,7 @@ std::shared_ptr<const TrainedNetwork> fit_structured_kind(const FitTask& task) {
           ? make()
           : task.shared->once<pinnquad::StructuredBases>("structured " + std::to_string(static_cast<int>(Reach)), make);
   const auto fits = pinnquad::fit_structured(*bases, settings, StructuredWork(task, settings.residual.epochs));
+  if (fits.models.empty()) throw Interrupted{};
   AltitudeChoice altitude;
   altitude.applies = bases->chooses_altitude();
   altitude.taken = fits.altitude.taken;

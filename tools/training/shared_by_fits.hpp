@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Work that the fits to one parting have in common, whatever kind and seed: rows are read once, and what no seed changes
-// is made once.
+// Work that the fits to one parting have in common, whatever kind and seed: rows are read once, and a result that no
+// seed changes is made once.
 #pragma once
 
 #include <atomic>
