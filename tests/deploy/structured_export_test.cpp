@@ -93,7 +93,7 @@ bool compare(bool with_residual) {
   using Whole = TrainedModel<MonotonePredictor<Features, StructuredResidual<residual_inputs<Features>>>, Setting>;
   const StructuredSet by_name =
       structured_set(by_name_of<Features>(), airframe, detail::residual_trainer<StructuredResidual<32>>());
-  const StructuredFits::Fit named = fit_structured(by_name, nullptr, split, settings).best();
+  const StructuredFits::Fit named = fit_structured(StructuredBases(by_name, {}, split), settings).best();
   CHECK(named.parameters == fit.parameters);
   CHECK(text_of(named.model, split.train) == text_of(value, split.train));
   const auto same_as = [&](auto tag) {

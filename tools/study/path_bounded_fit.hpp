@@ -122,8 +122,8 @@ auto fit_path_bounded(const ContextType& context, const RowSet& training, const 
       true, [projection = detail::PathProjection<ContextType, Residual>(context, map, share)](auto& trained) {
         trained.project(projection);
       });
-  return pinnquad::detail::with_types<Base, Predictor>(
-      pinnquad::detail::fit_residual(fit_context(context), kind, training, validation, map, how, engine, goes_on));
+  return pinnquad::detail::fit_residual<Base, Predictor>(context, kind, training, validation, map, how, engine,
+                                                         goes_on);
 }
 
 }  // namespace study

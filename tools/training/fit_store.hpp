@@ -5,16 +5,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <string>
 #include <system_error>
-#include <type_traits>
 #include <utility>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "command_line/folders.hpp"
 #include "pinnquad/core/fnv1a.hpp"
@@ -22,8 +22,20 @@
 #include "pinnquad/io/atomic_file.hpp"
 #include "training/fits.hpp"
 
+namespace pinnquad {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BiasTrial, rows, absolute)
+}
+
 namespace programs {
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DerivativeFigures, wrong_share, least, median, sees_acceleration)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AltitudeChoice, applies, taken, error_with, error_without)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GuardCounts, rows, warming_up, outside_envelope, output_not_finite, beyond_limits,
+                                   furthest)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FinishedFit, validation_mae, fit_s, biases, looks_ahead_s, derivatives, altitude,
+                                   proven, held_out, chosen_by, guard)
+
+/// Files in CBOR.
 class FitStore : public KnownFits {
  public:
   /// The folder is made when the first fit comes.
@@ -34,39 +46,23 @@ class FitStore : public KnownFits {
   /// that is not whole, or of another training, is none.
   bool load(FinishedFit& job) const override {
     std::ifstream file(path_of(job), std::ios::binary);
-    Head head{};
-    if (!read(file, head) || std::memcmp(head.magic, Head{}.magic, sizeof head.magic) != 0 || head.key != key_of(job))
+    try {
+      const auto [key, kept] = nlohmann::json::from_cbor(file).get<std::pair<std::uint64_t, nlohmann::json>>();
+      FinishedFit loaded = job;
+      kept.get_to(loaded);
+      if (key != key_of(job) || loaded.held_out.size() != plan_.folds[job.fold].split.test.size()) return false;
+      job = std::move(loaded);
+      return true;
+    } catch (const nlohmann::json::exception&) {
       return false;
-    FinishedFit loaded = job;
-    const std::size_t rows = plan_.folds[job.fold].split.test.size();
-    if (head.rows != rows) return false;
-    loaded.held_out.resize(rows);
-    for (auto& row : loaded.held_out) {
-      if (!read(file, row)) return false;
     }
-    if (!read(file, loaded.guard)) return false;
-    loaded.chosen_by.resize(head.judges <= most_judges ? head.judges : 0);
-    for (double& error : loaded.chosen_by) {
-      if (!read(file, error)) return false;
-    }
-    static_cast<FitFigures&>(loaded) = head.figures;
-    job = std::move(loaded);
-    return true;
   }
 
   /// Throws OutputError.
   void keep(const FinishedFit& job) const override {
     make_folders(folder_);
-    Head head{};
-    head.key = key_of(job);
-    head.rows = job.held_out.size();
-    head.figures = job;
-    head.judges = job.chosen_by.size();
     pinnquad::AtomicFile file(path_of(job));
-    write(file.stream(), head);
-    for (const auto& row : job.held_out) write(file.stream(), row);
-    write(file.stream(), job.guard);
-    for (const double error : job.chosen_by) write(file.stream(), error);
+    nlohmann::json::to_cbor(std::make_pair(key_of(job), nlohmann::json(job)), file.stream());
     file.commit();
   }
 
@@ -80,54 +76,6 @@ class FitStore : public KnownFits {
   }
 
  private:
-  static constexpr std::uint64_t most_judges = 100000;  // a broken file asks for no more
-
-  /// As this machine has it in memory: such a file is read by the program that wrote it.
-  struct Head {
-    char magic[8] = {'p', 'q', '-', 'f', 'i', 't', '-', '7'};
-    std::uint64_t key = 0, rows = 0, judges = 0;
-    FitFigures figures;
-  };
-  static_assert(std::is_trivially_copyable_v<Head>);
-
-  template <class Value>
-  static bool read(std::istream& from, Value& value) {
-    static_assert(std::is_trivially_copyable_v<Value>);
-    return static_cast<bool>(from.read(reinterpret_cast<char*>(&value), sizeof value));
-  }
-  template <class Value>
-  static void write(std::ostream& to, const Value& value) {
-    static_assert(std::is_trivially_copyable_v<Value>);
-    to.write(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-
-  static bool read(std::istream& from, GuardCounts& guard) {
-    std::uint64_t features = 0, length = 0;
-    for (std::uint64_t* count : {&guard.rows, &guard.warming_up, &guard.outside_envelope, &guard.output_not_finite,
-                                 &guard.beyond_limits, &features}) {
-      if (!read(from, *count)) return false;
-    }
-    for (; features > 0; --features) {
-      constexpr std::uint64_t longest = 4096;  // of a name: a broken file asks for no more
-      if (!read(from, length) || length > longest) return false;
-      std::string name(length, ' ');
-      if (!from.read(name.data(), static_cast<std::streamsize>(length)) || !read(from, guard.furthest[name]))
-        return false;
-    }
-    return true;
-  }
-  static void write(std::ostream& to, const GuardCounts& guard) {
-    for (const std::uint64_t count : {guard.rows, guard.warming_up, guard.outside_envelope, guard.output_not_finite,
-                                      guard.beyond_limits, std::uint64_t{guard.furthest.size()}}) {
-      write(to, count);
-    }
-    for (const auto& [name, count] : guard.furthest) {
-      write(to, std::uint64_t{name.size()});
-      to.write(name.data(), static_cast<std::streamsize>(name.size()));
-      write(to, count);
-    }
-  }
-
   static void absorb(pinnquad::detail::Fnv1a& fnv, double value) { pinnquad::detail::absorb_number(fnv, value); }
 
   /// The program (by size and time of its file), the airframe, what the flights lack, what was asked for.

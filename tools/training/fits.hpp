@@ -11,9 +11,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -46,8 +48,10 @@ struct FitPlan {
   }
 };
 
-/// Figures of a fit, as a file holds them too.
-struct FitFigures {
+/// One kind on one parting from one seed, and what it answers on the rows held out.
+struct FinishedFit {
+  std::size_t kind = 0, fold = 0;  ///< of the plan
+  std::uint64_t seed = 0;
   /// Mean absolute error of the commands on the validation rows that it answers; if it was fitted to them on those of
   /// all judges, NaN without.
   double validation_mae = pinnquad::not_a_number;
@@ -57,12 +61,6 @@ struct FitFigures {
   DerivativeFigures derivatives;  ///< over the rows held out
   AltitudeChoice altitude;
   bool proven = false;  ///< TrainedNetwork::is_proven()
-};
-
-/// One kind on one parting from one seed, and what it answers on the rows held out.
-struct FinishedFit : FitFigures {
-  std::size_t kind = 0, fold = 0;  ///< of the plan
-  std::uint64_t seed = 0;
   Predictions held_out;
   std::vector<double>
       chosen_by;      ///< root mean square errors that choose between kinds: Fold::judges, or of a slow kind
@@ -168,8 +166,9 @@ inline void fit_one(const FitPlan& plan, FinishedFit& job, const FitTask& task) 
     if (job.altitude.applies) settings.altitude = job.altitude.taken;
     const pinnquad::RowSet none;
     for (const Judge& judge : fold.judges) {
-      const FitTask without{task.airframe,        judge.others, none,        task.absent,
-                            task.sample_period_s, task.seed,    task.epochs, settings};
+      FitTask without{task.airframe,        judge.others, none,        task.absent,
+                      task.sample_period_s, task.seed,    task.epochs, settings};
+      without.shared = task.shared;
       job.chosen_by.push_back(ask(*kind.fit(without), judge.rows, saw_validation));
     }
   }
@@ -200,7 +199,7 @@ inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{})
     }
   }
   std::vector<FinishedFit> jobs;
-  for (int i = 0; i < plan.seeds; ++i) {  // a seed whole before the next: what an interruption leaves can be compared
+  for (int i = 0; i < plan.seeds; ++i) {
     for (std::size_t fold = 0; fold < plan.folds.size(); ++fold) {
       for (std::size_t kind = 0; kind < plan.kinds.size(); ++kind) {
         if (!fits.not_applicable[kind][fold].empty() || (i > 0 && !plan.kinds[kind].seeded)) continue;
@@ -216,6 +215,19 @@ inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{})
   std::vector<char> done(jobs.size(), 0);
   std::vector<std::string> refused(jobs.size());
   std::vector<std::atomic<double>> shares(jobs.size());  // 1: it has ended
+  // a parting whole before the next, which shares nothing with it; in it a seed whole before the next, the longest fits
+  // first: no core is idle for long at the end
+  std::vector<std::size_t> order(jobs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto place = [&](const FinishedFit& job) {
+    const bool seeded = plan.kinds[job.kind].seeded;
+    return std::make_tuple(job.fold, job.seed, !seeded, plan.kinds.size() - job.kind);
+  };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return place(jobs[a]) < place(jobs[b]); });
+  std::vector<std::shared_ptr<SharedByFits>> shared(plan.folds.size());
+  std::vector<std::atomic<std::size_t>> left(plan.folds.size());  // fits of a parting that have not ended
+  for (auto& one : shared) one = std::make_shared<SharedByFits>();
+  for (const FinishedFit& job : jobs) ++left[job.fold];
   std::atomic<std::size_t> known{0};
   const auto fit = [&](std::size_t i) {
     const auto first = static_cast<std::size_t>(
@@ -233,6 +245,7 @@ inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{})
       return;
     }
     FitTask task = plan.task(plan.folds[jobs[i].fold], jobs[i].seed);
+    task.shared = shared[jobs[i].fold];
     // of a kind that is fitted several times the longest fit counts: no progress runs backwards
     task.share_done = [&shares, i](double share) { shares[i].store(std::clamp(share, shares[i].load(), 0.99)); };
     if (first != i && jobs[first].altitude.applies) task.settings.altitude = jobs[first].altitude.taken;
@@ -254,9 +267,11 @@ inline Fits fit_all(const FitPlan& plan, const KnownFits& earlier = KnownFits{})
     return sum / whole;
   };
   const std::string job = plan.shows_progress ? "fitting " + std::to_string(jobs.size()) + " models" : "";
-  run_parallel(job, jobs.size(), plan.threads, share_done, [&](std::size_t i) {
+  run_parallel(job, jobs.size(), plan.threads, share_done, [&](std::size_t next) {
+    const std::size_t i = order[next];
     const detail::Ended ended{shares[i]};
     fit(i);
+    if (--left[jobs[i].fold] == 0) shared[jobs[i].fold].reset();
   });
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (!refused[i].empty()) fits.not_applicable[jobs[i].kind][jobs[i].fold] = refused[i];

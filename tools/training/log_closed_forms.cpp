@@ -37,7 +37,8 @@ template <class Outputs = pinnquad::CommandOutputs, class Solve>
 Model fit_affine(const FitTask& fit, const GroundFeatures& features, const Solve& solve) {
   const RowSet rows = rows_not_held_out(fit);
   const pinnquad::GivenAirframe airframe = fit.given_airframe();
-  FitContext context = pinnquad::fit_context(features, pinnquad::ground_outputs<Outputs>(airframe), airframe, rows);
+  FitContext context =
+      pinnquad::fit_context(fit.shared->keep(features), pinnquad::ground_outputs<Outputs>(airframe), airframe, rows);
   const AffineMap map = solve(context, rows);
   return std::make_shared<ExportableNetwork>(pinnquad::affine_model(context, map, rows), rows);
 }

@@ -22,12 +22,12 @@ std::shared_ptr<const TrainedNetwork> trained(const FitTask& fit, const Loss& lo
   pinnquad::each_features<Features, double>(fit.training,
                                             [&any](const pinnquad::Flight&, std::size_t, const auto&) { any = true; });
   if (!any) throw std::invalid_argument("no row has all features that are asked for");
-  const auto context = pinnquad::make_context<Context>(fit.training, fit.given_airframe());
+  const auto rows = network_rows<Context>(fit);
   const auto network = std::make_unique<PaperNetwork<Features>>(trained_network<PaperNetwork<Features>>(
-      fit, context, loss, best::optimizer(weight_decay), fit.epochs > 0 ? fit.epochs : network_epochs,
+      fit, *rows, loss, best::optimizer(weight_decay), fit.epochs > 0 ? fit.epochs : network_epochs,
       KeptEpoch::best_on_validation));
   return std::make_shared<ExportableNetwork>(
-      pinnquad::ground_model(pinnquad::make_trained_model(*network, context, fit.training)), fit.training);
+      pinnquad::ground_model(pinnquad::make_trained_model(*network, rows->context, fit.training)), fit.training);
 }
 
 std::shared_ptr<const TrainedNetwork> fit_vanilla(const FitTask& fit) {

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -49,27 +52,19 @@ class StructuredNetwork : public ExportableNetwork {
   pinnquad::FitContext context_;
 };
 
-/// Work of fit_structured(): one fit after the other, with progress; Ctrl-C stops it.
+/// Work of fit_structured(), with progress; Ctrl-C stops it.
 class StructuredWork : public pinnquad::FitWork {
  public:
   StructuredWork(const FitTask& task, int epochs) : task_(task), epochs_(epochs) {}
 
-  void run(std::size_t count, const std::function<bool(std::size_t)>& job) const override {
-    fits_ = static_cast<double>(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!job(i)) throw Interrupted{};
-      done_ += 1;
-    }
-  }
   bool goes_on(int epoch) const override {
-    task_.share_done((done_ + static_cast<double>(epoch) / epochs_) / fits_);
+    task_.share_done(static_cast<double>(epoch) / epochs_);
     return !interrupted();
   }
 
  private:
   const FitTask& task_;
   int epochs_;
-  mutable double fits_ = 1, done_ = 0;
 };
 
 /// As many steps as a recipe takes on the 9,000 training rows of a flight of the paper, over all groups left out.
@@ -82,7 +77,7 @@ int structured_epochs(const FitTask& task) {
 
 pinnquad::StructuredSet structured_set(const FitTask& task, TimeReach reach, bool with_altitude) {
   using pinnquad::StructuredResidual, pinnquad::detail::residual_trainer;
-  pinnquad::GroundFeatures features = inverse_features(task, reach, with_altitude);
+  pinnquad::GroundFeatures features = task.shared->keep(inverse_features(task, reach, with_altitude));
   const bool few = features.size() - 3 * features.accelerations.size() <= 16;  // else up to 32
   return pinnquad::structured_set(
       std::move(features), task.given_airframe(),
@@ -102,21 +97,27 @@ std::shared_ptr<const TrainedNetwork> fit_structured_kind(const FitTask& task) {
                                                 : Rule::no;
   settings.first_seed = task.seed;
   settings.seeds = 1;
-  const pinnquad::StructuredSet lower = structured_set(task, Reach, false);
-  std::optional<pinnquad::StructuredSet> higher;  // none where there is no altitude to choose
-  if (!task.lacks("velocity")) higher = structured_set(task, Reach, true);
-  const pinnquad::RowSplit split{task.training, task.validation, {}};
-  const auto fits = pinnquad::fit_structured(lower, higher ? &*higher : nullptr, split, settings,
-                                             StructuredWork(task, settings.residual.epochs));
+  const auto make = [&task] {
+    std::optional<pinnquad::StructuredSet> higher;  // none where there is no altitude to choose
+    if (!task.lacks("velocity")) higher = structured_set(task, Reach, true);
+    return std::make_shared<const pinnquad::StructuredBases>(structured_set(task, Reach, false), std::move(higher),
+                                                             pinnquad::RowSplit{task.training, task.validation, {}});
+  };
+  // a judge's rows are other ones
+  const auto bases =
+      task.settings.without_residual
+          ? make()
+          : task.shared->once<pinnquad::StructuredBases>("structured " + std::to_string(static_cast<int>(Reach)), make);
+  const auto fits = pinnquad::fit_structured(*bases, settings, StructuredWork(task, settings.residual.epochs));
+  if (fits.models.empty()) throw Interrupted{};
   AltitudeChoice altitude;
-  altitude.applies = higher.has_value();
+  altitude.applies = bases->chooses_altitude();
   altitude.taken = fits.altitude.taken;
   altitude.error_with = fits.altitude.error_with.value_or(pinnquad::not_a_number);
   altitude.error_without = fits.altitude.error_without.value_or(pinnquad::not_a_number);
   const pinnquad::StructuredFits::Fit& best = fits.best();
-  const pinnquad::StructuredSet& set = best.with_altitude ? *higher : lower;
-  return std::make_shared<StructuredNetwork>(best.model, set.context(pinnquad::detail::fitted_rows(split, settings)),
-                                             task.training, altitude, best.slopes, settings.fit_validation);
+  return std::make_shared<StructuredNetwork>(best.model, fits.context, task.training, altitude, best.slopes,
+                                             settings.fit_validation);
 }
 
 template <TimeReach Reach>

@@ -12,6 +12,7 @@
 
 #include "airframe/choice.hpp"
 #include "pinnquad/data/row_set.hpp"
+#include "training/shared_by_fits.hpp"
 #include "training/trained_network.hpp"
 
 namespace programs {
@@ -43,6 +44,8 @@ struct FitTask {
   int epochs = 0;  ///< 0: what suits the kind
   FitSettings settings{};
   std::function<void(double)> share_done = [](double) {};  ///< told now and then, 0 to 1
+  /// With the other fits to this parting.
+  std::shared_ptr<SharedByFits> shared = std::make_shared<SharedByFits>();
 
   bool lacks(const std::string& quantity) const {
     for (const std::string& missing : absent) {

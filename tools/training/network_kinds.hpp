@@ -5,7 +5,6 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -27,22 +26,38 @@ namespace programs {
 /// The epoch of a training that counts.
 enum class KeptEpoch { last, best_on_validation };
 
+/// The rows of networks, standardised: the same of all losses and seeds.
+template <class Context>
+struct NetworkRows {
+  using Data = pinnquad::TrainingData<float, Context::Features::size, Context::output_count>;
+  Context context;
+  Data training, validation;
+};
+template <class Context>
+std::shared_ptr<const NetworkRows<Context>> network_rows(const FitTask& task) {
+  return task.shared->once<NetworkRows<Context>>(pinnquad::type_name<typename Context::Features>(), [&task] {
+    const auto context = pinnquad::make_context<Context>(task.training, task.given_airframe());
+    const auto data = [&context](const auto& rows) { return pinnquad::standardised<float>(context, rows); };
+    return std::make_shared<const NetworkRows<Context>>(
+        NetworkRows<Context>{context, data(task.training), data(task.validation)});
+  });
+}
+
 /// A network from the task's seed, which gives initialisation and batch order, alike for all losses.
 template <class Network, class Context, class Loss, class Optimizer>
-Network trained_network(const FitTask& task, const Context& context, const Loss& loss, const Optimizer& optimizer,
-                        int epochs, KeptEpoch which) {
+Network trained_network(const FitTask& task, const NetworkRows<Context>& rows, const Loss& loss,
+                        const Optimizer& optimizer, int epochs, KeptEpoch which) {
   using Trainer = pinnquad::Trainer<Network, Loss, Optimizer, Context, pinnquad::ShuffledBatches, batch_size>;
-  const auto data = pinnquad::standardised<float>(context, task.training);
-  std::optional<typename Trainer::Data> validation;
-  if (which == KeptEpoch::best_on_validation) validation = pinnquad::standardised<float>(context, task.validation);
   std::mt19937_64 engine(task.seed);
   const auto network = pinnquad::initialised<Network>(engine);
-  const auto trainer = std::make_unique<Trainer>(network, loss, optimizer, context);
+  const auto trainer = std::make_unique<Trainer>(network, loss, optimizer, rows.context);
   pinnquad::Checkpoint<Network> best;
   for (int epoch = 0; epoch < epochs; ++epoch) {
     stop_if_interrupted();
-    trainer->epoch(data, {epoch, epochs}, engine);
-    if (validation) best.offer(epoch, trainer->validate(*validation).mean_squared, *trainer);
+    trainer->epoch(rows.training, {epoch, epochs}, engine);
+    if (which == KeptEpoch::best_on_validation) {
+      best.offer(epoch, trainer->validate(rows.validation).mean_squared, *trainer);
+    }
     task.share_done(static_cast<double>(epoch + 1) / epochs);
   }
   return best.empty() ? trainer->network() : best.network();
@@ -61,11 +76,11 @@ template <class Parts, class MakeLoss, class MakeOptimizer>
 std::shared_ptr<const TrainedNetwork> fit_by_parts(const FitTask& task, const MakeLoss& loss,
                                                    const MakeOptimizer& optimizer) {
   using Context = pinnquad::Context<pinnquad::PaperFeatures, pinnquad::GivenAirframe>;
-  const auto context = pinnquad::make_context<Context>(task.training, task.given_airframe());
+  const auto rows = network_rows<Context>(task);
   const int epochs = task.epochs > 0 ? task.epochs : recipe_epochs;
   const auto network = std::make_unique<typename Parts::Network>(
-      trained_network<typename Parts::Network>(task, context, loss(), optimizer(), epochs, KeptEpoch::last));
-  const auto model = pinnquad::make_trained_model(*network, context, task.training);
+      trained_network<typename Parts::Network>(task, *rows, loss(), optimizer(), epochs, KeptEpoch::last));
+  const auto model = pinnquad::make_trained_model(*network, rows->context, task.training);
   auto ground = pinnquad::ground_model(model);
   if (task.settings.library_airframe) ground = of_library_airframe(std::move(ground));
   return std::make_shared<ExportableNetwork>(std::move(ground), task.training);

@@ -31,6 +31,7 @@ struct StructuredFits {
 
   FitWork::Altitude altitude;
   std::vector<Fit> models;
+  FitContext context;  ///< of the models
 
   /// The model with the least error on the validation rows. Throws std::logic_error where no model was finished.
   const Fit& best() const {
@@ -43,10 +44,9 @@ struct StructuredFits {
 };
 
 /// Fits a structured model from each seed. The first seed tries both feature sets where the altitude is chosen
-/// by_validation; `higher` is null where there is no such choice. Throws std::invalid_argument for rows that are too
-/// few.
-StructuredFits fit_structured(const StructuredSet& without_altitude, const StructuredSet* higher, const RowSplit& split,
-                              const StructuredSettings& settings = {}, const FitWork& work = FitWork());
+/// by_validation. Throws std::invalid_argument for rows that are too few.
+StructuredFits fit_structured(const StructuredBases& bases, const StructuredSettings& settings = {},
+                              const FitWork& work = FitWork());
 
 /// Fits on feature sets that are types. `WithAltitude`: Features and the altitude, which the validation rows choose or
 /// not; Features again where that was not measured.
@@ -55,7 +55,7 @@ StructuredFits fit_structured(const RowSplit& split, const GivenAirframe& airfra
                               const StructuredSettings& settings = {}, const FitWork& work = FitWork()) {
   std::optional<StructuredSet> higher;
   if constexpr (!std::is_same_v<Features, WithAltitude>) higher = structured_set<WithAltitude>(airframe);
-  return fit_structured(structured_set<Features>(airframe), higher ? &*higher : nullptr, split, settings, work);
+  return fit_structured(StructuredBases(structured_set<Features>(airframe), std::move(higher), split), settings, work);
 }
 
 }  // namespace pinnquad

@@ -437,6 +437,36 @@ TEST_CASE("the fits of later seeds follow the first seed's choice of the altitud
   for (std::size_t i = 0; i < 3; ++i) CHECK(gone_on.finished[i].held_out == run.fits.finished[i].held_out);
 }
 
+TEST_CASE("rows are read once for all fits to a parting, piece by piece, and anew when those have ended") {
+  const pinnquad::Dataset dataset = pinnquad_test::simulated_dataset(1, 50);
+  int times = 0;
+  pinnquad::GroundFeatures features = pinnquad::ground_features<pinnquad::PaperFeatures>();
+  features.each_exact_row = [&times, read = features.each_exact_row](const auto& rows, const auto& visit) {
+    ++times;
+    read(rows, visit);
+  };
+  auto shared = std::make_shared<programs::SharedByFits>();
+  const pinnquad::GroundFeatures kept = shared->keep(features);
+  const auto numbers = [](const pinnquad::GroundFeatures& of, const pinnquad::RowSet& rows) {
+    std::vector<double> all;
+    of.each_exact_row(rows, [&](const pinnquad::Flight&, std::size_t row, const double* x) {
+      all.push_back(static_cast<double>(row));
+      all.insert(all.end(), x, x + of.size());
+    });
+    return all;
+  };
+  const pinnquad::RowSet whole(dataset[0], {0, 50}), part(dataset[0], {10, 30});
+  const std::vector<double> of_whole = numbers(features, whole), of_part = numbers(features, part);
+  times = 0;
+  for (int again = 0; again < 2; ++again) CHECK(numbers(kept, whole) == of_whole);
+  CHECK(times == 1);
+  CHECK(numbers(kept, part) == of_part);
+  CHECK(times == 2);
+  shared.reset();
+  CHECK(numbers(kept, whole) == of_whole);
+  CHECK(times == 3);
+}
+
 TEST_CASE(
     "report.json: each model by its key, figures with mean, deviation and each seed, by parting, in plain words") {
   const Judged run(4,

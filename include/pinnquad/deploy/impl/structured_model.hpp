@@ -62,17 +62,13 @@ PINNQUAD_BODY GroundModel<float> structured_model(const StructuredSet& from, con
 
 }  // namespace detail
 
-PINNQUAD_BODY StructuredFits fit_structured(const StructuredSet& lower, const StructuredSet* higher,
-                                            const RowSplit& split, const StructuredSettings& settings,
+PINNQUAD_BODY StructuredFits fit_structured(const StructuredBases& bases, const StructuredSettings& settings,
                                             const FitWork& work) {
-  const auto [altitude, made] = detail::fit_structured_sets(lower, higher, split, settings, work);
-  StructuredFits fits{altitude, {}};
-  if (made.empty()) return fits;
-  const RowSet rows = detail::fitted_rows(split, settings);
-  const StructuredSet& set = altitude.taken ? *higher : lower;  // of every seed
-  const FitContext context = set.context(rows);
-  for (const detail::SeedFit& fit : made) {
-    fits.models.push_back({fit, detail::structured_model(set, fit, context, rows)});
+  detail::SeedFits made = bases.fit(settings, work);
+  StructuredFits fits{made.altitude, {}, std::move(made.context)};
+  for (const detail::SeedFit& fit : made.fits) {
+    fits.models.push_back(
+        {fit, detail::structured_model(bases.set(made.altitude.taken), fit, fits.context, made.fitted)});
   }
   return fits;
 }

@@ -6,9 +6,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -113,19 +116,42 @@ struct SeedFit {
   MeasuredSlopes slopes{};      ///< the same of all seeds
 };
 
-/// Fits a structured model from each seed. The first seed tries both feature sets where the altitude is chosen
-/// by_validation; `higher` is null where there is no such choice. Fits that were finished, in the order of the seeds.
-/// Throws std::invalid_argument for rows that are too few.
-std::pair<FitWork::Altitude, std::vector<SeedFit>> fit_structured_sets(const StructuredSet& without_altitude,
-                                                                       const StructuredSet* higher,
-                                                                       const RowSplit& split,
-                                                                       const StructuredSettings& settings,
-                                                                       const FitWork& work);
+class StructuredFitter;
 
-/// The rows that a model is fitted to.
-RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings);
+/// The fits of seeds that were finished, in the order of the seeds.
+struct SeedFits {
+  FitWork::Altitude altitude;
+  std::vector<SeedFit> fits;
+  FitContext context;  ///< of the fits
+  RowSet fitted;       ///< the rows that they were fitted to
+};
 
 }  // namespace detail
+
+/// The feature sets of a structured model on one split. Their bases are the same of all seeds: each is fitted once,
+/// when it is first asked for, by one of several threads too.
+class StructuredBases {
+ public:
+  /// `higher`: the features and the altitude; none where there is no such choice.
+  StructuredBases(StructuredSet lower, std::optional<StructuredSet> higher, RowSplit split)
+      : lower_(std::move(lower)), higher_(std::move(higher)), split_(std::move(split)) {}
+
+  bool chooses_altitude() const { return higher_.has_value(); }
+  const StructuredSet& set(bool with_altitude) const { return with_altitude ? *higher_ : lower_; }
+  /// Fits from each seed. The first seed tries both feature sets where the altitude is chosen by_validation. Settings
+  /// but for altitude and seeds are the same each time. Throws std::invalid_argument for rows that are too few.
+  detail::SeedFits fit(const StructuredSettings& settings, const FitWork& work) const;
+
+ private:
+  const detail::StructuredFitter& fitter(bool with_altitude, const StructuredSettings& settings) const;
+
+  StructuredSet lower_;
+  std::optional<StructuredSet> higher_;
+  RowSplit split_;
+  mutable std::mutex mutex_;
+  mutable std::array<std::shared_ptr<const detail::StructuredFitter>, 2> fitters_;
+};
+
 }  // namespace pinnquad
 
 #ifdef PINNQUAD_COMPILED

@@ -56,13 +56,19 @@ bool train_residual(const FitContext& context, const ResidualKind& kind, const F
 std::vector<float> base_and_residual(const ResidualKind& kind, std::vector<float> base,
                                      const std::vector<float>& residual, const FitRows& rows);
 
-/// A residual on the base `map`. Throws std::invalid_argument for rows that are too few.
-FittedResidual fit_residual(const FitContext& context, const ResidualKind& kind, const RowSet& training,
-                            const RowSet& validation, const AffineMap& map, const ResidualTraining& how,
+/// A residual on the base `map`, of fit_rows(). Throws std::invalid_argument for rows that are too few.
+FittedResidual fit_residual(const FitContext& context, const ResidualKind& kind, const FitRows& training,
+                            const FitRows& validation, const AffineMap& map, const ResidualTraining& how,
                             std::mt19937_64& engine, const GoesOn& goes_on);
 
-template <class Base, class Predictor>
-ResidualFit<Base, Predictor> with_types(const FittedResidual& fit) {
+/// The same from rows, with types.
+template <class Base, class Predictor, class ContextType>
+ResidualFit<Base, Predictor> fit_residual(const ContextType& context, const ResidualKind& kind, const RowSet& training,
+                                          const RowSet& validation, const AffineMap& map, const ResidualTraining& how,
+                                          std::mt19937_64& engine, const GoesOn& goes_on) {
+  const FitContext value = fit_context(context);
+  const FittedResidual fit =
+      fit_residual(value, kind, fit_rows(value, training), fit_rows(value, validation), map, how, engine, goes_on);
   ResidualFit<Base, Predictor> typed{{}, {}, fit.residual_kept, fit.finished, fit.epoch, fit.base_error, fit.error};
   std::copy(fit.predictor.begin(), fit.predictor.end(), typed.predictor.parameters.begin());
   std::copy(fit.base.begin(), fit.base.end(), typed.base.parameters.begin());
@@ -81,8 +87,7 @@ auto fit_monotone(const ContextType& context, const RowSet& training, const RowS
   using Predictor = MonotonePredictor<Features, Residual>;
   using Base = MonotoneBase<Features>;
   const detail::ResidualKind kind = detail::residual_kind<Residual, Predictor, Base>(false, detail::NoProjection{});
-  return detail::with_types<Base, Predictor>(
-      detail::fit_residual(fit_context(context), kind, training, validation, map, how, engine, goes_on));
+  return detail::fit_residual<Base, Predictor>(context, kind, training, validation, map, how, engine, goes_on);
 }
 
 }  // namespace pinnquad

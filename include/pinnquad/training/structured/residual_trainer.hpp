@@ -71,8 +71,8 @@ class ResidualTrainer {
   virtual void epoch(const Progress& progress, std::mt19937_64& engine) = 0;
   /// Mean absolute error on the rows that it is not trained on, in the units of the outputs.
   virtual double validate() = 0;
-  /// Calls `visit(row, output, said)` for each of these rows.
-  virtual void each_prediction(const std::function<void(int row, int output, double said)>& visit) = 0;
+  /// Of these rows, row-major, standardised.
+  virtual std::vector<float> predictions() = 0;
   /// In the layout of Network::parameters.
   virtual std::vector<float> parameters() const = 0;
 };
@@ -127,8 +127,11 @@ class ResidualTrainerOf : public ResidualTrainer {
     trainer_.epoch(training_, progress, engine, after_batch_);
   }
   double validate() override { return trainer_.validate(unseen_).mean_absolute; }
-  void each_prediction(const std::function<void(int, int, double)>& visit) override {
-    trainer_.each_prediction(unseen_, visit);
+  std::vector<float> predictions() override {
+    std::vector<float> all;
+    all.reserve(unseen_.outputs.size());
+    trainer_.each_prediction(unseen_, [&all](int, int, double said) { all.push_back(static_cast<float>(said)); });
+    return all;
   }
   std::vector<float> parameters() const override {
     const Network network = trainer_.network();

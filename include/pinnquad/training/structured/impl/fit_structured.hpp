@@ -29,30 +29,55 @@ PINNQUAD_BODY RowSet rows_of(const std::vector<RowSet>& groups) {
   return rows;
 }
 
-PINNQUAD_BODY RowSet fitted_rows(const RowSplit& split, const StructuredSettings& settings) {
-  return settings.fit_validation ? rows_of({split.train, split.validation}) : split.train;
+/// These rows one after the other, without those of one group.
+PINNQUAD_BODY FitRows joined(const std::vector<FitRows>& groups, std::size_t without) {
+  FitRows all{groups.front().inputs, {}, {}};
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (i == without) continue;
+    all.features.insert(all.features.end(), groups[i].features.begin(), groups[i].features.end());
+    all.outputs.insert(all.outputs.end(), groups[i].outputs.begin(), groups[i].outputs.end());
+  }
+  return all;
 }
 
-/// The fits of one feature set. The base is the same of all seeds, the residual is not.
+/// The fits of one feature set. The base is the same of all seeds, the residual is not: fits of several threads share
+/// one of these.
 class StructuredFitter {
  public:
   StructuredFitter(const StructuredSet& set, const RowSplit& split, const StructuredSettings& settings)
-      : split_(split),
-        settings_(settings),
+      : settings_(settings),
         kind_(set.residual),
-        fitted_(fitted_rows(split, settings)),
+        fitted_(settings.fit_validation ? rows_of({split.train, split.validation}) : split.train),
         context_(set.context(fitted_)) {
     if (settings.pinned_slopes) pinned_ = hover_slopes(context_.airframe);
+    std::vector<RowSet> groups;
+    std::vector<RegressionSums> sums;
     for (const RowSet& group : left_out_groups(fitted_)) {
-      RegressionSums sums = regression_sums(context_, group);
-      if (!(sums.rows() > 0)) continue;  // no window is complete there
-      groups_.push_back(group);
-      sums_.push_back(std::move(sums));
+      RegressionSums of_group = regression_sums(context_, group);
+      if (!(of_group.rows() > 0)) continue;  // no window is complete there
+      groups.push_back(group);
+      sums.push_back(std::move(of_group));
     }
-    measured_ = map_ = fit_monotone_base(context_, sums_, pinned_);
+    measured_ = map_ = fit_monotone_base(context_, sums, pinned_);
     slopes_ = measure_slopes(context_, fitted_, pinned_, measured_);
-    whole_flights_ = whole_flight_groups(fitted_).size() > 1 && groups_.size() > 1;
+    if (!settings.fit_validation) {
+      validation_ = fit_rows(context_, split.validation);
+    } else if (settings.residual.epochs < 1) {
+      return;
+    }
+    rows_ = fit_rows(context_, fitted_);
+    const bool whole_flights = whole_flight_groups(fitted_).size() > 1;
+    if (groups.size() < 2 || !(settings.fit_validation || whole_flights)) return;
+    for (std::size_t out = 0; out < groups.size(); ++out) {
+      groups_.push_back(fit_rows(context_, groups[out]));
+      std::vector<RegressionSums> others = sums;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
+      without_.push_back(fit_monotone_base(context_, others, pinned_));
+    }
   }
+
+  const FitContext& context() const { return context_; }
+  const RowSet& fitted_rows() const { return fitted_; }
 
   /// None where `goes_on` stopped it.
   std::optional<SeedFit> operator()(std::uint64_t seed, const GoesOn& goes_on) const {
@@ -63,10 +88,10 @@ class StructuredFitter {
       return made;
     };
     if (settings_.fit_validation) return fit_by_groups(seed, goes_on, done);
-    const FittedResidual fit = fitted(split_.train, map_, seed, goes_on);
+    const FittedResidual fit = fitted(rows_, map_, seed, goes_on);
     if (!fit.finished) return {};
     bool kept = fit.residual_kept;
-    if (kept && whole_flights_) {
+    if (kept && !groups_.empty()) {
       const std::optional<bool> gains = gains_on_flights_left_out(seed, goes_on);
       if (!gains) return {};
       kept = *gains;
@@ -75,9 +100,10 @@ class StructuredFitter {
   }
 
  private:
-  FittedResidual fitted(const RowSet& training, const AffineMap& map, std::uint64_t seed, const GoesOn& goes_on) const {
+  FittedResidual fitted(const FitRows& training, const AffineMap& map, std::uint64_t seed,
+                        const GoesOn& goes_on) const {
     std::mt19937_64 engine(seed);
-    return fit_residual(context_, kind_, training, split_.validation, map, settings_.residual, engine, goes_on);
+    return fit_residual(context_, kind_, training, validation_, map, settings_.residual, engine, goes_on);
   }
 
   /// The base with its measured slopes. A sum that has them by smoothed rows has no residual: what a network is shown,
@@ -92,40 +118,21 @@ class StructuredFitter {
     return parameters;
   }
 
-  /// Calls `use(others, base without the group, the group)`, each group left out in turn.
-  template <class Use>
-  void each_left_out(const Use& use) const {
-    for (std::size_t out = 0; out < groups_.size(); ++out) {
-      std::vector<RowSet> others = groups_;
-      std::vector<RegressionSums> sums = sums_;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(out));
-      sums.erase(sums.begin() + static_cast<std::ptrdiff_t>(out));
-      use(rows_of(others), fit_monotone_base(context_, sums, pinned_), groups_[out]);
-    }
-  }
-
   /// Does the residual lower the error on whole flights, each left out in turn of the rows that it is fitted to? None
   /// where `goes_on` stopped it.
   std::optional<bool> gains_on_flights_left_out(std::uint64_t seed, const GoesOn& goes_on) const {
     double base_error = 0, error = 0;
-    bool finished = true;
-    each_left_out([&](const RowSet& others, const AffineMap& map, const RowSet& group) {
-      if (!finished) return;
-      const FittedResidual fit = fitted(others, map, seed, goes_on);
-      finished = fit.finished;
-      if (!finished) return;
-      const FitRows unseen = fit_rows(context_, group);
-      base_error += unseen.size() * command_error(context_, {kind_.base, fit.base}, unseen);
-      const bool has_residual = !fit.predictor.empty();
-      error += unseen.size() * (has_residual ? command_error(context_, {kind_.predictor, fit.predictor}, unseen)
-                                             : command_error(context_, {kind_.base, fit.base}, unseen));
-    });
-    if (!finished) return {};
+    for (std::size_t out = 0; out < groups_.size(); ++out) {
+      const FittedResidual fit = fitted(joined(groups_, out), without_[out], seed, goes_on);
+      if (!fit.finished) return {};
+      const FitRows& unseen = groups_[out];
+      const double of_base = unseen.size() * command_error(context_, {kind_.base, fit.base}, unseen);
+      base_error += of_base;
+      error += fit.predictor.empty()
+                   ? of_base
+                   : unseen.size() * command_error(context_, {kind_.predictor, fit.predictor}, unseen);
+    }
     return error < (1 - settings_.residual.least_gain) * base_error;
-  }
-
-  FitRows left(const AffineMap& map, const RowSet& rows) const {
-    return left_by(context_, kind_, map, fit_rows(context_, rows));
   }
 
   /// Groups left out in turn say how long the residual is trained and what share of each output counts; then base and
@@ -133,24 +140,23 @@ class StructuredFitter {
   template <class Done>
   std::optional<SeedFit> fit_by_groups(std::uint64_t seed, const GoesOn& goes_on, const Done& done) const {
     const std::vector<float> base = base_parameters(context_.features.accelerations, map_);
-    if (groups_.size() < 2 || settings_.residual.epochs < 1) {  // nothing to choose by
+    if (groups_.empty()) {  // nothing to choose by
       return done(base, false, std::numeric_limits<double>::quiet_NaN());
     }
     const int epochs = settings_.residual.epochs;
     std::vector<Agreement> by_epoch(static_cast<std::size_t>(epochs));
-    bool finished = true;
     const auto train = [&](const FitRows& training, const FitRows& unseen, int until, const auto& visit) {
       std::mt19937_64 engine(seed);
       return train_residual(context_, kind_, training, unseen, settings_.residual, until, engine, goes_on, visit);
     };
-    each_left_out([&](const RowSet& others, const AffineMap& map, const RowSet& group) {
-      if (!finished) return;
-      const FitRows unseen = left(map, group);
-      finished = train(left(map, others), unseen, epochs, [&](ResidualTrainer& trainer, int epoch) {
-        agree(by_epoch[static_cast<std::size_t>(epoch)], trainer, unseen);
+    for (std::size_t out = 0; out < groups_.size(); ++out) {
+      const auto left = [&](FitRows rows) { return left_by(context_, kind_, without_[out], std::move(rows)); };
+      const FitRows unseen = left(groups_[out]);
+      const bool finished = train(left(joined(groups_, out)), unseen, epochs, [&](ResidualTrainer& trainer, int epoch) {
+        agree(by_epoch[static_cast<std::size_t>(epoch)], trainer.predictions(), unseen.outputs);
       });
-    });
-    if (!finished) return {};
+      if (!finished) return {};
+    }
     std::size_t best = 0;
     for (std::size_t epoch = 1; epoch < by_epoch.size(); ++epoch) {
       if (by_epoch[epoch].gain() > by_epoch[best].gain()) best = epoch;
@@ -159,7 +165,7 @@ class StructuredFitter {
     const double error = chosen.error();
     if (!(chosen.gain() > 0)) return done(base, false, error);
     std::vector<float> residual;
-    const FitRows all = left(map_, fitted_);
+    const FitRows all = left_by(context_, kind_, map_, rows_);
     if (!train(all, FitRows{all.inputs, {}, {}}, static_cast<int>(best) + 1,
                [&](ResidualTrainer& trainer, int) { residual = trainer.parameters(); })) {
       return {};
@@ -168,12 +174,13 @@ class StructuredFitter {
     return done(base_and_residual(kind_, base, residual, all), true, error);
   }
 
-  void agree(Agreement& agreement, ResidualTrainer& trainer, const FitRows& unseen) const {
+  void agree(Agreement& agreement, const std::vector<float>& said, const std::vector<float>& truth) const {
     agreement.begin_group();
-    trainer.each_prediction([&](int row, int k, double said) {
-      const double unit = context_.output_deviation[static_cast<std::size_t>(k)];
-      agreement.add(k, unit * said, unit * static_cast<double>(unseen.outputs_of(row)[k]));
-    });
+    for (std::size_t i = 0; i < said.size(); ++i) {
+      const std::size_t k = i % AxisCommandOutputs::size;
+      const double unit = context_.output_deviation[k];
+      agreement.add(static_cast<int>(k), unit * static_cast<double>(said[i]), unit * static_cast<double>(truth[i]));
+    }
   }
 
   /// In the last layer, which is affine: weights by output, then biases.
@@ -187,43 +194,49 @@ class StructuredFitter {
     }
   }
 
-  const RowSplit& split_;
-  const StructuredSettings& settings_;
+  StructuredSettings settings_;
   const ResidualKind& kind_;
   RowSet fitted_;
   FitContext context_;
   std::optional<AxisSlopes> pinned_;
-  std::vector<RowSet> groups_;
-  std::vector<RegressionSums> sums_;  ///< of the groups
-  AffineMap map_;                     ///< by least squares
-  AffineMap measured_;                ///< by smoothed rows where noise bends it
+  AffineMap map_;       ///< by least squares
+  AffineMap measured_;  ///< by smoothed rows where noise bends it
   MeasuredSlopes slopes_;
-  bool whole_flights_ = false;
+  FitRows rows_, validation_;       ///< the rows that are fitted; others, where those stop the residual
+  std::vector<FitRows> groups_;     ///< left out in turn, where they choose
+  std::vector<AffineMap> without_;  ///< the bases without them
 };
 
-PINNQUAD_BODY std::pair<FitWork::Altitude, std::vector<SeedFit>> fit_structured_sets(
-    const StructuredSet& without_altitude, const StructuredSet* higher, const RowSplit& split,
-    const StructuredSettings& settings, const FitWork& work) {
+}  // namespace detail
+
+PINNQUAD_BODY const detail::StructuredFitter& StructuredBases::fitter(bool with_altitude,
+                                                                      const StructuredSettings& settings) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  auto& made = fitters_[with_altitude ? 1 : 0];
+  if (!made) made = std::make_shared<const detail::StructuredFitter>(set(with_altitude), split_, settings);
+  return *made;
+}
+
+PINNQUAD_BODY detail::SeedFits StructuredBases::fit(const StructuredSettings& settings, const FitWork& work) const {
   using Altitude = StructuredSettings::Altitude;
-  std::optional<StructuredFitter> fitters[2];  // without the altitude, with it
-  const Altitude rule = higher != nullptr ? settings.altitude : Altitude::no;
-  if (rule != Altitude::no) fitters[1].emplace(*higher, split, settings);
-  if (rule != Altitude::yes) fitters[0].emplace(without_altitude, split, settings);
-  const auto fit = [&](bool with_altitude, std::uint64_t seed) {
-    auto made = (*fitters[with_altitude ? 1 : 0])(seed, [&work](int epoch) { return work.goes_on(epoch); });
+  using detail::SeedFit;
+  const Altitude rule = chooses_altitude() ? settings.altitude : Altitude::no;
+  if (rule != Altitude::no) fitter(true, settings);
+  if (rule != Altitude::yes) fitter(false, settings);
+  const auto fit_one = [&](bool with_altitude, std::uint64_t seed) {
+    auto made = fitter(with_altitude, settings)(seed, [&work](int epoch) { return work.goes_on(epoch); });
     if (made) made->with_altitude = with_altitude;
     return made;
   };
 
   FitWork::Altitude choice;
-  std::vector<SeedFit> fits;
   choice.taken = rule == Altitude::yes;
   std::vector<std::optional<SeedFit>> made(static_cast<std::size_t>(std::max(settings.seeds, 0)));
   std::size_t next = 0;  // seed that is fitted next
   if (rule == Altitude::by_validation && !made.empty()) {
     std::optional<SeedFit> tried[2];
-    work.run(2, [&](std::size_t i) { return (tried[i] = fit(i == 1, settings.first_seed)).has_value(); });
-    if (!tried[0] || !tried[1]) return {choice, fits};
+    work.run(2, [&](std::size_t i) { return (tried[i] = fit_one(i == 1, settings.first_seed)).has_value(); });
+    if (!tried[0] || !tried[1]) return {choice, {}, {}, {}};
     choice.error_without = tried[0]->validation_error;
     choice.error_with = tried[1]->validation_error;
     choice.taken = *choice.error_with < (1 - settings.least_altitude_gain) * *choice.error_without;
@@ -231,15 +244,19 @@ PINNQUAD_BODY std::pair<FitWork::Altitude, std::vector<SeedFit>> fit_structured_
   }
   work.chose(choice);
   const auto finish = [&](std::size_t i) {
-    made[next + i] = fit(choice.taken, settings.first_seed + static_cast<std::uint64_t>(next + i));
+    made[next + i] = fit_one(choice.taken, settings.first_seed + static_cast<std::uint64_t>(next + i));
     return made[next + i].has_value();
   };
   if (next < made.size()) work.run(made.size() - next, finish);
+  const detail::StructuredFitter& of_all = fitter(choice.taken, settings);
+  detail::SeedFits fits{choice, {}, of_all.context(), of_all.fitted_rows()};
   for (auto& one : made) {
-    if (one) fits.push_back(std::move(*one));
+    if (one) fits.fits.push_back(std::move(*one));
   }
-  return {choice, fits};
+  return fits;
 }
+
+namespace detail {
 
 /// The residual, the base, and both, of these features: as descriptions, or as types of a header, which have other
 /// words for three things.

@@ -71,18 +71,17 @@ PINNQUAD_BODY std::vector<float> base_and_residual(const ResidualKind& kind, std
   return base;
 }
 
-PINNQUAD_BODY FittedResidual fit_residual(const FitContext& context, const ResidualKind& kind, const RowSet& training,
-                                          const RowSet& validation, const AffineMap& map, const ResidualTraining& how,
+PINNQUAD_BODY FittedResidual fit_residual(const FitContext& context, const ResidualKind& kind, const FitRows& training,
+                                          const FitRows& validation, const AffineMap& map, const ResidualTraining& how,
                                           std::mt19937_64& engine, const GoesOn& goes_on) {
   FittedResidual fit;
   fit.base = base_parameters(context.features.accelerations, map);
-  const FitRows unseen = fit_rows(context, validation);
-  const FitRows rows = left_by(context, kind, map, fit_rows(context, training));
-  fit.base_error = fit.error = command_error(context, {kind.base, fit.base}, unseen);
+  const FitRows rows = left_by(context, kind, map, training);
+  fit.base_error = fit.error = command_error(context, {kind.base, fit.base}, validation);
 
   std::vector<float> best;
   double least = std::numeric_limits<double>::infinity();
-  fit.finished = train_residual(context, kind, rows, left_by(context, kind, map, unseen), how, how.epochs, engine,
+  fit.finished = train_residual(context, kind, rows, left_by(context, kind, map, validation), how, how.epochs, engine,
                                 goes_on, [&](ResidualTrainer& trainer, int epoch) {
                                   const double error = trainer.validate();
                                   if (!(error < least)) return;  // nor for NaN
@@ -92,7 +91,7 @@ PINNQUAD_BODY FittedResidual fit_residual(const FitContext& context, const Resid
                                 });
   if (!fit.finished || best.empty()) return fit;
   fit.predictor = base_and_residual(kind, fit.base, best, rows);
-  fit.error = command_error(context, {kind.predictor, fit.predictor}, unseen);
+  fit.error = command_error(context, {kind.predictor, fit.predictor}, validation);
   fit.residual_kept = fit.error < (1 - how.least_gain) * fit.base_error;
   return fit;
 }
