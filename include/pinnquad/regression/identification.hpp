@@ -31,6 +31,7 @@ struct IdentificationSettings {
   double window_s = 0.16;         ///< of the smoothing: motion up to some 6 Hz counts
   double thrust_curve = 0;        ///< of thrust_fraction()
   bool fit_thrust_curve = false;  ///< finds it where flights tell it (told_curve()), in place of taking that one
+  bool rise_and_fall = true;      ///< asks how fast thrust grows and falls, apart: half of the work
 };
 
 /// An interval is infinite where the flights do not tell.

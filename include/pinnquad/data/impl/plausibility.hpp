@@ -83,7 +83,11 @@ PINNQUAD_BODY std::optional<Implausible> find_outlier(const Flight& flight, std:
   if (!(column.smallest_scale > 0) || flight.empty()) return std::nullopt;
   constexpr double normal = 1.4826;  // standard deviation of a normal column over its median absolute deviation
   const std::vector<double> values = column_of(flight, field);
+  const double nearest = most_robust_deviations * column.smallest_scale;  // that an outlier is to its median
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  if (*most - *least <= nearest) return std::nullopt;
   const double median = median_of(values);
+  if (*most - median <= nearest && median - *least <= nearest) return std::nullopt;
   std::vector<double> distance;
   distance.reserve(values.size());
   for (const double value : values) distance.push_back(std::abs(value - median));

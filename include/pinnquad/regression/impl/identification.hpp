@@ -111,7 +111,7 @@ PINNQUAD_BODY void Identifier::find_rotation(double curve, Identification& resul
     result.gyroscopic[axis] = solution.estimate(from + 3);
     result.by_velocity_rad_s_m[axis] = solution.estimate(from + 4);
   }
-  if (result.delay_held) return;
+  if (result.delay_held || !settings_.rise_and_fall) return;
   RotorResponse each = response_;
   const BlockSolution two = fit.converge(each, RotationFit::rise_fall_and_delay());
   if (!two.told(first) || !two.told(first + 1)) return;
