@@ -12,20 +12,21 @@
 namespace pinnquad::logs {
 namespace {
 
-/// y' = (x - y) / tau with x held over a period: a first-order lag, exactly.
-void apply_first_order_lag(std::vector<double>& series, double period_s, double time_constant_s) {
-  if (series.empty() || !(time_constant_s > 0)) return;
+/// y' = (x - y) / tau with x held over a period: a first-order lag, exactly, along the rows from `begin` to `end`.
+template <class Iterator>
+void apply_first_order_lag(Iterator begin, Iterator end, double period_s, double time_constant_s) {
   const double share = 1 - std::exp(-period_s / time_constant_s);
-  double state = series.front();
-  for (double& value : series) value = state += share * (value - state);
+  double state = *begin;
+  for (; begin != end; ++begin) *begin = state += share * (*begin - state);
 }
 
 /// Twice forward, twice backward: no phase, half the amplitude at about 0.64 of the corner.
 void low_pass_without_phase(std::vector<double>& series, double period_s, double corner_Hz) {
   constexpr double tau = 6.283185307179586;
-  for (int pass = 0; pass < 4; ++pass) {
-    apply_first_order_lag(series, period_s, 1 / (tau * corner_Hz));
-    std::reverse(series.begin(), series.end());
+  const double time_constant_s = 1 / (tau * corner_Hz);
+  for (int pass = 0; pass < 2 && !series.empty(); ++pass) {
+    apply_first_order_lag(series.begin(), series.end(), period_s, time_constant_s);
+    apply_first_order_lag(series.rbegin(), series.rend(), period_s, time_constant_s);
   }
 }
 
@@ -147,7 +148,8 @@ std::vector<Explained> explained_by_lag(const std::vector<LagSeries>& all, const
     for (auto& series : one.commands) series = between_rows(series, grid.fine);
   }
   for (int lag = grid.first; lag <= grid.last; lag += grid.stride) {
-    set_products<1, rotor_count>(grid.fine > 1 ? fine : all, ahead, behind, lag, grid.fine, step, moments);  // others are those of any lag
+    set_products<1, rotor_count>(grid.fine > 1 ? fine : all, ahead, behind, lag, grid.fine, step,
+                                 moments);  // others are those of any lag
     result.push_back(rows > lag_columns ? explained_beyond_rates(moments) : Explained{});
   }
   return result;
@@ -327,8 +329,11 @@ void add_warning(CommandLag& best, double period_s, double step_s) {
 std::vector<LagSeries> lag_series(const std::vector<Flight>& segments) {
   std::vector<LagSeries> all(segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
+    LagSeries& one = all[i];
+    for (auto& series : one.commands) series.reserve(segments[i].size());
+    for (auto& series : one.rates) series.reserve(segments[i].size());
+    for (auto& series : one.motions) series.reserve(segments[i].size());
     for (const Sample& sample : segments[i]) {
-      LagSeries& one = all[i];
       for (std::size_t k = 0; k < rotor_count; ++k) one.commands[k].push_back(sample.commands[k]);
       for (std::size_t k = 0; k < 3; ++k) {
         const auto axis = static_cast<Eigen::Index>(k);
@@ -377,9 +382,10 @@ std::vector<CommandLag> estimate_command_lags(const std::vector<Flight>& segment
   std::vector<CommandLag> best(ranges.size());
   for (const double corner_Hz : {0.0, 15.0, 8.0}) {
     if (corner_Hz * period_s > 0.4) continue;
-    const std::vector<LagSeries> band = corner_Hz > 0 ? low_passed(series, period_s, corner_Hz) : series;
+    std::vector<LagSeries> band;
+    if (corner_Hz > 0) band = low_passed(series, period_s, corner_Hz);
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const CommandLag other = command_lag_of(band, LagGrid(period_s, ranges[i]), corner_Hz);
+      const CommandLag other = command_lag_of(corner_Hz > 0 ? band : series, LagGrid(period_s, ranges[i]), corner_Hz);
       if (!(corner_Hz > 0) || total_say(other) > total_say(best[i])) best[i] = other;
     }
   }

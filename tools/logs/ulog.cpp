@@ -108,10 +108,10 @@ class Reader {
     int instance = 0;
     std::size_t size = 0;
     std::size_t last_padding = 0;
-    std::size_t clock = none;  ///< offset of its time stamp
-    std::size_t topic = none;  ///< in the log, from its first row on
-    std::vector<Leaf> numbers, texts;           ///< of which values are wanted
-    std::vector<std::size_t> columns;           ///< of the numbers, in the log's topic
+    std::size_t clock = none;          ///< offset of its time stamp
+    std::size_t topic = none;          ///< in the log, from its first row on
+    std::vector<Leaf> numbers, texts;  ///< of which values are wanted
+    std::vector<std::size_t> columns;  ///< of the numbers, in the log's topic
 
     bool takes(std::size_t bytes) const noexcept { return bytes <= size && bytes >= size - last_padding; }
   };
@@ -177,7 +177,8 @@ class Reader {
     constexpr std::size_t first = 1024;
     const double share = static_cast<double>(place + 1) / static_cast<double>(size_);
     const double likely = spare * static_cast<double>(topic.size()) / share;
-    const std::size_t rows = topic.size() + first + static_cast<std::size_t>(likely - static_cast<double>(topic.size()));
+    const std::size_t rows =
+        topic.size() + first + static_cast<std::size_t>(likely - static_cast<double>(topic.size()));
     topic.time_s.reserve(rows);
     topic.place.reserve(rows);
     for (const std::size_t column : from.columns) topic.columns[column].values.reserve(rows);

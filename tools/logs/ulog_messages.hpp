@@ -101,7 +101,8 @@ class Messages {
   std::vector<Section> sections() {
     const std::uint64_t size = file_.size();
     Message flags;
-    if (!whole(file_.at(file_header_size, longest_whole), flags) || flags.type != 'B') return {{file_header_size, size}};
+    if (!whole(file_.at(file_header_size, longest_whole), flags) || flags.type != 'B')
+      return {{file_header_size, size}};
     const std::uint64_t after = file_header_size + message_header_size + flags.content.size();
     if (flags.content.size() < FlagBits::size) {
       refuse(file_header_size, "flag bits of 40 bytes", std::to_string(flags.content.size()));

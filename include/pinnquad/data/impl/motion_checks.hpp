@@ -279,8 +279,7 @@ PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const std::ve
     }
     velocity.push_back(read);
     const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
-    acceleration.push_back(
-        body_to_world(attitude[row], Vector3<double>(sample.linear_acceleration_m_s2 + turning)));
+    acceleration.push_back(body_to_world(attitude[row], Vector3<double>(sample.linear_acceleration_m_s2 + turning)));
   }
   return {flight.size(), [&](std::size_t row) { return flight[row].time_s; },
           [&](std::size_t row) -> Vector3<double> { return velocity[row + 1] - velocity[row]; },
@@ -379,9 +378,9 @@ PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const
                [&](std::size_t row) { return Vector3<double>(flight[row + 1].*value - flight[row].*value); }, rate)
         .sums(acceleration_step_s);
   };
-  const MotionBlocks angular =
-      sums(&Sample::body_rates_rad_s,
-           [&](std::size_t row) -> const Vector3<double>& { return flight[row].angular_acceleration_rad_s2; });
+  const MotionBlocks angular = sums(&Sample::body_rates_rad_s, [&](std::size_t row) -> const Vector3<double>& {
+    return flight[row].angular_acceleration_rad_s2;
+  });
   if (auto mistake = wrong_axis(angular, angular_field, rates_field)) return mistake;
   const std::vector<Quaternion<double>> attitude = attitudes_of(flight);
   if (auto mistake = find_velocity_mistake(flight, attitude)) return mistake;

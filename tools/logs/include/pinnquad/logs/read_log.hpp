@@ -18,7 +18,7 @@ namespace pinnquad::logs {
 
 /// The wanted part of a log: a reader leaves out the rest, which is most of it.
 struct LogSelection {
-  std::vector<std::string> topics;         ///< by name, each with all its instances; every topic if empty
+  std::vector<std::string> topics;  ///< by name, each with all its instances; every topic if empty
   /// By topic, those of a ULog file whose numbers are wanted: others have a name and no values. All of a topic that is
   /// not named here.
   std::map<std::string, std::set<std::string>> columns;
