@@ -383,17 +383,30 @@ AttitudeConvention convention_of(const Source& source) {
           source.body == BodyFrame::flu};
 }
 
-std::vector<std::string> mapped_topics(const Mapping& mapping) {
-  std::vector<std::string> topics;
-  const auto add = [&topics](const std::string& topic) {
-    if (!topic.empty() && std::find(topics.begin(), topics.end(), topic) == topics.end()) topics.push_back(topic);
+LogSelection mapped_selection(const Mapping& mapping) {
+  LogSelection selection;
+  const auto add = [&](const std::string& topic, const Source& source) {
+    if (topic.empty()) return;
+    if (selection.columns.count(topic) == 0) selection.topics.push_back(topic);
+    std::vector<std::string> names = {source.time_column, mapping.time_column.name};
+    for (const NamedColumn& column : source.columns) names.push_back(column.name);
+    if (source.quantity == Quantity::motors) {
+      for (std::string& name : further_motor_names(source)) names.push_back(std::move(name));
+    }
+    for (const std::string& name : names) {
+      selection.columns[topic].insert({name, name.substr(0, name.rfind(" ("))});  // with a unit behind it or without
+    }
   };
-  for (const Source& source : mapping.sources) {
-    add(source.topic);
-    add(source.thrust_topic);
+  const auto add_source = [&add](const Source& source) {
+    add(source.topic, source);
+    add(source.thrust_topic, source);
+  };
+  for (const Source& source : mapping.sources) add_source(source);
+  for (const ExtraSource& extra : mapping.extras) add_source(extra.source);
+  for (const NamedColumn& label : {mapping.flight_column, mapping.trajectory_column}) {
+    if (!label.name.empty()) selection.label_columns.push_back(label.name);
   }
-  for (const ExtraSource& extra : mapping.extras) add(extra.source.topic);
-  return topics;
+  return selection;
 }
 
 std::vector<double> times_of(const LogTopic& topic, const Source& source, const Mapping& mapping) {

@@ -17,7 +17,7 @@
 #include "logs/clock.hpp"
 #include "logs/mapping.hpp"
 #include "pinnquad/io/file_error.hpp"
-#include "pinnquad/logs/flight_log.hpp"
+#include "pinnquad/logs/read_log.hpp"
 
 namespace pinnquad::logs {
 
@@ -58,8 +58,8 @@ struct BoundLog {
   const Signal& of(Quantity quantity) const { return signals[static_cast<std::size_t>(quantity)]; }
 };
 
-/// The topics that a mapping looks at: none are named by one of a table.
-std::vector<std::string> mapped_topics(const Mapping& mapping);
+/// The topics and columns that a mapping looks at, and the labels of a table: topics are none where it is of a table.
+LogSelection mapped_selection(const Mapping& mapping);
 
 /// By the source's own column (the topic's clock where that is more than a second off it), or the topic's clock, or the
 /// one that [time] names for a table.

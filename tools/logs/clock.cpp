@@ -64,9 +64,11 @@ void leave_out_wild(const std::vector<double>& time_s, std::vector<std::size_t>&
   constexpr std::size_t most_at_end = 2;
   constexpr double hours_s = 3 * 3600;
   const auto at = [&](std::size_t i) { return time_s[rows[i]]; };
-  std::vector<bool> in(rows.size(), true);
   bool steps_back = false;
   for (std::size_t i = 1; i < rows.size(); ++i) steps_back = steps_back || at(i - 1) - at(i) > restart_step_s;
+  const bool late_end = rows.size() > 2 * most_at_end && at(rows.size() - 1) - at(rows.size() - 2) >= hours_s;
+  if (!steps_back && !late_end) return;
+  std::vector<bool> in(rows.size(), true);
   if (steps_back) in = longest_chain(time_s, rows);
   for (std::size_t n = 0; n < most_at_end && rows.size() > 2 * most_at_end; ++n) {  // nothing follows them
     std::size_t last = rows.size();
@@ -100,6 +102,7 @@ CleanClock clean_clock(const std::vector<double>& time_s) {
   ClockReport& report = clock.report;
   report.rows_read = time_s.size();
   std::vector<std::size_t> rows;
+  rows.reserve(time_s.size());
   for (std::size_t row = 0; row < time_s.size(); ++row) {
     if (std::isfinite(time_s[row])) {
       rows.push_back(row);
@@ -119,7 +122,11 @@ CleanClock clean_clock(const std::vector<double>& time_s) {
     latest = std::max(latest, t);
     before = t;
   }
-  std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
+  if (report.out_of_order > 0) {
+    std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return time_s[a] < time_s[b]; });
+  }
+  clock.time_s.reserve(rows.size());
+  clock.row.reserve(rows.size());
   for (const std::size_t row : rows) {
     if (!clock.time_s.empty() && !(time_s[row] > clock.time_s.back())) {
       report.same_time += 1;
@@ -130,6 +137,7 @@ CleanClock clean_clock(const std::vector<double>& time_s) {
     clock.row.push_back(row);
   }
   std::vector<double> steps;
+  steps.reserve(clock.size());
   for (std::size_t i = 1; i < clock.size(); ++i) steps.push_back(clock.time_s[i] - clock.time_s[i - 1]);
   if (!steps.empty()) {
     std::vector<double> sorted = steps;
@@ -178,6 +186,8 @@ double bridged_gap_s(const CleanClock& clock) noexcept { return gap_periods * cl
 std::vector<double> resample(const CleanClock& clock, const std::vector<double>& values, const UniformClock& to,
                              Resampling kind, double largest_gap_s) {
   std::vector<double> time_s, y;
+  time_s.reserve(clock.size());
+  y.reserve(clock.size());
   for (std::size_t i = 0; i < clock.size(); ++i) {
     const double value = values[clock.row[i]];
     if (!std::isfinite(value)) continue;

@@ -12,20 +12,21 @@
 namespace pinnquad::logs {
 namespace {
 
-/// y' = (x - y) / tau with x held over a period: a first-order lag, exactly.
-void apply_first_order_lag(std::vector<double>& series, double period_s, double time_constant_s) {
-  if (series.empty() || !(time_constant_s > 0)) return;
+/// y' = (x - y) / tau with x held over a period: a first-order lag, exactly, along the rows from `begin` to `end`.
+template <class Iterator>
+void apply_first_order_lag(Iterator begin, Iterator end, double period_s, double time_constant_s) {
   const double share = 1 - std::exp(-period_s / time_constant_s);
-  double state = series.front();
-  for (double& value : series) value = state += share * (value - state);
+  double state = *begin;
+  for (; begin != end; ++begin) *begin = state += share * (*begin - state);
 }
 
 /// Twice forward, twice backward: no phase, half the amplitude at about 0.64 of the corner.
 void low_pass_without_phase(std::vector<double>& series, double period_s, double corner_Hz) {
   constexpr double tau = 6.283185307179586;
-  for (int pass = 0; pass < 4; ++pass) {
-    apply_first_order_lag(series, period_s, 1 / (tau * corner_Hz));
-    std::reverse(series.begin(), series.end());
+  const double time_constant_s = 1 / (tau * corner_Hz);
+  for (int pass = 0; pass < 2 && !series.empty(); ++pass) {
+    apply_first_order_lag(series.begin(), series.end(), period_s, time_constant_s);
+    apply_first_order_lag(series.rbegin(), series.rend(), period_s, time_constant_s);
   }
 }
 
@@ -34,7 +35,6 @@ void low_pass_without_phase(std::vector<double>& series, double period_s, double
 std::vector<double> between_rows(const std::vector<double>& series, std::size_t fine) {
   constexpr std::ptrdiff_t reach = 6;
   const auto sinc = [](double x) { return std::abs(x) < 1e-12 ? 1.0 : std::sin(pi * x) / (pi * x); };
-  if (fine == 1) return series;
   std::vector<std::array<double, 2 * reach>> weights(fine);  // of each part
   std::vector<double> total(fine, 0.0);
   for (std::size_t part = 1; part < fine; ++part) {
@@ -134,7 +134,7 @@ struct LagGrid {
 };
 
 /// By lag, all over the same rows, at most about `most_rows` of them. `rows`: how many.
-std::vector<Explained> explained_by_lag(std::vector<LagSeries> all, const LagGrid& grid, std::size_t& rows) {
+std::vector<Explained> explained_by_lag(const std::vector<LagSeries>& all, const LagGrid& grid, std::size_t& rows) {
   constexpr std::size_t most_rows = 8000;
   const std::size_t ahead = grid.rows(grid.last), behind = grid.rows(-grid.first);
   std::size_t whole = 0;
@@ -142,11 +142,14 @@ std::vector<Explained> explained_by_lag(std::vector<LagSeries> all, const LagGri
   const std::size_t step = std::max<std::size_t>(1, whole / most_rows);
   std::vector<Explained> result;
   LagMoments moments = lag_moments(all, ahead, behind, 0, step, rows);
-  for (LagSeries& one : all) {
+  std::vector<LagSeries> fine;
+  if (grid.fine > 1) fine = all;
+  for (LagSeries& one : fine) {
     for (auto& series : one.commands) series = between_rows(series, grid.fine);
   }
   for (int lag = grid.first; lag <= grid.last; lag += grid.stride) {
-    set_products<1, rotor_count>(all, ahead, behind, lag, grid.fine, step, moments);  // others are those of any lag
+    set_products<1, rotor_count>(grid.fine > 1 ? fine : all, ahead, behind, lag, grid.fine, step,
+                                 moments);  // others are those of any lag
     result.push_back(rows > lag_columns ? explained_beyond_rates(moments) : Explained{});
   }
   return result;
@@ -291,13 +294,46 @@ double total_say(const CommandLag& lag) noexcept {
   return total + (lag.told ? told : 0);
 }
 
+/// Why the lag is not known, or that it is negative.
+void add_warning(CommandLag& best, double period_s, double step_s) {
+  if (!best.found) best.lag_s = 0;
+  if (best.known()) {
+    if (best.lag_s < -0.5 * step_s) {
+      best.warning = "the motion comes " + milliseconds(-best.lag_s) +
+                     " before the commands: the clocks of the two differ, or the commands are those of a later stage";
+    }
+  } else if (best.rows == 0) {
+    best.warning = "no stretch of the flight is long enough to look for a lag";
+  } else if (!best.found) {
+    best.warning = "no lag stands out: the commands explain the motion alike whenever they act";
+  } else if (!best.told) {
+    best.warning =
+        "the commands explain too little of the motion: what else moves the vehicle (gusts, a gyro's noise) comes back "
+        "through the controller as commands, and looks like a lag of " +
+        milliseconds(best.lag_s);
+  } else if (best.spread_s > CommandLag::spread_of_doubt_s) {
+    best.warning = "the motions disagree about the lag by " + milliseconds(best.spread_s);
+  } else if (best.give_or_take_s > CommandLag::known_s) {
+    const bool far_apart = of_a_row * period_s > 0.9 * CommandLag::known_s;
+    best.warning =
+        (far_apart ? "rows " + milliseconds(period_s) + " apart don't tell it to " + milliseconds(CommandLag::known_s)
+                   : std::string("the flight is too short or too calm to tell it")) +
+        ": it looks like " + milliseconds(best.lag_s) + ", give or take " + milliseconds(best.give_or_take_s);
+  } else {
+    best.warning = "the lag hardly stands out: one that is 50 ms away explains the motion nearly as well";
+  }
+}
+
 }  // namespace
 
 std::vector<LagSeries> lag_series(const std::vector<Flight>& segments) {
   std::vector<LagSeries> all(segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
+    LagSeries& one = all[i];
+    for (auto& series : one.commands) series.reserve(segments[i].size());
+    for (auto& series : one.rates) series.reserve(segments[i].size());
+    for (auto& series : one.motions) series.reserve(segments[i].size());
     for (const Sample& sample : segments[i]) {
-      LagSeries& one = all[i];
       for (std::size_t k = 0; k < rotor_count; ++k) one.commands[k].push_back(sample.commands[k]);
       for (std::size_t k = 0; k < 3; ++k) {
         const auto axis = static_cast<Eigen::Index>(k);
@@ -336,41 +372,24 @@ void take_out(LagMoments& moments, std::size_t k, double least) {
 }
 
 CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s, const LagRange& range) {
+  return estimate_command_lags(segments, period_s, {range}).front();
+}
+
+std::vector<CommandLag> estimate_command_lags(const std::vector<Flight>& segments, double period_s,
+                                              const std::vector<LagRange>& ranges) {
   std::vector<LagSeries> series = lag_series(segments);
   weigh(series, period_s);
-  const LagGrid grid(period_s, range);
-  CommandLag best = command_lag_of(series, grid, 0);
-  for (const double corner_Hz : {15.0, 8.0}) {
+  std::vector<CommandLag> best(ranges.size());
+  for (const double corner_Hz : {0.0, 15.0, 8.0}) {
     if (corner_Hz * period_s > 0.4) continue;
-    CommandLag other = command_lag_of(low_passed(series, period_s, corner_Hz), grid, corner_Hz);
-    if (total_say(other) > total_say(best)) best = other;
-  }
-  if (!best.found) best.lag_s = 0;
-  if (best.known()) {
-    if (best.lag_s < -0.5 * grid.step_s()) {
-      best.warning = "the motion comes " + milliseconds(-best.lag_s) +
-                     " before the commands: the clocks of the two differ, or the commands are those of a later stage";
+    std::vector<LagSeries> band;
+    if (corner_Hz > 0) band = low_passed(series, period_s, corner_Hz);
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      const CommandLag other = command_lag_of(corner_Hz > 0 ? band : series, LagGrid(period_s, ranges[i]), corner_Hz);
+      if (!(corner_Hz > 0) || total_say(other) > total_say(best[i])) best[i] = other;
     }
-  } else if (best.rows == 0) {
-    best.warning = "no stretch of the flight is long enough to look for a lag";
-  } else if (!best.found) {
-    best.warning = "no lag stands out: the commands explain the motion alike whenever they act";
-  } else if (!best.told) {
-    best.warning =
-        "the commands explain too little of the motion: what else moves the vehicle (gusts, a gyro's noise) comes back "
-        "through the controller as commands, and looks like a lag of " +
-        milliseconds(best.lag_s);
-  } else if (best.spread_s > CommandLag::spread_of_doubt_s) {
-    best.warning = "the motions disagree about the lag by " + milliseconds(best.spread_s);
-  } else if (best.give_or_take_s > CommandLag::known_s) {
-    const bool far_apart = of_a_row * period_s > 0.9 * CommandLag::known_s;
-    best.warning =
-        (far_apart ? "rows " + milliseconds(period_s) + " apart don't tell it to " + milliseconds(CommandLag::known_s)
-                   : std::string("the flight is too short or too calm to tell it")) +
-        ": it looks like " + milliseconds(best.lag_s) + ", give or take " + milliseconds(best.give_or_take_s);
-  } else {
-    best.warning = "the lag hardly stands out: one that is 50 ms away explains the motion nearly as well";
   }
+  for (std::size_t i = 0; i < ranges.size(); ++i) add_warning(best[i], period_s, LagGrid(period_s, ranges[i]).step_s());
   return best;
 }
 

@@ -99,6 +99,9 @@ struct LagRange {
 /// Limits: a motor behaves like a first-order lag, of which the best pure delay depends on how fast the commands
 /// change: 36 to 40 ms for a time constant of 50 ms. A filter's delay in what was measured counts as lag.
 CommandLag estimate_command_lag(const std::vector<Flight>& segments, double period_s, const LagRange& range = {});
+/// The same in several ranges.
+std::vector<CommandLag> estimate_command_lags(const std::vector<Flight>& segments, double period_s,
+                                              const std::vector<LagRange>& ranges);
 
 /// A series on a uniform clock, each row with the value of `lag_s` earlier, by lines between rows; NaN where there is
 /// none.

@@ -18,50 +18,33 @@ namespace pinnquad::logs {
 namespace {
 
 struct Unit {
-  Dimension dimension;
-  const char* name;
+  std::string_view name;
   double in_si;
 };
 
 constexpr double g_m_s2 = 9.80665;  // standard gravity: what "g" means in a log
+constexpr double degree = 1 / degrees_per_radian;
 
-// The first names of a dimension are those that a message offers.
-constexpr Unit units[] = {{Dimension::time, "s", 1},
-                          {Dimension::time, "ms", 1e-3},
-                          {Dimension::time, "us", 1e-6},
-                          {Dimension::time, "ns", 1e-9},
-                          {Dimension::angle, "rad", 1},
-                          {Dimension::angle, "deg", 1 / degrees_per_radian},
-                          {Dimension::angle, "ddeg", 0.1 / degrees_per_radian},
-                          {Dimension::angle, "cdeg", 0.01 / degrees_per_radian},
-                          {Dimension::angle, "mrad", 1e-3},
-                          {Dimension::turning, "rad/s", 1},
-                          {Dimension::turning, "deg/s", 1 / degrees_per_radian},
-                          {Dimension::turning, "ddeg/s", 0.1 / degrees_per_radian},
-                          {Dimension::turning, "cdeg/s", 0.01 / degrees_per_radian},
-                          {Dimension::turning, "mrad/s", 1e-3},
-                          {Dimension::angular_acceleration, "rad/s^2", 1},
-                          {Dimension::angular_acceleration, "deg/s^2", 1 / degrees_per_radian},
-                          {Dimension::acceleration, "m/s^2", 1},
-                          {Dimension::acceleration, "g", g_m_s2},
-                          {Dimension::acceleration, "mg", 1e-3 * g_m_s2},
-                          {Dimension::acceleration, "cm/s^2", 1e-2},
-                          {Dimension::acceleration, "mm/s^2", 1e-3},
-                          {Dimension::speed, "m/s", 1},
-                          {Dimension::speed, "mm/s", 1e-3},
-                          {Dimension::speed, "cm/s", 1e-2},
-                          {Dimension::speed, "km/h", 1 / 3.6},
-                          {Dimension::length, "m", 1},
-                          {Dimension::length, "mm", 1e-3},
-                          {Dimension::length, "cm", 1e-2},
-                          {Dimension::length, "ft", 0.3048},
-                          {Dimension::rotor_speed, "rev/s", 1},
-                          {Dimension::rotor_speed, "rpm", 1.0 / 60},
-                          {Dimension::rotor_speed, "rad/s", 0.15915494309189535},
-                          {Dimension::force, "N", 1},
-                          {Dimension::force, "mN", 1e-3},
-                          {Dimension::torque, "N m", 1},
-                          {Dimension::torque, "mN m", 1e-3}};
+/// The units of a dimension, in the order in which a message offers them.
+std::vector<Unit> units_of(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::time: return {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
+    case Dimension::angle:
+      return {{"rad", 1}, {"deg", degree}, {"ddeg", 0.1 * degree}, {"cdeg", 0.01 * degree}, {"mrad", 1e-3}};
+    case Dimension::turning:
+      return {{"rad/s", 1}, {"deg/s", degree}, {"ddeg/s", 0.1 * degree}, {"cdeg/s", 0.01 * degree}, {"mrad/s", 1e-3}};
+    case Dimension::angular_acceleration: return {{"rad/s^2", 1}, {"deg/s^2", degree}};
+    case Dimension::acceleration:
+      return {{"m/s^2", 1}, {"g", g_m_s2}, {"mg", 1e-3 * g_m_s2}, {"cm/s^2", 1e-2}, {"mm/s^2", 1e-3}};
+    case Dimension::speed: return {{"m/s", 1}, {"mm/s", 1e-3}, {"cm/s", 1e-2}, {"km/h", 1 / 3.6}};
+    case Dimension::length: return {{"m", 1}, {"mm", 1e-3}, {"cm", 1e-2}, {"ft", 0.3048}};
+    case Dimension::rotor_speed: return {{"rev/s", 1}, {"rpm", 1.0 / 60}, {"rad/s", 0.15915494309189535}};
+    case Dimension::force: return {{"N", 1}, {"mN", 1e-3}};
+    case Dimension::torque: return {{"N m", 1}, {"mN m", 1e-3}};
+    case Dimension::none: break;
+  }
+  return {};
+}
 
 /// Other spellings, as logs have them.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 12> spellings = {{{"m/s/s", "m/s^2"},
@@ -77,19 +60,11 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> spelling
                                                                                       {"Nm", "N m"},
                                                                                       {"sec", "s"}}};
 
-/// Null if that dimension has no such unit.
-const Unit* unit_named(Dimension dimension, std::string_view name) {
-  for (const Unit& unit : units) {
-    if (unit.dimension == dimension && name == unit.name) return &unit;
-  }
-  return nullptr;
-}
-
 /// "\"rad\" or \"deg\"": for messages.
 std::string unit_names(Dimension dimension) {
   std::string names;
-  for (const Unit& unit : units) {
-    if (unit.dimension == dimension) names += (names.empty() ? "\"" : ", \"") + std::string(unit.name) + "\"";
+  for (const Unit& unit : units_of(dimension)) {
+    names += (names.empty() ? "\"" : ", \"") + std::string(unit.name) + "\"";
   }
   return names;
 }
@@ -443,9 +418,10 @@ Mapping mapping_of(const toml::table& tables, const std::string& path) {
 std::optional<double> unit_in_si(Dimension dimension, const std::string& name) {
   const auto same =
       std::find_if(spellings.begin(), spellings.end(), [&](const auto& one) { return one.first == name; });
-  const Unit* unit = unit_named(dimension, same == spellings.end() ? std::string_view(name) : same->second);
-  if (!unit) return std::nullopt;
-  return unit->in_si;
+  for (const Unit& unit : units_of(dimension)) {
+    if (unit.name == (same == spellings.end() ? std::string_view(name) : same->second)) return unit.in_si;
+  }
+  return std::nullopt;
 }
 
 Mapping parse_mapping(const std::string& text, const std::string& path) {

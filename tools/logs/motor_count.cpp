@@ -35,30 +35,6 @@ std::optional<Numbered> numbered(const std::string& name) {
   return result;
 }
 
-/// The columns of the same array behind the four; none where the four are no array.
-std::vector<const LogColumn*> further_motors(const LogTopic& topic, const Source& source) {
-  constexpr std::size_t most_motors = 12;
-  const std::optional<Numbered> first = numbered(source.columns[0].name);
-  if (!first) return {};
-  std::vector<std::size_t> numbers;
-  for (const NamedColumn& one : source.columns) {
-    const std::optional<Numbered> other = numbered(one.name);
-    if (!other || other->before != first->before || other->behind != first->behind) return {};
-    numbers.push_back(other->number);
-  }
-  std::sort(numbers.begin(), numbers.end());
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (numbers[i] != numbers[0] + i || numbers[0] > 1) return {};
-  }
-  std::vector<const LogColumn*> further;
-  for (std::size_t i = numbers.size(); i < most_motors; ++i) {
-    const LogColumn* column = column_named(topic, first->at(numbers[0] + i));
-    if (column == nullptr) break;
-    further.push_back(column);
-  }
-  return further;
-}
-
 std::string kind_of(std::size_t motors) {
   constexpr std::array<const char*, 9> kinds = {"",
                                                 "a plane",
@@ -117,6 +93,25 @@ bool is_plus_frame(const FlightLog& log) {
 
 }  // namespace
 
+std::vector<std::string> further_motor_names(const Source& source) {
+  constexpr std::size_t most_motors = 12;
+  const std::optional<Numbered> first = numbered(source.columns[0].name);
+  if (!first) return {};
+  std::vector<std::size_t> numbers;
+  for (const NamedColumn& one : source.columns) {
+    const std::optional<Numbered> other = numbered(one.name);
+    if (!other || other->before != first->before || other->behind != first->behind) return {};
+    numbers.push_back(other->number);
+  }
+  std::sort(numbers.begin(), numbers.end());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] != numbers[0] + i || numbers[0] > 1) return {};
+  }
+  std::vector<std::string> names;
+  for (std::size_t i = numbers.size(); i < most_motors; ++i) names.push_back(first->at(numbers[0] + i));
+  return names;
+}
+
 void require_four_motors(const FlightLog& log, const LogTopic& topic, const Source& source, double least, double most,
                          const std::string& mapping_file) {
   constexpr double moves = 0.01;   // of the range: what is disarmed has up to .0025
@@ -136,8 +131,11 @@ void require_four_motors(const FlightLog& log, const LogTopic& topic, const Sour
   if (!frame.empty()) refuse(source.columns.front(), frame);
   std::vector<const LogColumn*> columns, commanded;
   for (const NamedColumn& one : source.columns) columns.push_back(column_named(topic, one.name));
-  const std::vector<const LogColumn*> further = further_motors(topic, source);
-  columns.insert(columns.end(), further.begin(), further.end());
+  for (const std::string& name : further_motor_names(source)) {
+    const LogColumn* further = column_named(topic, name);
+    if (further == nullptr) break;
+    columns.push_back(further);
+  }
   double range = most - least;
   if (source.numbers == MotorNumbers::speed) {
     range = 0;

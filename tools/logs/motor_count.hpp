@@ -3,10 +3,17 @@
 // nobody uses count as none.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "logs/mapping.hpp"
 #include "pinnquad/logs/flight_log.hpp"
 
 namespace pinnquad::logs {
+
+/// The columns of the same array behind the four, up to twelve motors: a log may have them. None where the four are no
+/// array.
+std::vector<std::string> further_motor_names(const Source& source);
 
 /// Throws InputError, one line, for a vehicle that is no X quadrotor: one of the four columns never commands anything
 /// beside others that do, columns of the same array beyond the four do, or PX4's parameters put the rotors on the axes.

@@ -120,7 +120,7 @@ class Import {
     std::vector<std::size_t> mappings;  // of the places
     for (std::size_t i = 0; i < logs_.size(); ++i) {
       use(mapping_of_log_[i]);
-      for (LogPlace& place : logs_at(logs_[i], selection(), !mapping_.time_column.name.empty())) {
+      for (LogPlace& place : logs_at(logs_[i], mapped_selection(mapping_), !mapping_.time_column.name.empty())) {
         if (stands_beside_log(place.path)) {
           add(dataset_.notes, place.path + ": written beside a blackbox log by blackbox_decode: skipped");
         } else {
@@ -134,7 +134,7 @@ class Import {
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double done = static_cast<double>(i), all = static_cast<double>(places.size());
       use(mappings[i]);
-      LogSelection selected = selection();
+      LogSelection selected = mapped_selection(mapping_);
       selected.prefix = places[i].prefix;
       selected.flight = places[i].flight;
       selected.on_progress = [&](double share) { report("reading " + places[i].name, (done + share) / all); };
@@ -211,14 +211,6 @@ class Import {
   void use(std::size_t mapping) {
     current_ = mapping;
     mapping_ = mappings_[mapping];
-  }
-
-  LogSelection selection() const {
-    LogSelection selected;
-    selected.topics = mapped_topics(mapping_);
-    if (!mapping_.flight_column.name.empty()) selected.label_columns.push_back(mapping_.flight_column.name);
-    if (!mapping_.trajectory_column.name.empty()) selected.label_columns.push_back(mapping_.trajectory_column.name);
-    return selected;
   }
 
   /// Each sentence once.

@@ -97,7 +97,7 @@ bool holds(const Flight& whole, const Flight& part) {
 void require_different_flights(const Dataset& dataset, const std::vector<std::string>& places) {
   const auto place = [&](std::size_t i) { return printable(places.empty() ? dataset[i].name : places[i]); };
   std::vector<std::uint64_t> hashes;
-  for (std::size_t i = 0; i < dataset.size(); ++i) {
+  for (std::size_t i = 0; i < dataset.size() && dataset.size() > 1; ++i) {
     hashes.push_back(content_hash(dataset[i]));
     for (std::size_t k = 0; k < i; ++k) {
       const bool same = hashes[k] == hashes[i];

@@ -166,11 +166,22 @@ RowMask outlier_rows(const Flight& flight) {
   if (flight.size() < 2 * around + 1) return mask;
   for (const JudgedColumn& column : judged_columns(flight)) {
     const std::vector<double>& values = column.values;
+    const auto step = [&values](std::size_t row) { return std::abs(values[row] - values[row - 1]); };
+    const double least_step = deviations * column.smallest_scale / 2;  // to both sides of an outlier
+    bool steps = false;
+    for (std::size_t row = 1; row <= values.size() && !steps; ++row) {
+      const bool before = row == 1 || step(row - 1) > least_step,
+                 after = row == values.size() || step(row) > least_step;
+      steps = before && after;
+    }
+    if (!steps) continue;
     std::vector<double> distance(values.size(), 0.0);
     for (std::size_t row = 0; row < values.size(); ++row) {
       const std::size_t begin = std::min(row > around ? row - around : 0, values.size() - (2 * around + 1));
-      const auto from = values.begin() + static_cast<std::ptrdiff_t>(begin);
-      distance[row] = std::abs(values[row] - detail::median_of({from, from + (2 * around + 1)}));
+      std::array<double, 2 * around + 1> near;
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(begin), near.size(), near.begin());
+      std::nth_element(near.begin(), near.begin() + around, near.end());
+      distance[row] = std::abs(values[row] - near[around]);
     }
     const double scale = std::max(normal * detail::median_of(distance), column.smallest_scale);
     for (std::size_t row = 0; row < values.size(); ++row) {

@@ -35,11 +35,17 @@ struct WatchedFlight {
   Series altitude, time_s, sum_of_commands;
   std::array<Series, rotor_count> commands;
 
-  explicit WatchedFlight(const Flight& flight) {
+  /// The first rows of a flight.
+  WatchedFlight(const Flight& flight, std::size_t rows) {
+    for (auto* const of : {&angles, &rates, &force, &world_velocity, &body_velocity, &turned, &rotated, &accelerated}) {
+      for (Series& axis : *of) axis.reserve(rows);
+    }
+    for (Series* const of : {&climbed, &altitude, &time_s, &sum_of_commands}) of->reserve(rows);
+    for (Series& of_rotor : commands) of_rotor.reserve(rows);
     Quaternion<double> before;
     Vector3<double> turns = Vector3<double>::Zero(), integral = turns, speed = turns;
     double climb = 0;
-    for (std::size_t row = 0; row < flight.size(); ++row) {
+    for (std::size_t row = 0; row < rows; ++row) {
       const Sample& sample = flight[row];
       const double step_s = row > 0 ? sample.time_s - flight[row - 1].time_s : 0;
       const Quaternion<double> q = attitude(sample);
@@ -246,12 +252,22 @@ std::vector<IndexRange> runs_of(const Watch& watch, const Series& time_s, double
 }  // namespace
 
 std::optional<detail::Implausible> find_standing_column(const Flight& flight, const HasQuantities& has) {
+  constexpr std::size_t few = 1000;  // of a flight that is one all columns move
   if (flight.size() < 2) return std::nullopt;
-  const WatchedFlight watched(flight);
-  for (const Watch& watch : watches_of(watched, has)) {
+  const auto stands_still = [](const Watch& watch, std::size_t rows) {
     std::size_t row = 1;
-    while (row < flight.size() && stands(watch, 0, row)) ++row;
-    if (row < flight.size() || !watch.contradicted({0, flight.size()})) continue;
+    while (row < rows && stands(watch, 0, row)) ++row;
+    return row == rows;
+  };
+  const std::size_t first = std::min(few, flight.size());
+  const WatchedFlight begin(flight, first);
+  const std::vector<Watch> of_begin = watches_of(begin, has);
+  if (std::none_of(of_begin.begin(), of_begin.end(), [&](const Watch& watch) { return stands_still(watch, first); })) {
+    return std::nullopt;
+  }
+  const WatchedFlight watched(flight, flight.size());
+  for (const Watch& watch : watches_of(watched, has)) {
+    if (!stands_still(watch, flight.size()) || !watch.contradicted({0, flight.size()})) continue;
     return detail::Implausible{
         0, watch.field, columns_of(watch) + " that change while " + watch.goes_with,
         "the same in all " + std::to_string(flight.size()) + " rows: a sensor that is off or has stopped"};
@@ -283,7 +299,7 @@ StandingRows standing_rows(const Flight& flight, const HasQuantities& has, doubl
   StandingRows result;
   result.out.assign(flight.size(), false);
   if (flight.empty()) return result;
-  const WatchedFlight watched(flight);
+  const WatchedFlight watched(flight, flight.size());
   for (const Watch& watch : watches_of(watched, has)) {
     const std::vector<IndexRange> runs = runs_of(watch, watched.time_s, period_s);
     if (runs.size() < fewest_runs) continue;

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "logs/file_window.hpp"
 #include "logs/ulog_format.hpp"
 #include "logs/ulog_messages.hpp"
 #include "logs/ulog_types.hpp"
 #include "pinnquad/io/decimal.hpp"
-#include "pinnquad/io/text_file.hpp"
 #include "pinnquad/logs/flight_log.hpp"
 
 namespace pinnquad::logs {
@@ -24,33 +24,34 @@ constexpr double ticks_per_s = 1e6;
 /// Makes a FlightLog of messages.
 class Reader {
  public:
-  Reader(std::string_view file, const std::string& name, const LogSelection& selection)
-      : selection_(selection), file_(file), messages_(file, name, log_.warnings) {
+  Reader(FileWindow& file, const std::string& name, const LogSelection& selection)
+      : selection_(selection), size_(file.size()), messages_(file, name, log_.warnings) {
     log_.source = name;
   }
 
   FlightLog read() {
     messages_.walk(*this);
-    log_.start_s = number(Basic::uint64, file_.data() + start_place) / ticks_per_s;
     return std::move(log_);
   }
+
+  void begin(std::uint64_t start_us) { log_.start_s = static_cast<double>(start_us) / ticks_per_s; }
 
   bool in_data() const noexcept { return rows_ > 0; }
 
   void progress(std::uint64_t bytes) {
     if (bytes < next_progress_) return;
     next_progress_ = bytes + progress_step;
-    selection_.report(static_cast<double>(bytes) / static_cast<double>(file_.size()));
+    selection_.report(static_cast<double>(bytes) / static_cast<double>(size_));
   }
 
-  bool fits(const Message& message) const {
+  bool fits(const Message& message) {
     switch (message.type) {
       case 'S': return message.content == sync_message.substr(message_header_size);
       case 'O':
       case 'R': return message.content.size() == 2;
       case 'D': {
-        const Subscription* const topic = subscription(message);
-        return topic != nullptr && topic->takes(message.content.size() - 2);
+        const auto topic = subscription(message);
+        return topic != topics_.end() && topic->second.takes(message.content.size() - 2);
       }
       case 'A': return message.content.size() > 3;
       case 'L': return message.content.size() >= 9;
@@ -71,13 +72,16 @@ class Reader {
       if (letter && message.type != 'B' && !message.content.empty()) return Taken::unknown;
       throw BadMessage{"a message with a letter for its type", "none"};
     }
-    if (message.type == 'D' && message.content.size() >= 2 && subscription(message) == nullptr) return Taken::unknown;
-    if (!fits(message)) {
+    const auto topic = message.type == 'D' ? subscription(message) : topics_.end();
+    if (message.type == 'D' && message.content.size() >= 2 && topic == topics_.end()) return Taken::unknown;
+    const bool sound =
+        topic != topics_.end() ? topic->second.takes(message.content.size() - 2) : message.type != 'D' && fits(message);
+    if (!sound) {
       throw BadMessage{std::string("a message of type ") + message.type + " as long as that type demands",
                        std::to_string(message.content.size()) + " bytes"};
     }
     switch (message.type) {
-      case 'D': row(message); break;
+      case 'D': row(topic->second, message); break;
       case 'A': subscribe(message); break;
       case 'R': topics_.erase(little_endian<std::uint16_t>(message.content.data())); break;
       case 'F': formats_.add(parse_format(message.content)); break;
@@ -104,17 +108,18 @@ class Reader {
     int instance = 0;
     std::size_t size = 0;
     std::size_t last_padding = 0;
-    std::size_t clock = none;  ///< offset of its time stamp
-    std::size_t topic = none;  ///< in the log, from its first row on
-    std::vector<Leaf> numbers, texts;
+    std::size_t clock = none;          ///< offset of its time stamp
+    std::size_t topic = none;          ///< in the log, from its first row on
+    std::vector<Leaf> numbers, texts;  ///< of which values are wanted
+    std::vector<std::size_t> columns;  ///< of the numbers, in the log's topic
 
     bool takes(std::size_t bytes) const noexcept { return bytes <= size && bytes >= size - last_padding; }
   };
+  using Subscriptions = std::unordered_map<std::uint16_t, Subscription>;
 
-  const Subscription* subscription(const Message& message) const {
-    if (message.content.size() < 2) return nullptr;
-    const auto found = topics_.find(little_endian<std::uint16_t>(message.content.data()));
-    return found == topics_.end() ? nullptr : &found->second;
+  Subscriptions::iterator subscription(const Message& message) {
+    if (message.content.size() < 2) return topics_.end();
+    return topics_.find(little_endian<std::uint16_t>(message.content.data()));
   }
 
   void subscribe(const Message& message) {
@@ -143,8 +148,7 @@ class Reader {
     topics_.emplace(id, std::move(topic));
   }
 
-  void row(const Message& message) {
-    Subscription& from = topics_.at(little_endian<std::uint16_t>(message.content.data()));
+  void row(Subscription& from, const Message& message) {
     if (from.wanted && from.topic == none) open(from);
     ++rows_;
     if (from.clock == none) return;
@@ -154,20 +158,44 @@ class Reader {
     last_time_s_ = std::max(last_time_s_, time_s);
     if (!from.wanted) return;
     LogTopic& topic = log_.topics[from.topic];
+    if (topic.size() == topic.time_s.capacity()) make_room(topic, from, message.place);
     topic.time_s.push_back(time_s);
     topic.place.push_back(message.place);
     for (std::size_t i = 0; i < from.numbers.size(); ++i) {
-      topic.columns[i].values.push_back(number(from.numbers[i].type, data + from.numbers[i].offset));
+      const Leaf& leaf = from.numbers[i];
+      topic.columns[from.columns[i]].values.push_back(number(leaf.type, data + leaf.offset));
     }
     for (std::size_t i = 0; i < from.texts.size(); ++i) {
       topic.texts[i].values.emplace_back(text_of({data + from.texts[i].offset, from.texts[i].length}));
     }
   }
 
+  /// As much as the rows that are to come take where the rest of the file is like what is before `place`: columns that
+  /// grow are there twice, and have half as much too much.
+  void make_room(LogTopic& topic, const Subscription& from, std::uint64_t place) const {
+    constexpr double spare = 1.02;
+    constexpr std::size_t first = 1024;
+    const double share = static_cast<double>(place + 1) / static_cast<double>(size_);
+    const double likely = spare * static_cast<double>(topic.size()) / share;
+    const std::size_t rows =
+        topic.size() + first + static_cast<std::size_t>(likely - static_cast<double>(topic.size()));
+    topic.time_s.reserve(rows);
+    topic.place.reserve(rows);
+    for (const std::size_t column : from.columns) topic.columns[column].values.reserve(rows);
+  }
+
   /// Columns, which a hostile format can have many of, only for a topic that has a row.
   void open(Subscription& from) {
+    std::vector<std::string> names;
     for (Leaf& leaf : formats_.leaves(from.name)) {
-      (leaf.type == Basic::character ? from.texts : from.numbers).push_back(std::move(leaf));
+      if (leaf.type == Basic::character) {
+        from.texts.push_back(std::move(leaf));
+        continue;
+      }
+      names.push_back(leaf.column);
+      if (!selection_.wants(from.name, leaf.column)) continue;
+      from.columns.push_back(names.size() - 1);
+      from.numbers.push_back(std::move(leaf));
     }
     const auto [known, is_new] = opened_.emplace(std::make_pair(from.name, from.instance), log_.topics.size());
     from.topic = known->second;
@@ -177,7 +205,7 @@ class Reader {
     topic.instance = from.instance;
     topic.file = log_.source;
     topic.places_are_lines = false;
-    for (const Leaf& leaf : from.numbers) topic.columns.push_back({leaf.column, {}, {}});
+    for (std::string& name : names) topic.columns.push_back({std::move(name), {}, {}});
     for (const Leaf& leaf : from.texts) topic.texts.push_back({leaf.column, {}});
     log_.topics.push_back(std::move(topic));
   }
@@ -239,11 +267,11 @@ class Reader {
   }
 
   const LogSelection& selection_;
-  std::string_view file_;
+  std::uint64_t size_;  ///< of the file
   FlightLog log_;
   Messages messages_;
   Formats formats_;
-  std::unordered_map<std::uint16_t, Subscription> topics_;  ///< by number
+  Subscriptions topics_;  ///< by number
   std::map<std::pair<std::string, int>, std::size_t> opened_;
   bool is_running_ = false;  ///< the log's definitions are over
   std::size_t rows_ = 0;
@@ -254,12 +282,13 @@ class Reader {
 }  // namespace ulog
 
 FlightLog parse_ulog(std::string_view file, const std::string& name, const LogSelection& selection) {
-  return ulog::Reader(file, name, selection).read();
+  FileWindow window(file);
+  return ulog::Reader(window, name, selection).read();
 }
 
 FlightLog read_ulog(const std::string& path, const LogSelection& selection) {
-  const std::string file = file_text(path);
-  return parse_ulog(file, path, selection);
+  FileWindow window(path);
+  return ulog::Reader(window, path, selection).read();
 }
 
 }  // namespace pinnquad::logs

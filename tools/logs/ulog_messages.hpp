@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "logs/file_window.hpp"
 #include "logs/ulog_types.hpp"
 #include "pinnquad/io/file_error.hpp"
 
@@ -28,15 +29,16 @@ enum class Taken { yes, unknown };
 /// in `warnings`.
 class Messages {
  public:
-  Messages(std::string_view file, std::string name, std::vector<std::string>& warnings)
+  Messages(FileWindow& file, std::string name, std::vector<std::string>& warnings)
       : file_(file), name_(std::move(name)), warnings_(warnings) {}
 
   /// `reader.take(message)` may throw BadMessage; `reader.fits(message)` says whether one is as its type demands;
-  /// `reader.in_data()` whether a row has been read; `reader.progress(bytes)` is told how far the walk is.
+  /// `reader.in_data()` whether a row has been read; `reader.begin(start_us)` is told when the logger began,
+  /// `reader.progress(bytes)` how far the walk is.
   /// Throws InputError: no ULog file, one of an incompatible kind, a bad message before the data.
   template <class Reader>
   void walk(Reader& reader) {
-    check_header();
+    reader.begin(read_header());
     for (const auto& [begin, end] : sections()) {
       position_ = begin;
       end_ = end;
@@ -76,27 +78,31 @@ class Messages {
     throw InputError(name_, 0, 0, expected + " at byte " + std::to_string(place), found);
   }
 
-  void check_header() {
-    if (file_.substr(0, magic.size()) != magic) {
+  /// The time stamp of the log's start.
+  std::uint64_t read_header() {
+    const std::string_view header = file_.at(0, file_header_size);
+    if (header.substr(0, magic.size()) != magic) {
       throw InputError(name_, 0, 0, "a ULog file, which begins with ULog 01 12 35 (hexadecimal)",
-                       file_.size() < magic.size() && magic.substr(0, file_.size()) == file_
-                           ? "only " + std::to_string(file_.size()) + " bytes"
+                       header.size() < magic.size() && magic.substr(0, header.size()) == header
+                           ? "only " + std::to_string(header.size()) + " bytes"
                            : "other bytes");
     }
-    if (file_.size() < file_header_size) {
-      throw InputError(name_, 0, 0, "a header of 16 bytes", "only " + std::to_string(file_.size()));
+    if (header.size() < file_header_size) {
+      throw InputError(name_, 0, 0, "a header of 16 bytes", "only " + std::to_string(header.size()));
     }
-    const auto version = static_cast<std::uint8_t>(file_[version_place]);
+    const auto version = static_cast<std::uint8_t>(header[version_place]);
     if (version > newest_known_version) {
       warn(version_place, "version " + std::to_string(version) + " of the format, which is newer than this reader");
     }
+    return little_endian<std::uint64_t>(header.data() + start_place);
   }
 
   /// The log itself, and what a crash dump appended to it.
   std::vector<Section> sections() {
     const std::uint64_t size = file_.size();
     Message flags;
-    if (!whole(file_header_size, size, flags) || flags.type != 'B') return {{file_header_size, size}};
+    if (!whole(file_.at(file_header_size, longest_whole), flags) || flags.type != 'B')
+      return {{file_header_size, size}};
     const std::uint64_t after = file_header_size + message_header_size + flags.content.size();
     if (flags.content.size() < FlagBits::size) {
       refuse(file_header_size, "flag bits of 40 bytes", std::to_string(flags.content.size()));
@@ -127,32 +133,30 @@ class Messages {
     return result;
   }
 
-  /// The message whose header begins there; false where it does not end before `end`.
-  bool whole(std::uint64_t place, std::uint64_t end, Message& message) const {
-    if (end - place < message_header_size) return false;
-    const char* const header = file_.data() + place;
-    const auto size = little_endian<std::uint16_t>(header);
-    if (size > end - place - message_header_size) return false;
-    message = {header[2], file_.substr(place + message_header_size, size), place};
+  /// The message at the begin of these bytes; false where it does not end within them.
+  static bool whole(std::string_view bytes, Message& message) {
+    if (bytes.size() < message_header_size) return false;
+    const auto size = little_endian<std::uint16_t>(bytes.data());
+    if (size > bytes.size() - message_header_size) return false;
+    message.type = bytes[2];
+    message.content = bytes.substr(message_header_size, size);
     return true;
-  }
-
-  std::uint64_t next_sync(std::uint64_t from) const {
-    const std::size_t found = file_.substr(0, end_).find(sync_message, from);
-    return found == std::string_view::npos ? end_ : found;
   }
 
   template <class Reader>
   void step(Reader& reader) {
-    Message message;
-    if (!whole(position_, end_, message)) {
-      if (next_sync(position_ + 1) < end_)
+    constexpr std::uint64_t two = 2 * longest_whole;
+    static_assert(two <= FileWindow::most, "a message and the one behind it are looked at together");
+    const std::string_view bytes = file_.at(position_, static_cast<std::size_t>(std::min(two, end_ - position_)));
+    Message message{0, {}, position_};
+    if (!whole(bytes, message)) {
+      if (file_.find(sync_message, position_ + 1, end_) < end_)
         throw BadMessage{"a message that ends before the next sync message", "a longer one"};
       warn(position_, "the log ends in the middle of a message; what stands before it has been read");
       position_ = end_;
       return;
     }
-    const std::uint64_t next = position_ + message_header_size + message.content.size();
+    const std::size_t size = message_header_size + message.content.size();
     if (message.type != 'D' && message.content.find(sync_message) != std::string_view::npos) {
       throw BadMessage{"a message that ends before the next sync message", "a longer one"};
     }
@@ -160,16 +164,16 @@ class Messages {
       // of a newer logger, which is to be ignored, or of bytes that were damaged: then what follows makes no sense
       // either
       Message following;
-      if (next < end_ && !(whole(next, end_, following) && reader.fits(following))) {
+      if (bytes.size() > size && !(whole(bytes.substr(size), following) && reader.fits(following))) {
         throw BadMessage{"a message of a known type and topic", "another one, and no message behind it"};
       }
       if (unknown_++ == 0) first_unknown_ = position_;
     }
-    position_ = next;
+    position_ += size;
   }
 
   void resynchronise(const BadMessage& bad) {
-    const std::uint64_t next = next_sync(position_ + 1);
+    const std::uint64_t next = file_.find(sync_message, position_ + 1, end_);
     const std::string lost = std::to_string(next - position_);
     warn(position_,
          "expected " + bad.expected + ", found " + bad.found + ": " + lost +
@@ -177,7 +181,9 @@ class Messages {
     position_ = next;
   }
 
-  std::string_view file_;
+  static constexpr std::size_t longest_whole = message_header_size + longest_message;
+
+  FileWindow& file_;
   std::string name_;
   std::vector<std::string>& warnings_;
   std::uint64_t position_ = 0, end_ = 0;

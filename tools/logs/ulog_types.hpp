@@ -41,11 +41,17 @@ struct BadMessage {
 
 template <class Integer>
 Integer little_endian(const char* at) noexcept {
-  std::uint64_t value = 0;
+  Integer value{};
+#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+  std::memcpy(&value, at, sizeof value);
+#else
+  std::uint64_t bits = 0;
   for (std::size_t byte = 0; byte < sizeof(Integer); ++byte) {
-    value |= std::uint64_t{static_cast<unsigned char>(at[byte])} << (8 * byte);
+    bits |= std::uint64_t{static_cast<unsigned char>(at[byte])} << (8 * byte);
   }
-  return static_cast<Integer>(value);
+  value = static_cast<Integer>(bits);
+#endif
+  return value;
 }
 
 template <class Real, class Bits>

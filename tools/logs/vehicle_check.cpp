@@ -74,10 +74,9 @@ CommandLag widest_lag(const std::vector<Flight>& segments, double period_s) {
   const auto explained = [](const CommandLag& lag) {
     return lag.found ? lag.motions[0].explained + lag.motions[1].explained : 0;
   };
-  CommandLag lag = estimate_command_lag(segments, period_s);
-  CommandLag wide = estimate_command_lag(segments, period_s, {-0.4, 0.4});
-  const bool better = wide.likely() && explained(wide) > std::max(well, far_better * explained(lag));
-  return better ? wide : lag;
+  const std::vector<CommandLag> found = estimate_command_lags(segments, period_s, {{}, {-0.4, 0.4}});
+  const bool better = found[1].likely() && explained(found[1]) > std::max(well, far_better * explained(found[0]));
+  return better ? found[1] : found[0];
 }
 
 /// `on_rows` is called with the rows of each identification that is finished: each row counts twice, among all and then
@@ -97,6 +96,7 @@ Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_
   judged.aligned = split_at_gaps(std::move(begin), 1.5 * period_s);
   IdentificationSettings settings;
   settings.thrust_curve = airframe.rotors[0].thrust_curve;
+  settings.scope = IdentificationScope::without_rise_and_fall;
   RowSet rows;
   std::array<RowSet, 2> half_rows;
   for (const Flight& segment : judged.aligned) {

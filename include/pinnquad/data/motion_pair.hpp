@@ -104,7 +104,10 @@ class MotionPair {
         open = false;
         continue;
       }
-      if (!open) stretches_.push_back({{0.0}, {Vector3<double>::Zero()}, {Vector3<double>::Zero()}});
+      if (!open) {
+        stretches_.push_back({{0.0}, {Vector3<double>::Zero()}, {Vector3<double>::Zero()}});
+        if (row == 0) stretches_.back().reserve(rows);  // most flights are one stretch
+      }
       open = true;
       Stretch& stretch = stretches_.back();
       stretch.changed.push_back(stretch.changed.back() + changed);
@@ -125,8 +128,16 @@ class MotionPair {
     std::vector<double> time_s;  // from its begin
     std::vector<Vector3<double>> changed, integral;
 
-    /// `row`: not after that time; the answer's.
+    void reserve(std::size_t rows) {
+      time_s.reserve(rows);
+      changed.reserve(rows);
+      integral.reserve(rows);
+    }
+
+    /// `row`: near that time; the answer's.
     Vector3<double> integral_at(double at_s, std::size_t& row) const {
+      row = std::min(row, time_s.size() - 2);
+      while (row > 0 && time_s[row] > at_s) --row;
       while (row + 2 < time_s.size() && time_s[row + 1] <= at_s) ++row;
       const double share = (at_s - time_s[row]) / (time_s[row + 1] - time_s[row]);
       return integral[row] + share * (integral[row + 1] - integral[row]);

@@ -26,11 +26,19 @@
 
 namespace pinnquad {
 
+/// How much of a vehicle is asked: each less costs less, and leaves the rest of Identification as it was.
+enum class IdentificationScope {
+  all,
+  without_rise_and_fall,  ///< no time constants of growing and falling thrust apart
+  thrust_curve            ///< that alone, where it is to be found
+};
+
 /// Smoothing of an identification, and numbers that it takes as known.
 struct IdentificationSettings {
   double window_s = 0.16;         ///< of the smoothing: motion up to some 6 Hz counts
   double thrust_curve = 0;        ///< of thrust_fraction()
   bool fit_thrust_curve = false;  ///< finds it where flights tell it (told_curve()), in place of taking that one
+  IdentificationScope scope = IdentificationScope::all;
 };
 
 /// An interval is infinite where the flights do not tell.

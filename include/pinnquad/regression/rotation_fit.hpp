@@ -103,8 +103,12 @@ class RotationFit {
   /// Root mean square of what is left of an axis, rad/s^2, of this sum of squares.
   double root_mean_square(double squares) const;
 
-  /// The same of what least squares leave, by sums of products.
-  double left_by_least_squares(const Turning& turning, std::size_t axis) const;
+  /// Sums of products of the unknowns of an axis, and of what they make.
+  using Products = Eigen::Matrix<double, static_cast<int>(of_axis) + 1, static_cast<int>(of_axis) + 1>;
+  Products products_of(const Turning& turning, std::size_t axis) const;
+
+  /// The same of what least squares leave; `any`: products_of() an axis under any response.
+  double left_by_least_squares(const Turning& turning, std::size_t axis, const Products& any) const;
 
   /// The same of what the unknowns of an axis, from the `first` on, leave.
   double deviation(const Turning& turning, std::size_t axis, const BlockSolution& solution, std::size_t first) const;

@@ -27,6 +27,19 @@ PINNQUAD_BODY Vector3<double> turn_vector(const Quaternion<double>& q) {
   return v * (sine > 1e-12 ? 2 * std::atan2(sine, shorter_way * q.w) / sine : 2.0);
 }
 
+/// Attitudes of a flight whose angles `angles(row)` gives.
+template <class Angles>
+std::vector<Quaternion<double>> attitudes(std::size_t rows, const Angles& angles) {
+  std::vector<Quaternion<double>> result;
+  result.reserve(rows);
+  for (std::size_t row = 0; row < rows; ++row) result.push_back(from_euler(angles(row)));
+  return result;
+}
+
+PINNQUAD_BODY std::vector<Quaternion<double>> attitudes_of(const Flight& flight) {
+  return attitudes(flight.size(), [&](std::size_t row) { return angles_of(flight[row]); });
+}
+
 PINNQUAD_BODY MotionPair turning_pair(const Flight& flight, const TurningReading& reading) {
   const auto read = [&](std::size_t row) {
     EulerAngles<double> angles = angles_of(flight[row]);
@@ -35,23 +48,24 @@ PINNQUAD_BODY MotionPair turning_pair(const Flight& flight, const TurningReading
     if (reading.degrees[2]) angles.yaw_rad /= degrees_per_radian;
     return angles;
   };
-  const auto change = [&](std::size_t row) -> Vector3<double> {
-    const EulerAngles<double> begin = read(row), end = read(row + 1);
-    const Quaternion<double> q = from_euler(begin);
-    const Vector3<double> turn = turn_vector(conjugate(q) * from_euler(end)) * reading.rates_unit;
+  const std::vector<Quaternion<double>> attitude = attitudes(flight.size(), read);
+  const auto of_angles = [&](std::size_t row, const Vector3<double>& turn) {
+    const EulerAngles<double> begin = read(row);
     const double sr = std::sin(begin.roll_rad), cr = std::cos(begin.roll_rad);
+    const double across = sr * turn[1] + cr * turn[2];
+    return Vector3<double>(turn[0] + std::tan(begin.pitch_rad) * across, cr * turn[1] - sr * turn[2],
+                           across / std::cos(begin.pitch_rad));
+  };
+  const auto change = [&](std::size_t row) -> Vector3<double> {
+    const Quaternion<double>& q = attitude[row];
+    const Vector3<double> turn = turn_vector(conjugate(q) * attitude[row + 1]) * reading.rates_unit;
     switch (reading.rates) {
       case TurningReading::of_world: return body_to_world(q, turn);
       case TurningReading::of_enu_world: return swap_enu_ned(body_to_world(q, turn));
       case TurningReading::of_world_as_flu: return swap_flu_frd(body_to_world(q, turn));
       case TurningReading::of_enu_world_as_flu: return swap_flu_frd(swap_enu_ned(body_to_world(q, turn)));
-      case TurningReading::of_angles_as_flu:
-      case TurningReading::of_angles: {
-        const double across = sr * turn[1] + cr * turn[2];
-        const Vector3<double> angles(turn[0] + std::tan(begin.pitch_rad) * across, cr * turn[1] - sr * turn[2],
-                                     across / std::cos(begin.pitch_rad));
-        return reading.rates == TurningReading::of_angles ? angles : swap_flu_frd(angles);
-      }
+      case TurningReading::of_angles_as_flu: return swap_flu_frd(of_angles(row, turn));
+      case TurningReading::of_angles: return of_angles(row, turn);
       case TurningReading::of_flu_body: return swap_flu_frd(turn);
       case TurningReading::reversed: return -turn;
       case TurningReading::of_body: break;
@@ -232,11 +246,13 @@ struct AccelerationReading {
     return "";
   }
 
-  Vector3<double> body_derivative(const Sample& sample) const {
+  Vector3<double> body_derivative(const Sample& sample, const Quaternion<double>& q) const {
     const Vector3<double> given = sample.linear_acceleration_m_s2;
+    if (kind == kinematic) return given;
     const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
-    const Quaternion<double> q = from_euler(angles_of(sample));
-    const Vector3<double> gravity = world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>));
+    const bool falls = kind == world_force || kind == no_gravity || kind == accelerometer;
+    const Vector3<double> gravity =
+        falls ? world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>)) : Vector3<double>::Zero();
     switch (kind) {
       case without_turning: return given - turning;
       case world_derivative: return world_to_body(q, in_axes(given, axes)) - turning;
@@ -249,32 +265,38 @@ struct AccelerationReading {
     return given;
   }
 };
-PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const VelocityReading& reading) {
-  const auto velocity = [&](std::size_t row) {
-    const Quaternion<double> q = from_euler(angles_of(flight[row]));
-    Vector3<double> result = in_axes(flight[row].velocity_m_s, reading.of_columns);
+PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
+                                             const VelocityReading& reading) {
+  std::vector<Vector3<double>> velocity, acceleration;
+  velocity.reserve(flight.size());
+  acceleration.reserve(flight.size());
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    const Sample& sample = flight[row];
+    Vector3<double> read = in_axes(sample.velocity_m_s, reading.of_columns);
     for (int turn = 0; turn < reading.turns; ++turn) {
-      result = body_to_world(q, result);
-      if (turn == 0) result = in_axes(result, reading.of_world);
+      read = body_to_world(attitude[row], read);
+      if (turn == 0) read = in_axes(read, reading.of_world);
     }
-    return result;
-  };
+    velocity.push_back(read);
+    const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
+    acceleration.push_back(body_to_world(attitude[row], Vector3<double>(sample.linear_acceleration_m_s2 + turning)));
+  }
   return {flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-          [&](std::size_t row) -> Vector3<double> { return velocity(row + 1) - velocity(row); },
-          [&](std::size_t row) {
-            const Sample& sample = flight[row];
-            const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
-            return body_to_world(from_euler(angles_of(sample)),
-                                 Vector3<double>(sample.linear_acceleration_m_s2 + turning));
-          }};
+          [&](std::size_t row) -> Vector3<double> { return velocity[row + 1] - velocity[row]; },
+          [&](std::size_t row) -> const Vector3<double>& { return acceleration[row]; }};
+}
+
+PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const VelocityReading& reading) {
+  return world_velocity_pair(flight, attitudes_of(flight), reading);
 }
 
 /// Velocities that are negated along one axis of the world, of another unit, or late.
-PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& flight) {
+PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& flight,
+                                                               const std::vector<Quaternion<double>>& attitude) {
   constexpr double follows = 0.8, better = 0.25, straight = 0.9, alike = 1.3;
   constexpr double fits = 0.95;  // an acceleration in other axes agrees with such a velocity by less
   constexpr std::array<const char*, 3> along = {"north", "east", "down"};
-  const MotionPair pair = world_velocity_pair(flight);
+  const MotionPair pair = world_velocity_pair(flight, attitude, {});
   const MotionBlocks sums = pair.sums(turning_step_s);
   const std::string expected =
       "a velocity that changes by the accelerations vdot_bx to vdot_bz in columns v_bx, v_by, v_bz";
@@ -299,7 +321,7 @@ PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& fli
   double most = as_it_stands;
   std::string best;
   const auto judge = [&](const VelocityReading& reading, const char* text) {
-    const MotionBlocks read = world_velocity_pair(flight, reading).sums(turning_step_s);
+    const MotionBlocks read = world_velocity_pair(flight, attitude, reading).sums(turning_step_s);
     const double so = read.agreement(moving);
     const double enough = reading.of_columns + reading.of_world > 0 ? fits : related;
     if (!(so > most && so > enough && 1 - so < far_better * (1 - as_it_stands))) return;
@@ -327,13 +349,14 @@ PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& fli
 }
 
 /// An altitude that falls where the velocity rises, or rises by another unit.
-PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& flight) {
+PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& flight,
+                                                               const std::vector<Quaternion<double>>& attitude) {
   constexpr double follows = 0.8;
   const MotionPair pair(
       flight.size(), [&](std::size_t row) { return flight[row].time_s; },
       [&](std::size_t row) { return Vector3<double>(flight[row + 1].altitude_m - flight[row].altitude_m, 0, 0); },
       [&](std::size_t row) {
-        return Vector3<double>(-body_to_world(from_euler(angles_of(flight[row])), flight[row].velocity_m_s)[2], 0, 0);
+        return Vector3<double>(-body_to_world(attitude[row], flight[row].velocity_m_s)[2], 0, 0);
       });
   const MotionBlocks sums = pair.sums(turning_step_s);
   const auto mistake = find_axis_mistake(sums, follows, follows);
@@ -349,24 +372,28 @@ PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& fli
 PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
   using namespace detail;
   constexpr double unexplained = 0.1, better = 0.25;
-  const auto sums = [&](const auto& value, const auto& rate) {
+  const auto sums = [&](Vector3<double> Sample::*const value, const auto& rate) {
     return MotionPair(
                flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-               [&](std::size_t row) { return Vector3<double>(value(flight[row + 1]) - value(flight[row])); },
-               [&](std::size_t row) { return Vector3<double>(rate(flight[row])); })
+               [&](std::size_t row) { return Vector3<double>(flight[row + 1].*value - flight[row].*value); }, rate)
         .sums(acceleration_step_s);
   };
-  const MotionBlocks angular = sums([](const Sample& sample) { return sample.body_rates_rad_s; },
-                                    [](const Sample& sample) { return sample.angular_acceleration_rad_s2; });
+  const MotionBlocks angular = sums(&Sample::body_rates_rad_s, [&](std::size_t row) -> const Vector3<double>& {
+    return flight[row].angular_acceleration_rad_s2;
+  });
   if (auto mistake = wrong_axis(angular, angular_field, rates_field)) return mistake;
-  if (auto mistake = find_velocity_mistake(flight)) return mistake;
-  if (auto mistake = find_altitude_mistake(flight)) return mistake;
+  const std::vector<Quaternion<double>> attitude = attitudes_of(flight);
+  if (auto mistake = find_velocity_mistake(flight, attitude)) return mistake;
+  if (auto mistake = find_altitude_mistake(flight, attitude)) return mistake;
   const auto left_of = [](const MotionSums& block) {
     return block.changes.sum() + block.integrals.sum() - 2 * block.products.trace();
   };
+  std::vector<Vector3<double>> derivative(flight.size());
   const auto read_as = [&](const AccelerationReading& reading) {
-    return sums([](const Sample& sample) { return sample.velocity_m_s; },
-                [&reading](const Sample& sample) { return reading.body_derivative(sample); });
+    for (std::size_t row = 0; row < flight.size(); ++row) {
+      derivative[row] = reading.body_derivative(flight[row], attitude[row]);
+    }
+    return sums(&Sample::velocity_m_s, [&](std::size_t row) -> const Vector3<double>& { return derivative[row]; });
   };
   const MotionBlocks linear = read_as({});
   const double left = left_of(linear);

@@ -166,13 +166,23 @@ PINNQUAD_BODY MotionBlocks MotionPair::sums(double step_s, double late_s) const 
   double before_s = 0;
   for (const Stretch& stretch : stretches_) {
     const std::size_t rows = stretch.time_s.size();
-    std::size_t from = 0, to = 0;  // the rows before the begin and the end of the earlier step
+    std::size_t row = 0, step = 1;          // of the integral that was read last; rows of the earlier step
+    std::optional<Vector3<double>> before;  // the integral at the end of the earlier step, which is this one's begin
+    const auto takes_less = [&](std::size_t begin, std::size_t end) {
+      return stretch.time_s[end] - stretch.time_s[begin] < step_s - rounding;
+    };
     for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
-      while (end < rows && stretch.time_s[end] - stretch.time_s[begin] < step_s - rounding) ++end;
+      end = std::min(begin + step, rows - 1);
+      while (end > begin && !takes_less(begin, end - 1)) --end;
+      while (end < rows && takes_less(begin, end)) ++end;
       if (end == rows) break;
+      step = end - begin;
       const double first_s = stretch.time_s[begin] - late_s, last_s = stretch.time_s[end] - late_s;
       if (first_s < 0 || last_s > stretch.time_s.back()) continue;
-      const Vector3<double> integral = stretch.integral_at(last_s, to) - stretch.integral_at(first_s, from);
+      const Vector3<double> first = before ? *before : stretch.integral_at(first_s, row);
+      row += step;
+      before = stretch.integral_at(last_s, row);
+      const Vector3<double> integral = *before - first;
       const double share = (before_s + stretch.time_s[begin]) / duration_s;
       const auto block = static_cast<std::size_t>(share * static_cast<double>(blocks.size()));
       blocks[std::min(block, blocks.size() - 1)].add(stretch.changed[end] - stretch.changed[begin], integral);

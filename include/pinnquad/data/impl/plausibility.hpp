@@ -8,10 +8,23 @@ namespace pinnquad {
 namespace detail {
 
 PINNQUAD_BODY std::vector<double> column_of(const Flight& flight, std::size_t field) {
+  constexpr std::array<Vector3<double> Sample::*, 4> vectors = {&Sample::linear_acceleration_m_s2,
+                                                                &Sample::angular_acceleration_rad_s2,
+                                                                &Sample::velocity_m_s, &Sample::body_rates_rad_s};
+  constexpr std::array<double Sample::*, 4> numbers = {&Sample::roll_rad, &Sample::pitch_rad, &Sample::yaw_rad,
+                                                       &Sample::altitude_m};
   std::vector<double> column;
   column.reserve(flight.size());
-  for (const Sample& sample : flight) column.push_back(to_values(sample)[field]);
-  return column;
+  const auto fill = [&](const auto& of) {
+    for (const Sample& sample : flight) column.push_back(of(sample));
+    return std::move(column);
+  };
+  if (field >= first_command_field)
+    return fill([&](const Sample& s) { return s.commands[field - first_command_field]; });
+  if (field >= angles_field) return fill([of = numbers[field - angles_field]](const Sample& s) { return s.*of; });
+  if (field < linear_field) return fill([](const Sample& s) { return s.time_s; });
+  const auto axis = static_cast<Eigen::Index>((field - linear_field) % 3);
+  return fill([of = vectors[(field - linear_field) / 3], axis](const Sample& s) { return (s.*of)[axis]; });
 }
 
 PINNQUAD_BODY double median_of(std::vector<double> series) {
@@ -83,7 +96,11 @@ PINNQUAD_BODY std::optional<Implausible> find_outlier(const Flight& flight, std:
   if (!(column.smallest_scale > 0) || flight.empty()) return std::nullopt;
   constexpr double normal = 1.4826;  // standard deviation of a normal column over its median absolute deviation
   const std::vector<double> values = column_of(flight, field);
+  const double nearest = most_robust_deviations * column.smallest_scale;  // that an outlier is to its median
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  if (*most - *least <= nearest) return std::nullopt;
   const double median = median_of(values);
+  if (*most - median <= nearest && median - *least <= nearest) return std::nullopt;
   std::vector<double> distance;
   distance.reserve(values.size());
   for (const double value : values) distance.push_back(std::abs(value - median));

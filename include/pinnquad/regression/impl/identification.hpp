@@ -47,6 +47,7 @@ PINNQUAD_BODY Identification Identifier::run() {
   if (settings_.fit_thrust_curve) {
     result.curve_by = curves();
     result.thrust_curve = agreed_curve(result.curve_by, !rows_.flights().kinematic_force()[2].empty());
+    if (settings_.scope == IdentificationScope::thrust_curve) return result;
     if (const auto told = told_curve(result.thrust_curve)) {
       curve = *told;
       find_rotation(curve, result);
@@ -111,7 +112,7 @@ PINNQUAD_BODY void Identifier::find_rotation(double curve, Identification& resul
     result.gyroscopic[axis] = solution.estimate(from + 3);
     result.by_velocity_rad_s_m[axis] = solution.estimate(from + 4);
   }
-  if (result.delay_held) return;
+  if (result.delay_held || settings_.scope != IdentificationScope::all) return;
   RotorResponse each = response_;
   const BlockSolution two = fit.converge(each, RotationFit::rise_fall_and_delay());
   if (!two.told(first) || !two.told(first + 1)) return;

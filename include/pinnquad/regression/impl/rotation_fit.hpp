@@ -40,6 +40,7 @@ PINNQUAD_BODY RotorResponse RotationFit::nearest() const {
   constexpr int delays = 16;
   RotorResponse best{lags_s[1], lags_s[1], 0};
   double least = std::numeric_limits<double>::infinity();
+  std::array<Products, 3> any;
   for (int k = 0; k < delays; ++k) {
     const double delay_s = first_delay_s + step_s * k;
     const Wanted wanted = rows_.flights().wanted(curve_, delay_s);
@@ -47,7 +48,11 @@ PINNQUAD_BODY RotorResponse RotationFit::nearest() const {
       const RotorResponse at{lag_s, lag_s, delay_s};
       const Fractions s = rows_.flights().followed(wanted, at);
       double left = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) left += std::log(left_by_least_squares(turning_of(s, axis), axis));
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Turning turning = turning_of(s, axis);
+        if (k == 0 && lag_s <= lags_s.front()) any[axis] = products_of(turning, axis);
+        left += std::log(left_by_least_squares(turning, axis, any[axis]));
+      }
       if (!(left < least)) continue;
       least = left;
       best = at;
@@ -181,15 +186,33 @@ PINNQUAD_BODY double RotationFit::root_mean_square(double squares) const {
   return std::max(least, std::sqrt(std::max(0.0, squares) / static_cast<double>(rows_.instants().size())));
 }
 
-PINNQUAD_BODY double RotationFit::left_by_least_squares(const Turning& turning, std::size_t axis) const {
-  constexpr int unknowns = static_cast<int>(of_axis), columns = unknowns + 1;
-  Eigen::Matrix<double, columns, columns> sums = Eigen::Matrix<double, columns, columns>::Zero();
-  Eigen::Matrix<double, columns, 1> row;
+PINNQUAD_BODY RotationFit::Products RotationFit::products_of(const Turning& turning, std::size_t axis) const {
+  Products sums = Products::Zero();
+  Eigen::Matrix<double, Products::RowsAtCompileTime, 1> row;
+  for (const std::size_t i : rows_.instants()) {
+    fill_axis(turning, axis, i, row.data());
+    row[Products::RowsAtCompileTime - 1] = rows_.flights().angular_acceleration()[axis][i];
+    sums.noalias() += row * row.transpose();
+  }
+  return sums;
+}
+
+PINNQUAD_BODY double RotationFit::left_by_least_squares(const Turning& turning, std::size_t axis,
+                                                        const Products& any) const {
+  constexpr int unknowns = static_cast<int>(of_axis);
+  using Row = Eigen::Array<double, unknowns + 1, 1>;
+  Row row, by_about = Row::Zero(), by_sum = Row::Zero();  // the response is in these two alone
   for (const std::size_t i : rows_.instants()) {
     fill_axis(turning, axis, i, row.data());
     row[unknowns] = rows_.flights().angular_acceleration()[axis][i];
-    sums.noalias() += row * row.transpose();
+    by_about += row[0] * row;
+    by_sum += row[1] * row;
   }
+  Products sums = any;
+  sums.col(0) = by_about.matrix();
+  sums.col(1) = by_sum.matrix();
+  sums.row(0) = by_about.matrix().transpose();
+  sums.row(1) = by_sum.matrix().transpose();
   Eigen::VectorXd scale(unknowns);
   for (int k = 0; k < unknowns; ++k) scale[k] = sums(k, k) > 0 ? 1 / std::sqrt(sums(k, k)) : 0;
   const Eigen::MatrixXd a = scale.asDiagonal() * sums.topLeftCorner<unknowns, unknowns>() * scale.asDiagonal();

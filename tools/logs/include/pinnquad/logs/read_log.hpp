@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +18,10 @@ namespace pinnquad::logs {
 
 /// The wanted part of a log: a reader leaves out the rest, which is most of it.
 struct LogSelection {
-  std::vector<std::string> topics;         ///< by name, each with all its instances; every topic if empty
+  std::vector<std::string> topics;  ///< by name, each with all its instances; every topic if empty
+  /// By topic, those of a ULog file whose numbers are wanted: others have a name and no values. All of a topic that is
+  /// not named here.
+  std::map<std::string, std::set<std::string>> columns;
   std::string prefix;                      ///< which log of a folder of several: what its files' names begin with
   std::size_t flight = 0;                  ///< which flight of a blackbox log of several
   std::string clock_column;                ///< of a CSV table; none if empty: its time_s is NaN
@@ -30,6 +35,10 @@ struct LogSelection {
   }
   bool wants(std::string_view topic) const {
     return topics.empty() || std::find(topics.begin(), topics.end(), topic) != topics.end();
+  }
+  bool wants(const std::string& topic, const std::string& column) const {
+    const auto named = columns.find(topic);
+    return named == columns.end() || named->second.count(column) > 0;
   }
 };
 
