@@ -222,22 +222,6 @@ def test_an_own_force_moves_by_newtons_law():
     assert heavy.velocity_m_s[0, 0] == pytest.approx(0.1 / airframe.mass_kg, rel=1e-9)
 
 
-def test_an_own_drag_is_of_second_order():
-    """Linear drag of Python's beside the library's: half the step, a quarter of the difference."""
-    def off(step_s):
-        own, ours = (Vehicles(1, effects=Effects(drag=False, linear_drag_N_s_m=drag)) for drag in (0.0, 0.5))
-        commands = ours.hover_commands()[None]
-        for vehicles in (own, ours):
-            vehicles.velocity_m_s[:] = (4, 2, 0)
-        for _ in range(int(round(1 / step_s))):
-            middle = own.velocity_m_s * np.exp(-0.5 / own.airframe.mass_kg * step_s / 2)
-            own.step(commands, step_s, force_N=-0.5 * middle)
-        ours.step(commands, 1.0)
-        return np.abs(own.velocity_m_s - ours.velocity_m_s).max()
-
-    assert off(0.1) < 0.02 and off(0.05) < 0.3 * off(0.1)
-
-
 def test_an_own_force_of_a_refused_step_changes_nothing():
     vehicles = Vehicles(2)
     commands = np.tile(vehicles.hover_commands(), (2, 1))
@@ -389,7 +373,7 @@ def test_tasks_of_ones_own():
         return -np.linalg.norm(state[:, :3] - target_m, axis=1)
 
     environment = VectorHoverEnv(5, target_m=circle, reward=reward, spread_m=0, step_s=0.02,
-                                 disturbance=lambda state: (-0.3 * state[:, 3:6], None))
+                                 effects=Effects(wrench=lambda motion: (-0.3 * motion.velocity_m_s, None)))
     seen, _ = environment.reset(seed=1)
     np.testing.assert_allclose(seen[:, :3], 0, atol=1e-6)
     still = VectorHoverEnv(5, target_m=circle, spread_m=0, step_s=0.02)
