@@ -85,6 +85,23 @@ def test_vehicles_follow_the_judge_in_second_order(effects, derivatives):
     assert off(0.001) < 1e-6 and off(0.002) == pytest.approx(4 * off(0.001), rel=0.1)
 
 
+def test_a_payload_is_pushed_too():
+    push = Effects(drag=False, wrench=lambda motion: ([2.0, 0, 0], None))
+    for one in (Vehicles(1, effects=push), Vehicles(1, effects=push.but(payload_kg=1.5))):
+        one.step(one.hover_commands()[None], 0.1)
+        mass_kg = one.airframe.mass_kg + one.effects.payload_kg
+        assert one.velocity_m_s[0, 0] == pytest.approx(0.2 / mass_kg, rel=1e-9)
+
+
+def test_a_refused_vehicle_stays():
+    vehicles = Vehicles(2, effects=Effects(wrench=wrench))
+    commands, before = np.tile(vehicles.hover_commands(), (2, 1)), vehicles.state.copy()
+    commands[1, 2] = np.nan
+    assert [pinnquad.Status(s).name for s in vehicles.step(commands, 0.01)] == ["ok", "not_finite"]
+    np.testing.assert_array_equal(vehicles.state[1], before[1])
+    assert vehicles.velocity_m_s[0, 0] != 0
+
+
 def test_a_motion_is_that_of_the_vehicle():
     seen = []
 

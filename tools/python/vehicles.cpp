@@ -140,9 +140,7 @@ class Vehicles {
     }
   }
 
-  /// Own forces are Strang's splitting: half of their change of velocity before the call's steps, half after them.
-  py::array_t<std::uint8_t> step(const py::object& given, double seconds, const py::object& force_N,
-                                 const py::object& torque_N_m) {
+  py::array_t<std::uint8_t> step(const py::object& given, double seconds) {
     require_idle();
     const py::array_t<double> commands = doubles("commands", given);
     if (commands.ndim() != 2 || static_cast<std::size_t>(commands.shape(0)) != size() || commands.shape(1) != 4) {
@@ -153,20 +151,8 @@ class Vehicles {
     py::array_t<std::uint8_t> statuses(static_cast<py::ssize_t>(size()));
     const double* const u = commands.data();
     std::uint8_t* const said = statuses.mutable_data();
-    const std::vector<Push> pushes = pushes_of(force_N, torque_N_m, steps * physics_step_s_ / 2);
-    const std::vector<OneState> before = pushes.empty() && !calls_python_ ? std::vector<OneState>{} : states_;
     const Busy busy(busy_);
-    push(pushes);
-    try {
-      calls_python_ ? run_own(u, steps, said) : run_known(u, steps, said);
-    } catch (...) {
-      if (!before.empty()) states_ = before;
-      throw;
-    }
-    push(pushes);
-    for (std::size_t i = 0; i < before.size() && !pushes.empty(); ++i) {
-      if (said[i] != 0) states_[i] = before[i];
-    }
+    calls_python_ ? run_own(u, steps, said) : run_known(u, steps, said);
     return statuses;
   }
 
@@ -196,15 +182,10 @@ class Vehicles {
   const py::object& effects() const { return effects_; }
 
  private:
-  /// Changes that a force and a torque make in half a call.
+  /// Changes that a force and a torque make in half a step.
   struct Push {
     Vector3<double> velocity_m_s, body_rates_rad_s;
   };
-
-  std::vector<Push> pushes_of(const py::object& force_N, const py::object& torque_N_m, double seconds) const {
-    if (force_N.is_none() && torque_N_m.is_none()) return {};
-    return pushes_of(vectors_of("force_N", force_N, size()), vectors_of("torque_N_m", torque_N_m, size()), seconds);
-  }
 
   std::vector<Push> pushes_of(const Vectors& forces, const Vectors& torques, double seconds) const {
     const auto payload_kg = effects_.attr("payload_kg").cast<double>();
@@ -272,8 +253,17 @@ class Vehicles {
 
   /// Steps with callables of Python, each asked once a step for all. A force acts for half of the step as it is at its
   /// start, for half as it is where that leads (Heun). A step in a wind is one in still air, seen by who drifts along.
-  /// A vehicle whose step is refused stays as it was before that step.
+  /// A vehicle whose step is refused stays as it was before that step. An exception leaves all as they were.
   void run_own(const double* u, double steps, std::uint8_t* said) {
+    const std::vector<OneState> start = states_;
+    try {
+      step_own(u, steps, said);
+    } catch (...) {
+      states_ = start;
+      throw;
+    }
+  }
+  void step_own(const double* u, double steps, std::uint8_t* said) {
     std::fill_n(said, size(), static_cast<std::uint8_t>(Status::ok));
     std::vector<std::uint8_t> now(size());
     std::vector<Push> pushes = own_pushes();
@@ -453,14 +443,10 @@ void bind_vehicles(py::module_& module) {
            py::arg("position_m") = triple(FlightPlan{}.start_m),
            "Level, at rest, rotors in hover at a place, NED, m: all, or those where `which` (truth values) says so.")
       .def("step", &Vehicles::step, py::arg("commands"), py::arg("seconds") = FlightPlan{}.control_period_s(),
-           py::kw_only(), py::arg("force_N") = py::none(), py::arg("torque_N_m") = py::none(),
            "Holds the commands (vehicles x 4) for so long, in RK4 steps of physics_step_s. A\n"
            "Status per vehicle: one that is not ok leaves its vehicle before the step that was refused. The ground\n"
-           "stops nobody: see Effects.ground_contact. Other threads run meanwhile.\n"
-           "force_N (NED) and torque_N_m (FRD, about the centre of gravity): an effect of one's own, vehicles x 3 or\n"
-           "one for all, held over the call. Half of its change of velocity acts before the steps, half after them:\n"
-           "exact for a constant force; for one that follows the state see Effects.wrench. With one, a status that is\n"
-           "not ok leaves its vehicle as it was before the call. So does an exception of a callable of the effects.")
+           "stops nobody: see Effects.ground_contact. Other threads run meanwhile. An exception of a callable of the\n"
+           "effects comes through, and leaves all as they were before the call.")
       .def(
           "hover_commands",
           [](const Vehicles& self, const Triple& place_m) {
