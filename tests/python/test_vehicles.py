@@ -206,51 +206,6 @@ def test_commands_of_any_memory():
         one.step(np.ma.masked_greater(commands[0], 0))
 
 
-def test_an_own_force_moves_by_newtons_law():
-    """Of a hover without drag: x = F t^2 / 2 m, and a torque about the yaw axis turns by N t / J."""
-    vehicles = Vehicles(3, effects=Effects(drag=False, standard_atmosphere=False))
-    airframe, commands = vehicles.airframe, np.tile(vehicles.hover_commands(), (3, 1))
-    forces = np.array([[1.5, 0, 0], [0, -3, 0], [0, 0, 0]])
-    for _ in range(100):
-        assert (vehicles.step(commands, 0.01, force_N=forces, torque_N_m=[0, 0, 1e-3]) == 0).all()
-    still = Vehicles(3, effects=vehicles.effects)
-    still.step(commands, 1.0)
-    np.testing.assert_allclose(vehicles.position_m - still.position_m, forces / airframe.mass_kg / 2, atol=1e-9)
-    np.testing.assert_allclose(vehicles.body_rates_rad_s[:, 2], 1e-3 / airframe.inertia_kg_m2[2], rtol=1e-9)
-    heavy = Vehicles(1, effects=Effects(drag=False, payload_kg=airframe.mass_kg))
-    heavy.step(heavy.hover_commands()[None], 0.1, force_N=[2, 0, 0])
-    assert heavy.velocity_m_s[0, 0] == pytest.approx(0.1 / airframe.mass_kg, rel=1e-9)
-
-
-def test_an_own_drag_is_of_second_order():
-    """Linear drag of Python's beside the library's: half the step, a quarter of the difference."""
-    def off(step_s):
-        own, ours = (Vehicles(1, effects=Effects(drag=False, linear_drag_N_s_m=drag)) for drag in (0.0, 0.5))
-        commands = ours.hover_commands()[None]
-        for vehicles in (own, ours):
-            vehicles.velocity_m_s[:] = (4, 2, 0)
-        for _ in range(int(round(1 / step_s))):
-            middle = own.velocity_m_s * np.exp(-0.5 / own.airframe.mass_kg * step_s / 2)
-            own.step(commands, step_s, force_N=-0.5 * middle)
-        ours.step(commands, 1.0)
-        return np.abs(own.velocity_m_s - ours.velocity_m_s).max()
-
-    assert off(0.1) < 0.02 and off(0.05) < 0.3 * off(0.1)
-
-
-def test_an_own_force_of_a_refused_step_changes_nothing():
-    vehicles = Vehicles(2)
-    commands = np.tile(vehicles.hover_commands(), (2, 1))
-    commands[1, 2] = np.nan
-    before = vehicles.state.copy()
-    assert [Status(s) for s in vehicles.step(commands, 0.01, force_N=[1, 0, 0])] == [Status.ok, Status.not_finite]
-    np.testing.assert_array_equal(vehicles.state[1], before[1])
-    assert vehicles.velocity_m_s[0, 0] > 0
-    for wrong, words in ((np.zeros((3, 3)), r"\(2, 3\)"), ([1, np.nan, 0], "finite"), (np.zeros(4), "shape|must be")):
-        with pytest.raises(ValueError, match=words):
-            vehicles.step(commands, 0.01, force_N=wrong)
-
-
 def test_arguments_that_make_no_sense():
     for count in (0, 10**9):
         with pytest.raises(ValueError, match="count must be"):
@@ -389,7 +344,7 @@ def test_tasks_of_ones_own():
         return -np.linalg.norm(state[:, :3] - target_m, axis=1)
 
     environment = VectorHoverEnv(5, target_m=circle, reward=reward, spread_m=0, step_s=0.02,
-                                 disturbance=lambda state: (-0.3 * state[:, 3:6], None))
+                                 effects=Effects(wrench=lambda motion: (-0.3 * motion.velocity_m_s, None)))
     seen, _ = environment.reset(seed=1)
     np.testing.assert_allclose(seen[:, :3], 0, atol=1e-6)
     still = VectorHoverEnv(5, target_m=circle, spread_m=0, step_s=0.02)

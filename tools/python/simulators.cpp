@@ -56,13 +56,13 @@ struct ChosenPilot {
 };
 
 constexpr std::array<const char*, 3> pilots = {"random", "near_ground", "hover"};
-using Running = Simulator<SwitchedQuadrotor, ChosenPilot, NoisyRecorder<Engine>>;
+using Running = Simulator<FlownQuadrotor, ChosenPilot, NoisyRecorder<Engine>>;
 
 /// Of a simulator as it began.
 struct Choices {
   NamedAirframe airframe;
   std::uint64_t seed;
-  SwitchedEffects effects;
+  FlownEffects effects;
   py::object effects_of_python;
   py::object pilot;  ///< its name, or a callable
   Triple start_m;
@@ -80,7 +80,7 @@ FlightPlan plan_of(const Choices& choices) {
   return plan;
 }
 
-ChosenPilot pilot_of(const Choices& choices, const SwitchedQuadrotor& vehicle) {
+ChosenPilot pilot_of(const Choices& choices, const FlownQuadrotor& vehicle) {
   checked("max_speed_m_s", choices.max_speed_m_s, 0.5);
   if (!py::isinstance<py::str>(choices.pilot)) {
     if (PyCallable_Check(choices.pilot.ptr()) == 0) throw py::type_error("pilot must be a name or a callable");
@@ -113,6 +113,7 @@ NoisyRecorder<Engine> recorder_of(const Choices& choices) {
 class PythonSimulator {
  public:
   explicit PythonSimulator(Choices choices) : choices_(std::move(choices)), running_(made(choices_)) {
+    throw_failure();
     require_flying();
   }
   PythonSimulator(const PythonSimulator& other)
@@ -139,8 +140,10 @@ class PythonSimulator {
   const NamedAirframe& airframe() const { return choices_.airframe; }
   py::object effects() const { return idle().choices_.effects_of_python; }
   void set_effects(const py::object& effects) {
-    const SwitchedQuadrotor vehicle = vehicle_of(choices_.airframe, effects_of(effects));
+    const FlownEffects flown = effects_of(effects);
+    const FlownQuadrotor vehicle = vehicle_of(choices_.airframe, flown);
     idle().running_.set_quadrotor(vehicle);
+    choices_.effects = flown;
     choices_.effects_of_python = effects;
     journal_.push_back({0, {}, effects});
   }
@@ -151,6 +154,7 @@ class PythonSimulator {
   py::array_t<double> hover_commands() const {
     Commands<double> commands{};
     const Status status = idle().running_.hover_commands(commands);
+    throw_failure();
     if (status != Status::ok) refuse(std::string("no hover here: ") + to_string(status));
     return array_of(commands);
   }
@@ -170,6 +174,7 @@ class PythonSimulator {
     d["commands"] = array_of(running_.commands());
     d["rotor_commands"] = array_of(vehicle.rotors);
     const auto loads = running_.quadrotor().evaluate(vehicle);
+    throw_failure();
     d["rotor_thrust_N"] = -loads.rotors.force_N[2];
     d["aerodynamic_force_N"] = array_of(loads.aerodynamic.force_N);
     d["wind_m_s"] = array_of(loads.surroundings.wind_m_s);
@@ -184,6 +189,7 @@ class PythonSimulator {
   std::shared_ptr<Flight> recording() const { return named(idle().running_.recording()); }
   std::shared_ptr<Flight> take_recording() {
     Flight taken = idle().running_.take_recording();
+    throw_failure();
     journal_.push_back({0, {}, py::none()});
     return named(std::move(taken));
   }
@@ -228,7 +234,7 @@ class PythonSimulator {
   };
 
   static Running made(const Choices& choices) {
-    const SwitchedQuadrotor vehicle = vehicle_of(choices.airframe, choices.effects);
+    const FlownQuadrotor vehicle = vehicle_of(choices.airframe, choices.effects);
     return Running(vehicle, pilot_of(choices, vehicle), plan_of(choices), recorder_of(choices));
   }
 
@@ -262,11 +268,13 @@ class PythonSimulator {
       return;
     }
     std::uint64_t left = deed.ticks;
-    while (left-- > 0) deed.commands ? running_.tick(*deed.commands) : running_.tick();
+    while (left-- > 0 && !failed()) deed.commands ? running_.tick(*deed.commands) : running_.tick();
+    throw_failure();
     note(deed.ticks, deed.commands);
   }
 
-  /// `tick` for a duration, without the GIL. An exception leaves the simulator at the tick it reached, able to fly on.
+  /// `tick` for a duration, without the GIL. An exception leaves the simulator at the tick it reached, able to fly on;
+  /// one of an effect's callable, which a step asks on its way, where it was before.
   template <class Tick>
   void run(double seconds, const std::optional<Commands<double>>& commands, const Tick& tick) {
     constexpr std::uint64_t ticks_per_look = 64;
@@ -274,6 +282,8 @@ class PythonSimulator {
     idle();
     require_flying();
     std::uint64_t done = 0;
+    std::optional<Running> before;
+    if (calls_python(choices_.effects)) before = running_;
     {
       const Busy busy(busy_);
       const struct Noted {
@@ -290,7 +300,10 @@ class PythonSimulator {
         flies = tick();
         if (++done % ticks_per_look == 0) watch.look();
       }
+      if (failed()) done = 0;
     }
+    if (failed()) running_ = std::move(*before);
+    throw_failure();
     require_flying();
   }
 
@@ -341,7 +354,7 @@ void take_whole(py::handle effects, const char* name, Value& value) {
 
 }  // namespace
 
-SwitchedEffects effects_of(py::handle given) {
+FlownEffects effects_of(py::handle given) {
   if (!py::isinstance(given, py::module_::import("pinnquad.effects").attr("Effects"))) {
     throw py::type_error("effects must be pinnquad.Effects, found " +
                          py::repr(py::type::of(given)).cast<std::string>());
@@ -361,7 +374,17 @@ SwitchedEffects effects_of(py::handle given) {
     take(given, name, on);
     return on;
   };
-  const Triple wind = vector("wind_m_s"), gust_m_s = vector("gust_m_s");
+  const auto called = [given](const char* name) {  // null unless it is a callable
+    const py::object value = given.attr(name);
+    return PyCallable_Check(value.ptr()) != 0 ? value.ptr() : nullptr;
+  };
+  const OwnWind own_wind{called("wind_m_s")};
+  const OwnWrench own_wrench{called("wrench")};
+  if (own_wrench.called == nullptr && !given.attr("wrench").is_none()) {
+    throw py::type_error("effects: wrench must be a callable or None, found " +
+                         py::repr(given.attr("wrench")).cast<std::string>());
+  }
+  const Triple wind = own_wind.called == nullptr ? vector("wind_m_s") : Triple{}, gust_m_s = vector("gust_m_s");
   PeriodicWind gust;
   gust.mean_m_s = 0;
   gust.amplitude_m_s = std::hypot(gust_m_s[0], gust_m_s[1], gust_m_s[2]);
@@ -390,7 +413,9 @@ SwitchedEffects effects_of(py::handle given) {
   GroundContact legs;
   legs.leg_length_m = number("leg_length_m", 0);
 
-  SwitchedEffects effects;
+  FlownEffects effects;
+  switch_effect(effects, own_wind, own_wind.called != nullptr);
+  switch_effect(effects, own_wrench, own_wrench.called != nullptr);
   switch_effect(effects, StandardAtmosphere{}, is_on("standard_atmosphere"));
   switch_effect(effects, ConstantWind{wind}, wind != Triple{});
   switch_effect(effects, gust, gusty);
@@ -418,8 +443,8 @@ SwitchedEffects effects_of(py::handle given) {
   return effects;
 }
 
-SwitchedQuadrotor vehicle_of(const NamedAirframe& airframe, const SwitchedEffects& effects) {
-  const SwitchedQuadrotor vehicle = quadrotor_with(effects, airframe.value, paper_site<double>());
+FlownQuadrotor vehicle_of(const NamedAirframe& airframe, const FlownEffects& effects) {
+  const FlownQuadrotor vehicle = quadrotor_with(effects, airframe.value, paper_site<double>());
   if (vehicle.status() != Status::ok) {
     refuse("airframe " + printable(airframe.name) + " with these effects: " + to_string(vehicle.status()));
   }
@@ -456,7 +481,7 @@ void bind_simulators(py::module_& module) {
            py::arg("command_jitter_s") = no_errors.command_jitter_s,
            "airframe        an Airframe, one of airframe_names(), or a TOML file\n"
            "seed            of the pilot and, apart from it, of the recorder's noise\n"
-           "effects         Effects; set_effects() changes them in flight\n"
+           "effects         Effects, own ones among them; set_effects() changes them in flight\n"
            "pilot           'random': agile, 10 to 60 m above ground; 'near_ground': 0.1 to 2 m; 'hover'; or a "
            "callable,\n"
            "                asked every 2 ms: pilot(time_s, position_m, velocity_m_s) gives the velocity wanted (NED,\n"
@@ -469,7 +494,9 @@ void bind_simulators(py::module_& module) {
            "for an airframe that can't fly, FlightEnded where no hover is possible.")
       .def("fly", &PythonSimulator::fly, py::arg("seconds"),
            "Flies on as the pilot wants, for so many seconds (rounded to ticks of 2 ms). Other threads run meanwhile;\n"
-           "Ctrl-C stops it at a tick. FlightEnded at the ground or where a step cannot be calculated.")
+           "Ctrl-C stops it at a tick. FlightEnded at the ground or where a step cannot be calculated. An exception of "
+           "a\n"
+           "callable of the effects comes through, and leaves the simulator as it was before the call.")
       .def("step", &PythonSimulator::step, py::arg("commands"), py::arg("seconds") = plan.control_period_s(),
            "Flies on with these four motor commands, 0 to 1, instead of the pilot's; else as fly().")
       .def("set_effects", &PythonSimulator::set_effects, py::arg("effects"),

@@ -58,12 +58,19 @@ class Vehicles {
       : airframes_(airframes),
         effects_(effects),
         physics_step_s_(checked("physics_step_s", physics_step_s, 1e-6)),
-        switched_(effects_of(effects)),
-        vehicle_(vehicle_of(airframes.at(0), switched_)),
+        flown_(effects_of(effects)),
+        stepped_(flown_),
+        vehicle_(vehicle_of(airframes.at(0), flown_)),
         states_(count) {
     for (std::size_t i = 1; i < airframes_.size(); ++i) {
       require_flying(with(airframes_[i].value), airframes_[i], i);
     }
+    calls_python_ = calls_python(flown_);
+    if (std::get<Switched<OwnWind, Usually::off>>(flown_).on && effects.attr("ground_contact").cast<bool>()) {
+      throw py::value_error("effects: vehicles take no wind_m_s() with ground_contact; a Simulator does");
+    }
+    switch_effect(stepped_, OwnWind{}, false);
+    switch_effect(stepped_, OwnWrench{}, false);
     put_in_lanes();
     reset(py::none(), triple(FlightPlan{}.start_m));
   }
@@ -133,9 +140,7 @@ class Vehicles {
     }
   }
 
-  /// Own forces are Strang's splitting: half of their change of velocity before the call's steps, half after them.
-  py::array_t<std::uint8_t> step(const py::object& given, double seconds, const py::object& force_N,
-                                 const py::object& torque_N_m) {
+  py::array_t<std::uint8_t> step(const py::object& given, double seconds) {
     require_idle();
     const py::array_t<double> commands = doubles("commands", given);
     if (commands.ndim() != 2 || static_cast<std::size_t>(commands.shape(0)) != size() || commands.shape(1) != 4) {
@@ -146,23 +151,8 @@ class Vehicles {
     py::array_t<std::uint8_t> statuses(static_cast<py::ssize_t>(size()));
     const double* const u = commands.data();
     std::uint8_t* const said = statuses.mutable_data();
-    const std::vector<Push> pushes = pushes_of(force_N, torque_N_m, steps * physics_step_s_ / 2);
-    const std::vector<OneState> before = pushes.empty() ? std::vector<OneState>{} : states_;
-    push(pushes);
-    {
-      const Busy busy(busy_);
-      const py::gil_scoped_release without_gil;
-      SignalWatch watch;
-      if (lanes_) {
-        run_in_lanes(u, steps, said, watch);
-      } else {
-        run(u, steps, said, watch);
-      }
-    }
-    push(pushes);
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      if (said[i] != 0) states_[i] = before[i];
-    }
+    const Busy busy(busy_);
+    calls_python_ ? run_own(u, steps, said) : run_known(u, steps, said);
     return statuses;
   }
 
@@ -192,24 +182,124 @@ class Vehicles {
   const py::object& effects() const { return effects_; }
 
  private:
-  /// Changes that a force and a torque make in half a call.
+  /// Changes that a force and a torque make in half a step.
   struct Push {
     Vector3<double> velocity_m_s, body_rates_rad_s;
   };
 
-  std::vector<Push> pushes_of(const py::object& force_N, const py::object& torque_N_m, double seconds) const {
-    if (force_N.is_none() && torque_N_m.is_none()) return {};
-    const std::vector<Vector3<double>> forces = vectors("force_N", force_N),
-                                       torques = vectors("torque_N_m", torque_N_m);
+  std::vector<Push> pushes_of(const Vectors& forces, const Vectors& torques, double seconds) const {
     const auto payload_kg = effects_.attr("payload_kg").cast<double>();
     const auto payload_from_s = effects_.attr("payload_from_s").cast<double>();
     std::vector<Push> pushes(size());
     for (std::size_t i = 0; i < size(); ++i) {
-      const Airframe<double>& airframe = airframes_[airframes_.size() == 1 ? 0 : i].value;
+      const Airframe<double>& airframe = airframe_of_one(i);
       const double mass_kg = airframe.mass_kg + (states_[i].time_s >= payload_from_s ? payload_kg : 0.0);
       pushes[i] = {forces[i] * (seconds / mass_kg), inertia_solved<double>(airframe, torques[i] * seconds)};
     }
     return pushes;
+  }
+
+  /// Of the callable of Python, in half a step; none without one.
+  std::vector<Push> own_pushes() const {
+    const py::handle called = std::get<Switched<OwnWrench, Usually::off>>(flown_).effect.called;
+    if (!called) return {};
+    py::array_t<double> motions({static_cast<py::ssize_t>(size()), static_cast<py::ssize_t>(motion_numbers)});
+    double* next = motions.mutable_data();
+    const auto add = [&next](const auto& numbers, int count) {
+      for (int i = 0; i < count; ++i) *next++ = numbers[i];
+    };
+    const FlownQuadrotor any =
+        quadrotor_with(stepped_, airframes_[0].value, vehicle_.site());  // the air is that of all
+    const Vectors wind = own_wind(0);
+    for (std::size_t i = 0; i < size(); ++i) {
+      const OneState& state = states_[i];
+      const Quaternion<double>& q = state.body.attitude;
+      const Airframe<double>& airframe = airframe_of_one(i);
+      ThrustFractions<double> thrusts{};
+      for (std::size_t k = 0; k < rotor_count; ++k) {
+        thrusts[k] = thrust_fraction(airframe.rotors[k].thrust_curve, state.rotors[k]);
+      }
+      const Surroundings<double> air = any.surroundings(state.body, state.time_s, {state.charge_used_C, thrusts});
+      Vector3<double> through_air_m_s = state.body.velocity_m_s - air.wind_m_s;
+      if (!wind.empty()) through_air_m_s -= wind[i];
+      add(state.body.position_m, 3);
+      add(state.body.velocity_m_s, 3);
+      add(through_air_m_s, 3);
+      add(std::array<double, 4>{q.w, q.x, q.y, q.z}.data(), 4);
+      add(state.body.body_rates_rad_s, 3);
+      for (const double thrust : thrusts) {
+        *next++ = airframe.max_rotor_speed_rev_s * std::sqrt(std::max(0.0, thrust * air.thrust_scale));
+      }
+      *next++ = state.time_s;
+    }
+    const auto [forces, torques] = wrenches_of(called, motions);
+    return pushes_of(forces, torques, physics_step_s_ / 2);
+  }
+
+  /// The callable's wind in so many seconds; none without one.
+  Vectors own_wind(double ahead_s) const {
+    const py::handle called = std::get<Switched<OwnWind, Usually::off>>(flown_).effect.called;
+    if (!called) return {};
+    const auto rows = static_cast<py::ssize_t>(size());
+    py::array_t<double> time_s(rows), position_m({rows, static_cast<py::ssize_t>(3)});
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Vector3<double> place = states_[i].body.position_m + states_[i].body.velocity_m_s * ahead_s;
+      time_s.mutable_data()[i] = states_[i].time_s + ahead_s;
+      for (int axis = 0; axis < 3; ++axis)
+        position_m.mutable_data()[3 * i + static_cast<std::size_t>(axis)] = place[axis];
+    }
+    return wind_of(called, time_s, position_m);
+  }
+
+  /// Steps with callables of Python, each asked once a step for all. A force acts for half of the step as it is at its
+  /// start, for half as it is where that leads (Heun). A step in a wind is one in still air, seen by who drifts along.
+  /// A vehicle whose step is refused stays as it was before that step. An exception leaves all as they were.
+  void run_own(const double* u, double steps, std::uint8_t* said) {
+    const std::vector<OneState> start = states_;
+    try {
+      step_own(u, steps, said);
+    } catch (...) {
+      states_ = start;
+      throw;
+    }
+  }
+  void step_own(const double* u, double steps, std::uint8_t* said) {
+    std::fill_n(said, size(), static_cast<std::uint8_t>(Status::ok));
+    std::vector<std::uint8_t> now(size());
+    std::vector<Push> pushes = own_pushes();
+    for (double done = 0; done < steps; ++done) {
+      const std::vector<OneState> before = states_;
+      const Vectors wind = own_wind(physics_step_s_ / 2);
+      for (std::size_t i = 0; i < wind.size(); ++i) states_[i].body.velocity_m_s -= wind[i];
+      push(pushes);
+      run_known(u, 1, now.data());
+      push(pushes);
+      for (std::size_t i = 0; i < wind.size(); ++i) {
+        states_[i].body.velocity_m_s += wind[i];
+        states_[i].body.position_m += wind[i] * physics_step_s_;
+      }
+      std::vector<Push> later = own_pushes();
+      for (std::size_t i = 0; i < later.size(); ++i) {
+        states_[i].body.velocity_m_s += later[i].velocity_m_s - pushes[i].velocity_m_s;
+        states_[i].body.body_rates_rad_s += later[i].body_rates_rad_s - pushes[i].body_rates_rad_s;
+      }
+      pushes = std::move(later);
+      for (std::size_t i = 0; i < size(); ++i) {
+        if (said[i] == 0) said[i] = now[i];
+        if (said[i] != 0) states_[i] = before[i];
+      }
+    }
+  }
+
+  /// Steps with the effects of the library alone, without the GIL.
+  void run_known(const double* u, double steps, std::uint8_t* said) {
+    const py::gil_scoped_release without_gil;
+    SignalWatch watch;
+    if (lanes_) {
+      run_in_lanes(u, steps, said, watch);
+    } else {
+      run(u, steps, said, watch);
+    }
   }
 
   void push(const std::vector<Push>& pushes) {
@@ -219,43 +309,28 @@ class Vehicles {
     }
   }
 
-  /// A row for each vehicle, or one for all; zeros for None.
-  std::vector<Vector3<double>> vectors(const char* name, const py::object& given) const {
-    std::vector<Vector3<double>> result(size(), Vector3<double>::Zero());
-    if (given.is_none()) return result;
-    const py::array_t<double> rows = doubles(name, given);
-    const bool one = rows.ndim() == 1 && rows.shape(0) == 3;
-    if (!one && (rows.ndim() != 2 || static_cast<std::size_t>(rows.shape(0)) != size() || rows.shape(1) != 3)) {
-      throw py::value_error(std::string(name) + " must be (3,) or (" + std::to_string(size()) + ", 3), found " +
-                            py::str(rows.attr("shape")).cast<std::string>());
-    }
-    for (std::size_t i = 0; i < size(); ++i) {
-      const double* const v = rows.data() + (one ? 0 : 3 * i);
-      if (!is_finite(v[0]) || !is_finite(v[1]) || !is_finite(v[2])) {
-        throw py::value_error(std::string(name) + ", vehicle " + std::to_string(i) + ": expected finite numbers");
-      }
-      result[i] = Vector3<double>(v[0], v[1], v[2]);
-    }
-    return result;
+  const Airframe<double>& airframe_of_one(std::size_t index) const {
+    return airframes_[airframes_.size() == 1 ? 0 : index].value;
   }
 
   static constexpr auto no_vehicle = static_cast<std::size_t>(-1);
 
   /// The vehicle of another airframe.
-  SwitchedQuadrotor with(const Airframe<double>& airframe) const {
-    return quadrotor_with(switched_, airframe, vehicle_.site());
+  FlownQuadrotor with(const Airframe<double>& airframe) const {
+    return quadrotor_with(flown_, airframe, vehicle_.site());
   }
 
-  static void require_flying(const SwitchedQuadrotor& vehicle, const NamedAirframe& airframe, std::size_t index) {
+  static void require_flying(const FlownQuadrotor& vehicle, const NamedAirframe& airframe, std::size_t index) {
     const Status status = vehicle.status();
     if (status == Status::ok) return;
     refuse((index == no_vehicle ? "" : "vehicle " + std::to_string(index) + ": ") + "airframe " +
            printable(airframe.name) + " with these effects: " + to_string(status));
   }
 
-  static Commands<double> hover_of(const SwitchedQuadrotor& vehicle, const Triple& place_m) {
+  static Commands<double> hover_of(const FlownQuadrotor& vehicle, const Triple& place_m) {
     Commands<double> hover{};
     const Status status = hover_trim(vehicle, Vector3<double>(place_m[0], place_m[1], place_m[2]), hover);
+    throw_failure();
     if (status != Status::ok) refuse(std::string("no hover here: ") + to_string(status));
     return hover;
   }
@@ -281,7 +356,7 @@ class Vehicles {
 
   /// All of them, where their rotors allow it.
   void put_in_lanes() {
-    lanes_ = steps_in_lanes(vehicle_.site(), physics_step_s_, switched_);
+    lanes_ = steps_in_lanes(vehicle_.site(), physics_step_s_, of_the_library(flown_));
     if (airframes_.size() == 1) {
       lanes_->set_airframe(airframes_[0].value);
       return;
@@ -299,7 +374,7 @@ class Vehicles {
   void run(const double* u, double steps, std::uint8_t* said, SignalWatch& watch) {
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const Commands<double> commands = {u[4 * i], u[4 * i + 1], u[4 * i + 2], u[4 * i + 3]};
-      const SwitchedQuadrotor vehicle = airframes_.size() == 1 ? vehicle_ : with(airframes_[i].value);
+      const FlownQuadrotor vehicle = quadrotor_with(stepped_, airframe_of_one(i), vehicle_.site());
       const auto step = vehicle.time_step(physics_step_s_);
       Status status = Status::ok;
       for (double done = 0; done < steps && status == Status::ok; ++done) {
@@ -333,9 +408,11 @@ class Vehicles {
   std::vector<NamedAirframe> airframes_;  ///< one for all, or one for each
   py::object effects_;
   double physics_step_s_;
-  SwitchedEffects switched_;   ///< the same, of all
-  SwitchedQuadrotor vehicle_;  ///< the first
+  FlownEffects flown_;      ///< the same, of all
+  FlownEffects stepped_;    ///< those that steps know: none of Python's
+  FlownQuadrotor vehicle_;  ///< the first, under all
   std::vector<OneState> states_;
+  bool calls_python_;
   std::unique_ptr<VehicleSteps> lanes_;  ///< null where rotors are not those of lanes
   bool busy_ = false;
 };
@@ -366,14 +443,10 @@ void bind_vehicles(py::module_& module) {
            py::arg("position_m") = triple(FlightPlan{}.start_m),
            "Level, at rest, rotors in hover at a place, NED, m: all, or those where `which` (truth values) says so.")
       .def("step", &Vehicles::step, py::arg("commands"), py::arg("seconds") = FlightPlan{}.control_period_s(),
-           py::kw_only(), py::arg("force_N") = py::none(), py::arg("torque_N_m") = py::none(),
            "Holds the commands (vehicles x 4) for so long, in RK4 steps of physics_step_s. A\n"
            "Status per vehicle: one that is not ok leaves its vehicle before the step that was refused. The ground\n"
-           "stops nobody: see Effects.ground_contact. Other threads run meanwhile.\n"
-           "force_N (NED) and torque_N_m (FRD, about the centre of gravity): an effect of one's own, vehicles x 3 or\n"
-           "one for all, held over the call. Half of its change of velocity acts before the steps, half after them:\n"
-           "exact for a constant force, of second order in `seconds` where the force follows the state. With one, a\n"
-           "status that is not ok leaves its vehicle as it was before the call.")
+           "stops nobody: see Effects.ground_contact. Other threads run meanwhile. An exception of a callable of the\n"
+           "effects comes through, and leaves all as they were before the call.")
       .def(
           "hover_commands",
           [](const Vehicles& self, const Triple& place_m) {

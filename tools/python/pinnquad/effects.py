@@ -1,6 +1,41 @@
 # SPDX-License-Identifier: MIT
 """The effects of a simulated vehicle, each with its switch (docs/simulator.md has equations and sources)."""
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
+from typing import Any, Callable
+
+import numpy as np
+
+
+def _columns(first, last, doc):
+    return property(lambda self: self.rows[:, first:last], doc=doc)
+
+
+class Motion:
+    """How vehicles move, as Effects.wrench is asked: arrays of a row a vehicle, of one row for a Simulator."""
+
+    __slots__ = ("rows",)
+
+    def __init__(self, rows):
+        self.rows = rows
+
+    position_m = _columns(0, 3, "NED; the ground is at z = 0.877 m.")
+    velocity_m_s = _columns(3, 6, "NED.")
+    air_velocity_m_s = _columns(6, 9, "NED: the same less the wind.")
+    attitude = _columns(9, 13, "Unit quaternions w, x, y, z, body to world.")
+    body_rates_rad_s = _columns(13, 16, "p, q, r, FRD.")
+    rotor_speed_rev_s = _columns(16, 20, "Front right, rear left, front left, rear right.")
+    time_s = property(lambda self: self.rows[:, 20], doc="Of each vehicle, shape (rows,).")
+
+    def __len__(self):
+        return len(self.rows)
+
+    def to_world(self, vectors):
+        """Vectors of the body (FRD), (3,) or a row a vehicle, in the world (NED)."""
+        q = self.attitude
+        turned = 2 * np.cross(q[:, 1:], vectors)
+        return vectors + q[:, :1] * turned + np.cross(q[:, 1:], turned)
 
 
 @dataclass(frozen=True)
@@ -11,7 +46,9 @@ class Effects:
     fault_share at 1.
     """
 
-    wind_m_s: tuple = (0.0, 0.0, 0.0)  #: NED, m/s
+    #: NED, m/s: one for all places, or a function of one's own, wind_m_s(time_s, position_m), of arrays (n,) and (n, 3),
+    #: that returns (n, 3)
+    wind_m_s: Any = (0.0, 0.0, 0.0)
     gust_m_s: tuple = (0.0, 0.0, 0.0)  #: NED, m/s: gust_m_s * sin(2 pi t / gust_period_s) is added to the wind
     gust_period_s: float = 10.0
     turbulence_m_s: float = 0.0  #: wind at 20 ft of MIL-F-8785C's gusts (Dryden), m/s
@@ -37,6 +74,9 @@ class Effects:
     payload_from_s: float = 0.0
     ground_contact: bool = False  #: four legs: the vehicle lands
     leg_length_m: float = 0.18
+    #: an effect of one's own: wrench(motion) of a Motion returns (force_N, torque_N_m), (n, 3) or (3,), either may be
+    #: None; the force in NED, the torque in FRD about the centre of gravity
+    wrench: Callable | None = None
 
     def but(self, **changes):
         """The same effects with some changed."""

@@ -16,8 +16,7 @@ OBSERVED = 17  #: numbers of an observation
 class _Hover:
     """The task of both environments, for many vehicles at once."""
 
-    def __init__(self, count, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m, randomise, reward,
-                 disturbance):
+    def __init__(self, count, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m, randomise, reward):
         self.spreads = dict(randomise or {})
         self.middle = Airframe(airframe) if self.spreads else None
         if self.spreads:
@@ -32,7 +31,7 @@ class _Hover:
             raise ValueError("step_s must be 0.001 s or more, and episode_s no less")
         self.step_s, self.steps_of_episode = float(step_s), int(round(episode_s / step_s))
         self.spread_m, self.farthest_m = float(spread_m), float(farthest_m)
-        self.reward, self.disturbance = reward, disturbance
+        self.reward = reward
         self.hover = np.broadcast_to(self.vehicles.hover_commands(tuple(start)), (count, 4)).copy()
         self.steps = np.zeros(count, int)
 
@@ -68,8 +67,7 @@ class _Hover:
 
     def step(self, actions):
         commands = np.ascontiguousarray(actions, float)
-        pushes = {} if self.disturbance is None else dict(zip(("force_N", "torque_N_m"), self.disturbance(self.vehicles.state)))
-        statuses = self.vehicles.step(np.clip(commands, 0.0, 1.0), self.step_s, **pushes)
+        statuses = self.vehicles.step(np.clip(commands, 0.0, 1.0), self.step_s)
         self.steps += 1
         if self.path is not None:
             self.target_m[:] = self._places(self.steps * self.step_s)
@@ -109,16 +107,15 @@ class HoverEnv(Env):
     target_m     a place, NED, m; or target_m(time_s), times of shape (vehicles,) since the episode began, gives places,
                  vehicles x 3: a trajectory
     reward       reward(state, actions, target_m) gives (vehicles,); state as Vehicles.state has it, after the step
-    disturbance  disturbance(state) gives (force_N, torque_N_m) as of Vehicles.step(), either may be None: an effect
+    effects      Effects(wrench=..., wind_m_s=...): a force and a torque, a wind
 
     With randomise={"mass_kg": 0.2, "thrust_coefficient": 0.1} each episode has an airframe of its own
     (Airframe.randomised), which is not observed: environment.vehicles.airframe tells it.
     """
 
     def __init__(self, airframe="paper_quadrotor", *, effects=None, target_m=(0.0, 0.0, -35.0), step_s=0.01,
-                 episode_s=10.0, spread_m=2.0, farthest_m=20.0, randomise=None, reward=None, disturbance=None):
-        self._task = _Hover(1, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m, randomise, reward,
-                            disturbance)
+                 episode_s=10.0, spread_m=2.0, farthest_m=20.0, randomise=None, reward=None):
+        self._task = _Hover(1, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m, randomise, reward)
         self._all = np.ones(1, bool)
         self.observation_space, self.action_space = _observation_space(), _action_space()
 
@@ -148,9 +145,9 @@ class VectorHoverEnv(VectorEnv):
     metadata = {"render_modes": [], "autoreset_mode": SAME_STEP}
 
     def __init__(self, num_envs, airframe="paper_quadrotor", *, effects=None, target_m=(0.0, 0.0, -35.0), step_s=0.01,
-                 episode_s=10.0, spread_m=2.0, farthest_m=20.0, randomise=None, reward=None, disturbance=None):
+                 episode_s=10.0, spread_m=2.0, farthest_m=20.0, randomise=None, reward=None):
         self._task = _Hover(num_envs, airframe, effects, target_m, step_s, episode_s, spread_m, farthest_m, randomise,
-                            reward, disturbance)
+                            reward)
         self.num_envs = num_envs
         self.single_observation_space, self.single_action_space = _observation_space(), _action_space()
         self.observation_space = batch_space(self.single_observation_space, num_envs)

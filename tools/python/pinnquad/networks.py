@@ -234,18 +234,13 @@ class Lowering:
         made = self.fixed(node, inputs, running)
         if made is not None:
             return made
-        if all(one.affine for one in running):
-            made = self.affine_value(node, inputs, running)
+        all_affine = all(one.affine for one in running)
+        for known in (*[self.affine_value] * all_affine, self.elementwise_value, self.gated):
+            made = known(node, inputs, running)
             if made:
                 return made
-        made = self.elementwise_value(node, inputs, running)
-        if made:
-            return made
-        made = self.gated(node, inputs, running)
-        if made:
-            return made
         try:
-            if any(not one.affine for one in running):
+            if not all_affine:
                 return self.taken(node, [one if not isinstance(one, Value) or one.affine else self.made_affine(one)
                                          for one in inputs])
             if len(running) > 1:
@@ -682,6 +677,7 @@ def chain_of_tensors(tensors, asked):
     """The chain of a state_dict {name: array}: linear layers and batch norms by their numbers, activations by the
     features file; the order that of numbers in the names, or of `layers` in the features file."""
     prefix = asked.get("prefix", "")
+    tensors = {re.sub(r"^(_orig_mod\.|module\.)+", "", name): one for name, one in tensors.items()}
     known = {name[len(prefix):]: np.asarray(tensor) for name, tensor in tensors.items() if name.startswith(prefix)}
     if not known:
         raise Refused(f"tensors whose names begin with '{prefix}'" if tensors and prefix else "tensors of a network",
@@ -1247,18 +1243,12 @@ def graph_of_module(module, width, asked):
 
 
 def chosen_output(given, wanted):
-    if isinstance(given, dict):
-        given = given if not wanted else {wanted: given[wanted]} if wanted in given else given
-        if len(given) != 1:
-            raise Refused("a module of one output, or output=NAME", ", ".join(map(repr, given)))
-        return next(iter(given.values())).name
-    if isinstance(given, (tuple, list)):
-        if wanted.isdigit() and int(wanted) < len(given):
-            return given[int(wanted)].name
-        if len(given) != 1:
-            raise Refused("a module of one output, or output='0'", f"{len(given)} of them")
-        return given[0].name
-    return given.name
+    """The name of a traced module's output; of several the one of a key or a place."""
+    several = given if isinstance(given, dict) else dict(enumerate(given)) if isinstance(given, (tuple, list)) else {"": given}
+    named = {str(name): one.name for name, one in several.items()}
+    if wanted not in named and len(named) != 1:
+        raise Refused("a module of one output, or output=NAME", ", ".join(map(repr, named)))
+    return named.get(wanted, next(iter(named.values())))
 
 
 def flattened_names(tree, prefix=""):
@@ -1285,9 +1275,8 @@ def graph_in_memory(source, width, asked):
                 graph.add(f"activation {number}", ACTIVATIONS[word])
         return Graph(source.coefs_[0].shape[0], graph.nodes)
     if hasattr(source, "items"):
-        tensors = flattened_names(source)
-        stripped = {re.sub(r"^(params\.|_orig_mod\.|module\.)+", "", name): one for name, one in tensors.items()}
-        return chain_of_tensors({name: finite(name, one) for name, one in stripped.items()}, asked)
+        tensors = {name.removeprefix("params."): one for name, one in flattened_names(source).items()}
+        return chain_of_tensors({name: finite(name, one) for name, one in tensors.items()}, asked)
     raise Refused("a path, a torch.nn.Module, arrays by name or a scikit-learn MLPRegressor", type(source).__name__)
 
 
@@ -1302,9 +1291,7 @@ def graph_of_file(path, asked):
     if ending == ".onnx":
         return OnnxReader(path, asked).graph()
     if ending == ".safetensors":
-        tensors = read_safetensors(network_bytes(path))
-        stripped = {re.sub(r"^(_orig_mod\.|module\.)+", "", name): one for name, one in tensors.items()}
-        return chain_of_tensors(stripped, asked)
+        return chain_of_tensors(read_safetensors(network_bytes(path)), asked)
     raise Refused("a network in .onnx or .safetensors", f"{ending}: write one by {OTHERS[ending]}"
                   if ending in OTHERS else f"'{ending}'")
 
