@@ -260,23 +260,6 @@ def test_commands_take_it(pinnquad, flown):
     assert "provable" in pinnquad("certify model/model.block --seconds 1", code=1).out
 
 
-WRONG_FEATURES = {
-    "unknown key": ('motors = 4', "*:1", "motors"),
-    "activation": ('activations = "swish"', "*:15", "swish"),
-    "activation list": ('activations = ["tanh", 3]', "*:24", "3"),
-    "period": ('sample_period_s = 5', "*:19", "5"),
-    "meaning": ('commands_are = "volts"', "*:16", "volts"),
-}
-
-
-@pytest.mark.parametrize("case", WRONG_FEATURES)
-def test_wrong_features(pinnquad, case):
-    line, place, keyword = WRONG_FEATURES[case]
-    safetensors("net.safetensors", Network(len(FEATURES), 4).tensors)
-    features_toml(line)
-    refused_features(pinnquad, place, keyword)
-
-
 def test_networks_py_knows_each_activation(pinnquad):
     """The program has them of the library's list, networks.py by hand."""
     safetensors("net.safetensors", Network(len(FEATURES), 4).tensors)
@@ -294,7 +277,7 @@ def refused_features(pinnquad, place, keyword):
 
 
 FEATURE = '{ name = "w_x", unit = "rad/s", lower = -5, upper = 5 }'
-WRONG_TABLES = {
+WRONG_FEATURES = {
     "no feature": ("", "", "feature"),
     "empty": ("feature = []", "1:11", "an array of 0"),
     "numbers": ("feature = [1]", "1:11", "array"),
@@ -313,24 +296,25 @@ WRONG_TABLES = {
     "outputs": (f'feature = [{FEATURE}]\noutput = {{ names = ["u1", "u2", "u2", "u4"] }}', "2:20", "u2"),
     "output mean": (f"feature = [{FEATURE}]\noutput = {{ mean = [1, 2] }}", "2:19", "4"),
     "output table": (f"feature = [{FEATURE}]\noutput = 3", "2:10", "table"),
+    "unknown key": (f"feature = [{FEATURE}]\nmotors = 4", "2:1", "motors"),
+    "activation": (f'feature = [{FEATURE}]\nactivations = "swish"', "2:15", "swish"),
+    "activation list": (f'feature = [{FEATURE}]\nactivations = ["tanh", 3]', "2:24", "3"),
+    "period": (f"feature = [{FEATURE}]\nsample_period_s = 5", "2:19", "5"),
+    "meaning": (f'feature = [{FEATURE}]\ncommands_are = "volts"', "2:16", "volts"),
+    "no airframe": (f"feature = [{FEATURE}]\n# airframe", "1:1", "airframe"),
+    "airframe 3": (f"feature = [{FEATURE}]\nairframe = 3", "2:12", "3"),
+    "empty airframe": (f"feature = [{FEATURE}]\n[airframe]", "2:1", "none of them"),
+    "zeppelin": (f'feature = [{FEATURE}]\n[airframe]\nname = "zeppelin"', "3:8", "zeppelin"),
+    "mass": (f"feature = [{FEATURE}]\n[airframe]\nmass = 3", "3:1", "mass"),
+    "two airframes": (f'feature = [{FEATURE}]\n{AIRFRAME}file = "a.toml"', "2:1", "both"),
 }
 
 
-@pytest.mark.parametrize("case", WRONG_TABLES)
-def test_wrong_tables(pinnquad, case):
-    text, place, keyword = WRONG_TABLES[case]
+@pytest.mark.parametrize("case", WRONG_FEATURES)
+def test_wrong_features(pinnquad, case):
+    text, place, keyword = WRONG_FEATURES[case]
     safetensors("net.safetensors", Network(1, 4).tensors)
-    Path("features.toml").write_text(text + "\n" + AIRFRAME)
-    refused_features(pinnquad, place, keyword)
-
-
-@pytest.mark.parametrize("airframe, place, keyword", [
-    ("", "1:1", "airframe"), ("airframe = 3", "2:12", "3"), ("[airframe]", "2:1", "none of them"),
-    ('[airframe]\nname = "zeppelin"', "3:8", "zeppelin"), ('[airframe]\nmass = 3', "3:1", "mass"),
-    ('[airframe]\nname = "paper_quadrotor"\nfile = "a.toml"', "2:1", "both")])
-def test_wrong_airframe(pinnquad, airframe, place, keyword):
-    safetensors("net.safetensors", Network(1, 4).tensors)
-    Path("features.toml").write_text(f"feature = [{FEATURE}]\n{airframe}\n")
+    Path("features.toml").write_text(text + "\n" + ("" if "airframe" in text else AIRFRAME))
     refused_features(pinnquad, place, keyword)
 
 
