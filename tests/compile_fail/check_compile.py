@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """What must not compile, and what the compiler then says: the cases of one source, in two runs of the compiler.
 
-A source states its cases in comments and guards each with its macro (CMakeLists.txt). The first run compiles the source
-without a macro: the control. The second compiles all cases at once: the source's text once per case, in a namespace and
-under a file name of the case's own, so that each error says by its place whose it is. A case passes when one of its
-errors matches its expression. A case without such an error is compiled alone: its text may not fit into a namespace, or
-the compiler says once what is wrong with a type that two cases share.
+A source is what its cases have in common, then a line for each case with its own text behind it (CMakeLists.txt). The
+first run compiles what is common, and the text behind SOUND: the control. The second compiles all cases at once: for
+each what is common and its own text, its macro defined, in a namespace and under a file name of its own, so that each
+error says by its place whose it is. A case passes when one of its errors matches its expression. A case without such
+an error is compiled alone: its text may not fit into a namespace, or the compiler says once what is wrong with a type
+that two cases share.
 """
 import argparse
 import os
@@ -13,9 +14,8 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 
-CASE = re.compile(r"^// CASE (\w+): (.+)$")
+CASE = re.compile(r"^// (?:CASE (\w+): (.+)|SOUND)$")
 PLACE = re.compile(r"\bcase_(\w+):\d+")
 
 
@@ -39,32 +39,38 @@ class Source:
     def __init__(self, arguments):
         self.path = pathlib.Path(arguments.source)
         self.clang = arguments.compiler_id.endswith("Clang")
-        self.text = self.path.read_text(encoding="utf-8")
-        self.cases = [match.groups() for match in map(CASE.match, self.text.splitlines()) if match]
+        self.lines = self.path.read_text(encoding="utf-8").splitlines()
+        self.cases, self.owners, owner = [], [], ""  # of each line: "" what is common, None the control, or a case
+        for line in self.lines:
+            match = CASE.match(line)
+            if match:
+                owner = match.group(1)
+                self.cases += [match.groups()] if owner else []
+            self.owners.append(owner)
         self.command = [arguments.compiler, "-std=c++17", "-fmessage-length=0", "-fno-diagnostics-color", "-fsyntax-only",
-                        "-ferror-limit=0" if self.clang else "-fmax-errors=0", *arguments.flags]
+                        "-ferror-limit=0" if self.clang else "-fmax-errors=0", f"-I{self.path.parent}", *arguments.flags]
 
-    def compile(self, path, *more):
-        done = subprocess.run([*self.command, *more, str(path)], text=True, errors="replace", stdin=subprocess.DEVNULL,
+    def text(self, case):
+        """What is common, and the case's own; lines keep their numbers."""
+        return "\n".join(line if owner in ("", case) else "" for line, owner in zip(self.lines, self.owners)) + "\n"
+
+    def compile(self, text, *more):
+        done = subprocess.run([*self.command, *more, "-x", "c++", "-"], input=text, text=True, errors="replace",
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env={**os.environ, "LC_ALL": "C"}, check=False)
         return done.returncode, done.stdout
 
     def all_cases(self):
-        """Includes first, for all; then the rest once per case. Lines keep their numbers."""
-        lines = self.text.splitlines()
-        include = re.compile(r"^#include ")
-        parts = [line for line in lines if include.match(line)]
-        rest = "\n".join("" if include.match(line) else line for line in lines)
+        """Includes first, for all."""
+        include = re.compile(r"^#include .*$", re.M)
+        parts = include.findall(self.text(""))
         for macro, _ in self.cases:
-            parts += [f"#define {macro}", f"namespace case_{macro} {{", f'#line 1 "case_{macro}"', rest, "}", f"#undef {macro}"]
+            parts += [f"#define {macro}", f"namespace case_{macro} {{", f'#line 1 "case_{macro}"',
+                      include.sub("", self.text(macro)), "}", f"#undef {macro}"]
         return "\n".join(parts) + "\n"
 
     def errors_of_cases(self):
         """The errors of the second run by case."""
-        with tempfile.TemporaryDirectory() as folder:
-            together = pathlib.Path(folder) / "together.cpp"
-            together.write_text(self.all_cases(), encoding="utf-8")
-            _, output = self.compile(together, f"-I{self.path.parent}")
+        _, output = self.compile(self.all_cases())
         errors = {}
         for error, block in error_blocks(output, self.clang):
             for macro in {place.group(1) for line in block for place in PLACE.finditer(line)}:
@@ -72,7 +78,7 @@ class Source:
         return errors
 
     def fault_alone(self, macro, expression):
-        code, output = self.compile(self.path, f"-D{macro}")
+        code, output = self.compile(self.text(macro), f"-D{macro}")
         if code == 0:
             return "compiles, but must not"
         if not any(re.search(expression, error) for error, _ in error_blocks(output, self.clang)):
@@ -80,7 +86,7 @@ class Source:
         return None
 
     def faults(self):
-        code, output = self.compile(self.path)
+        code, output = self.compile(self.text(None))
         if code != 0:
             yield f"{self.path}: must compile, but does not\n{output}"
             return

@@ -1,28 +1,4 @@
 // SPDX-License-Identifier: MIT
-// CASE NO_OUTPUT_CHECK: pinnquad: a Guard needs FiniteOutputs: without it the NaN of a broken weight would reach a motor
-// CASE NO_GUARD_AT_ALL: pinnquad: a Guard needs FiniteOutputs
-// CASE NO_INPUT_CHECK: pinnquad: a Guard without FiniteInputs needs TrainingEnvelope
-// CASE TWICE: pinnquad: a policy of a Guard is named twice
-// CASE TWO_LIMITS: pinnquad: a policy of a Guard is named twice
-// CASE NOT_A_POLICY: pinnquad: this type is not a policy of a Guard
-// CASE LIMITS_REVERSED: pinnquad: a Guard's lower command limit lies above the upper one
-// CASE CLIPS_TO_INFINITY: pinnquad: a Guard's command limits must be numbers
-// CASE CLIPS_TO_NAN: pinnquad: a Guard's command limits must be numbers
-// CASE REFUSES_INFINITY: pinnquad: a Guard's command limits must be numbers
-// CASE CLIPS_REVERSED: pinnquad: a Guard's lower command limit lies above the upper one
-// CASE CLIPS_BEYOND_FLOAT: pinnquad: a Guard's command limits must be numbers of the model's Scalar
-// CASE FALLBACK_MAY_THROW: pinnquad: a fallback's call must be noexcept
-// CASE DISTANCE_LIMIT_INFINITE: pinnquad: the distance limit of a JointDistance must be a positive number
-// CASE DISTRIBUTION_OF_FEWER: pinnquad: the distribution of a JointDistance has another size than the model's features
-// CASE TWO_DISTRIBUTIONS: pinnquad: a policy of a Guard is named twice
-// CASE DISTRIBUTION_OF_OTHER_DATA: pinnquad: the distribution of a JointDistance is that of other training data than the model's
-// CASE NOT_A_GUARD: pinnquad: the second argument of InverseDynamics is a Guard
-// CASE FALLBACK_OF_OTHER_INPUTS: pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time
-// CASE FALLBACK_NEEDS_TIME: pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time
-// CASE GROUND_WITHOUT_HEIGHT: pinnquad: an effect of this vehicle depends on height, place or time, which these inputs don't say
-// CASE GUST_WITHOUT_TIME: pinnquad: an effect of this vehicle depends on place or time, which these inputs don't say
-// CASE COMMANDS_OF_THREE: deleted.*predict
-// CASE COMMANDS_IN_DOUBLE: deleted.*predict
 #include <limits>
 
 #include "../support/small_model.hpp"
@@ -30,15 +6,9 @@
 #include "pinnquad/aero/wind.hpp"
 #include "pinnquad/inference/analytic_inverse.hpp"
 
-namespace {
-
 using namespace pinnquad;
 
-struct Reversed {
-  static constexpr double lower = 1.0;
-  static constexpr double upper = 0.0;
-};
-
+/// Limits of commands: 2 stands for infinity, 3 for NaN, 4 for more than a float holds.
 template <int Lower, int Upper>
 struct Limits {
   static constexpr double value(int of) {
@@ -49,6 +19,7 @@ struct Limits {
   }
   static constexpr double lower = value(Lower), upper = value(Upper);
 };
+using Reversed = Limits<1, 0>;
 
 /// Of so many features.
 template <int Size, int Limit>
@@ -58,108 +29,94 @@ struct Distribution {
   static constexpr double squared_distance_limit = Limits<0, Limit>::upper;
 };
 
-struct OtherData : Distribution<16, 1> {
-  static constexpr std::uint64_t training_data_hash = 2;
-};
-
-struct MayThrow {
-  Status operator()(const MotionInputs<float>&, Commands<float>&) const { return Status::no_solution; }
-};
-
-struct OtherInputs {
-  Status operator()(const State<float>&, Commands<float>&) const noexcept { return Status::ok; }
-};
-
-struct NeedsTime {
-  Status operator()(const MotionInputs<float>&, const PlaceAndTime<float>&, Commands<float>&) const noexcept {
-    return Status::ok;
-  }
-};
-
 using NearGround = Quadrotor<float, GroundEffect<Conyers>>;
 using InGusts = Quadrotor<float, GroundEffect<Conyers>, PeriodicWind>;
-
-#if defined(NO_OUTPUT_CHECK)
-using Policies = Guard<FiniteInputs, TrainingEnvelope, ClipCommands<>>;
-#elif defined(NO_GUARD_AT_ALL)
-using Policies = Guard<>;
-#elif defined(NO_INPUT_CHECK)
-using Policies = Guard<FiniteOutputs>;
-#elif defined(TWICE)
-using Policies = Extend<TrainingGuard, FiniteInputs>;
-#elif defined(TWO_LIMITS)
-using Policies = Extend<TrainingGuard, ClipCommands<>, ClipCommands<Reversed>>;
-#elif defined(NOT_A_POLICY)
-using Policies = Extend<TrainingGuard, int>;
-#elif defined(LIMITS_REVERSED)
-using Policies = Extend<TrainingGuard, RefuseCommands<Reversed>>;
-#elif defined(CLIPS_TO_INFINITY)
-using Policies = Extend<TrainingGuard, ClipCommands<Limits<0, 2>>>;
-#elif defined(CLIPS_TO_NAN)
-using Policies = Extend<TrainingGuard, ClipCommands<Limits<3, 1>>>;
-#elif defined(REFUSES_INFINITY)
-using Policies = Extend<TrainingGuard, RefuseCommands<Limits<0, 2>>>;
-#elif defined(CLIPS_REVERSED)
-using Policies = Extend<TrainingGuard, ClipCommands<Reversed>>;
-#elif defined(CLIPS_BEYOND_FLOAT)
-using Policies = Extend<TrainingGuard, ClipCommands<Limits<0, 4>>>;
-#elif defined(DISTANCE_LIMIT_INFINITE)
-using Policies = Extend<TrainingGuard, JointDistance<Distribution<16, 2>>>;
-#elif defined(DISTRIBUTION_OF_FEWER)
-using Policies = Extend<TrainingGuard, JointDistance<Distribution<15, 1>>>;
-#elif defined(TWO_DISTRIBUTIONS)
-using Policies = Extend<TrainingGuard, JointDistance<Distribution<16, 1>>, JointDistance<Distribution<15, 1>>>;
-#elif defined(DISTRIBUTION_OF_OTHER_DATA)
-using Policies = Extend<TrainingGuard, JointDistance<OtherData>>;
-#elif defined(FALLBACK_MAY_THROW)
-using Policies = Extend<TrainingGuard, Fallback<MayThrow>>;
-#elif defined(NOT_A_GUARD)
-using Policies = FiniteOutputs;
-#elif defined(FALLBACK_OF_OTHER_INPUTS)
-using Policies = Extend<TrainingGuard, Fallback<OtherInputs>>;
-#elif defined(FALLBACK_NEEDS_TIME)
-using Policies = Extend<TrainingGuard, Fallback<NeedsTime>>;
-#elif defined(GROUND_WITHOUT_HEIGHT)
-using Policies = Extend<TrainingGuard, Fallback<AnalyticInverse<NearGround>>>;
-#else
-using Policies = Extend<TrainingGuard, RefuseCommands<>, ClipCommands<>, JointDistance<Distribution<16, 1>>,
-                        Fallback<AnalyticInverse<Quadrotor<float>>>>;
-#endif
 
 template <class Vehicle>
 AnalyticInverse<Vehicle> by_formula() {
   return AnalyticInverse<Vehicle>(Vehicle(airframe_value<PaperQuadrotor, float>()));
 }
 
-}  // namespace
-
-int main() {
-#if defined(GROUND_WITHOUT_HEIGHT)
-  const Policies guard(by_formula<NearGround>());
-#elif defined(FALLBACK_OF_OTHER_INPUTS) || defined(FALLBACK_NEEDS_TIME) || defined(NO_OUTPUT_CHECK) ||              \
-    defined(NO_GUARD_AT_ALL) || defined(NO_INPUT_CHECK) || defined(TWICE) || defined(TWO_LIMITS) ||                 \
-    defined(NOT_A_POLICY) || defined(LIMITS_REVERSED) || defined(NOT_A_GUARD) || defined(CLIPS_TO_INFINITY) ||      \
-    defined(CLIPS_TO_NAN) || defined(REFUSES_INFINITY) || defined(CLIPS_REVERSED) || defined(CLIPS_BEYOND_FLOAT) || \
-    defined(FALLBACK_MAY_THROW) || defined(DISTANCE_LIMIT_INFINITE) || defined(DISTRIBUTION_OF_FEWER) ||            \
-    defined(TWO_DISTRIBUTIONS) || defined(DISTRIBUTION_OF_OTHER_DATA)
-  const Policies guard{};
-#else
-  const Policies guard(by_formula<Quadrotor<float>>());
-#endif
+template <class Policies, class Asked = Commands<float>>
+Status guarded(const Policies& guard = {}) {
   const InverseDynamics<test::SmallModel, Policies> inverse(guard);
-#if defined(COMMANDS_OF_THREE)
-  std::array<float, 3> commands{};
-#elif defined(COMMANDS_IN_DOUBLE)
-  Commands<double> commands{};
-#else
-  Commands<float> commands{};
-#endif
-  Status status = inverse.predict({}, commands);
-#if defined(GUST_WITHOUT_TIME)
-  status = by_formula<InGusts>()(MotionInputsWithAltitude<float>{}, commands);
-#else
-  status = by_formula<NearGround>()(MotionInputsWithAltitude<float>{}, commands);
-  status = by_formula<InGusts>()(MotionInputs<float>{}, PlaceAndTime<float>{}, commands);
-#endif
-  return has_output(status) ? static_cast<int>(sizeof(OtherInputs) + sizeof(NeedsTime) + sizeof(Reversed)) : 0;
+  Asked commands{};
+  return inverse.predict({}, commands);
 }
+template <class... Policies>
+Status extended() {
+  return guarded<Extend<TrainingGuard, Policies...>>();
+}
+
+// SOUND
+using Policies = Extend<TrainingGuard, RefuseCommands<>, ClipCommands<>, JointDistance<Distribution<16, 1>>,
+                        Fallback<AnalyticInverse<Quadrotor<float>>>>;
+const auto status = guarded<Policies>(Policies(by_formula<Quadrotor<float>>()));
+Commands<float> commands{};
+const auto near = by_formula<NearGround>()(MotionInputsWithAltitude<float>{}, commands);
+const auto in_gusts = by_formula<InGusts>()(MotionInputs<float>{}, PlaceAndTime<float>{}, commands);
+
+// CASE NO_OUTPUT_CHECK: pinnquad: a Guard needs FiniteOutputs: without it the NaN of a broken weight would reach a motor
+const auto status = guarded<Guard<FiniteInputs, TrainingEnvelope, ClipCommands<>>>();
+// CASE NO_GUARD_AT_ALL: pinnquad: a Guard needs FiniteOutputs
+const auto status = guarded<Guard<>>();
+// CASE NO_INPUT_CHECK: pinnquad: a Guard without FiniteInputs needs TrainingEnvelope
+const auto status = guarded<Guard<FiniteOutputs>>();
+// CASE TWICE: pinnquad: a policy of a Guard is named twice
+const auto status = extended<FiniteInputs>();
+// CASE TWO_LIMITS: pinnquad: a policy of a Guard is named twice
+const auto status = extended<ClipCommands<>, ClipCommands<Reversed>>();
+// CASE NOT_A_POLICY: pinnquad: this type is not a policy of a Guard
+const auto status = extended<int>();
+// CASE LIMITS_REVERSED: pinnquad: a Guard's lower command limit lies above the upper one
+const auto status = extended<RefuseCommands<Reversed>>();
+// CASE CLIPS_TO_INFINITY: pinnquad: a Guard's command limits must be numbers
+const auto status = extended<ClipCommands<Limits<0, 2>>>();
+// CASE CLIPS_TO_NAN: pinnquad: a Guard's command limits must be numbers
+const auto status = extended<ClipCommands<Limits<3, 1>>>();
+// CASE REFUSES_INFINITY: pinnquad: a Guard's command limits must be numbers
+const auto status = extended<RefuseCommands<Limits<0, 2>>>();
+// CASE CLIPS_REVERSED: pinnquad: a Guard's lower command limit lies above the upper one
+const auto status = extended<ClipCommands<Reversed>>();
+// CASE CLIPS_BEYOND_FLOAT: pinnquad: a Guard's command limits must be numbers of the model's Scalar
+const auto status = extended<ClipCommands<Limits<0, 4>>>();
+// CASE FALLBACK_MAY_THROW: pinnquad: a fallback's call must be noexcept
+struct MayThrow {
+  Status operator()(const MotionInputs<float>&, Commands<float>&) const { return Status::no_solution; }
+};
+const auto status = extended<Fallback<MayThrow>>();
+// CASE DISTANCE_LIMIT_INFINITE: pinnquad: the distance limit of a JointDistance must be a positive number
+const auto status = extended<JointDistance<Distribution<16, 2>>>();
+// CASE DISTRIBUTION_OF_FEWER: pinnquad: the distribution of a JointDistance has another size than the model's features
+const auto status = extended<JointDistance<Distribution<15, 1>>>();
+// CASE TWO_DISTRIBUTIONS: pinnquad: a policy of a Guard is named twice
+const auto status = extended<JointDistance<Distribution<16, 1>>, JointDistance<Distribution<15, 1>>>();
+// CASE DISTRIBUTION_OF_OTHER_DATA: pinnquad: the distribution of a JointDistance is that of other training data than the model's
+struct OtherData : Distribution<16, 1> {
+  static constexpr std::uint64_t training_data_hash = 2;
+};
+const auto status = extended<JointDistance<OtherData>>();
+// CASE NOT_A_GUARD: pinnquad: the second argument of InverseDynamics is a Guard
+const auto status = guarded<FiniteOutputs>();
+// CASE FALLBACK_OF_OTHER_INPUTS: pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time
+struct OtherInputs {
+  Status operator()(const State<float>&, Commands<float>&) const noexcept { return Status::ok; }
+};
+const auto status = extended<Fallback<OtherInputs>>();
+// CASE FALLBACK_NEEDS_TIME: pinnquad: this fallback can't be asked with the model's inputs, or must be told place and time
+struct NeedsTime {
+  Status operator()(const MotionInputs<float>&, const PlaceAndTime<float>&, Commands<float>&) const noexcept {
+    return Status::ok;
+  }
+};
+const auto status = extended<Fallback<NeedsTime>>();
+// CASE GROUND_WITHOUT_HEIGHT: pinnquad: an effect of this vehicle depends on height, place or time, which these inputs don't say
+using Policies = Extend<TrainingGuard, Fallback<AnalyticInverse<NearGround>>>;
+const auto status = guarded<Policies>(Policies(by_formula<NearGround>()));
+// CASE GUST_WITHOUT_TIME: pinnquad: an effect of this vehicle depends on place or time, which these inputs don't say
+Commands<float> commands{};
+const auto status = by_formula<InGusts>()(MotionInputsWithAltitude<float>{}, commands);
+// CASE COMMANDS_OF_THREE: deleted.*predict
+const auto status = guarded<TrainingGuard, std::array<float, 3>>();
+// CASE COMMANDS_IN_DOUBLE: deleted.*predict
+const auto status = guarded<TrainingGuard, Commands<double>>();

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: MIT
-// CASE NO_SHAPE: pinnquad: this type names no Scalar, Network, Features, Outputs and Vehicle
-// CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
-// CASE LONG_DOUBLE: pinnquad: a model block is read in place: float or double of IEEE 754, on a little-endian machine
 #include "pinnquad/exported/model_view.hpp"
 #include "../support/small_model.hpp"
 #include "pinnquad/inference/self_test.hpp"
-
-namespace {
 
 using namespace pinnquad;
 
@@ -18,30 +13,32 @@ struct Sound {
   using Vehicle = PaperQuadrotor;
 };
 
-#if defined(NO_SHAPE)
+template <class Shape>
+Status opened() {
+  alignas(8) static const unsigned char block[4096] = {};
+  ModelView<Shape> view;
+  typename ModelView<Shape>::Packed packed;
+  const Status status = ModelView<Shape>::open(block, sizeof block, view, packed);
+  return status == Status::ok ? self_test(InverseDynamics<ModelView<Shape>>(view)) : status;
+}
+
+// SOUND
+const auto status = opened<Sound>();
+
+// CASE NO_SHAPE: pinnquad: this type names no Scalar, Network, Features, Outputs and Vehicle
 struct Shape {
   using Scalar = float;
   using Network = Sound::Network;
 };
-#elif defined(INPUTS_DIFFER)
+const auto status = opened<Shape>();
+// CASE INPUTS_DIFFER: pinnquad: the network's input count differs from the feature set's size
 struct Shape : Sound {
   using Features = PaperFeaturesWithAltitude;
 };
-#elif defined(LONG_DOUBLE)
+const auto status = opened<Shape>();
+// CASE LONG_DOUBLE: pinnquad: a model block is read in place: float or double of IEEE 754, on a little-endian machine
 struct Shape : Sound {
   using Scalar = long double;
   using Network = Sound::Network::Rebind<long double>;
 };
-#else
-using Shape = Sound;
-#endif
-
-}  // namespace
-
-int main() {
-  alignas(8) static const unsigned char block[4096] = {};
-  ModelView<Shape> view;
-  ModelView<Shape>::Packed packed;
-  if (ModelView<Shape>::open(block, sizeof block, view, packed) != Status::ok) return 1;
-  return self_test(InverseDynamics<ModelView<Shape>>(view)) == Status::ok ? 0 : 1;
-}
+const auto status = opened<Shape>();

@@ -1,64 +1,39 @@
 // SPDX-License-Identifier: MIT
-// CASE NOT_A_LAYER: pinnquad: this type is not a layer
-// CASE LAYER_WITHOUT_FORWARD: pinnquad: this type is not a layer
-// CASE LAYER_WITHOUT_SCALAR: pinnquad: this type is not a layer
-// CASE LAYER_OF_OTHER_WIDTH: pinnquad: a layer does not take the outputs of the layer before it
-// CASE FORWARD_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
-// CASE ACTIVATION_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
-// CASE SLOPE_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
-// CASE SLOPE_FROM_INPUT_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
-// CASE TWO_SLOPES: pinnquad: an element-wise layer gives slope.y. or slope_from_input.v., not both
-// CASE NO_LAYERS: pinnquad: a network needs at least one layer
 #include "pinnquad/nn/network.hpp"
 
 #include "pinnquad/nn/packed_network.hpp"
 #include "pinnquad/nn/relu.hpp"
 
-namespace {
+using namespace pinnquad;
 
-/// A whole layer, always 4 wide.
-struct FourWide {
+template <class... Specs>
+float answered() {
+  using Net = Network<float, InputSize<4>, Specs...>;
+  const Net net{};
+  const float x[Net::inputs] = {};
+  float y[Net::outputs] = {};
+  net.forward(x, y);
+  PackedNetwork<Net>(net.parameters).forward(x, y);
+  return y[0];
+}
+
+/// A whole layer, always so wide or as wide as what comes.
+template <int Wide, bool IsNoexcept = true>
+struct Passes {
   template <class ScalarType, int In>
   struct Bind {
     using Scalar = ScalarType;
-    static constexpr int inputs = 4, outputs = 4, parameter_count = 0;
-    static void forward(const Scalar*, const Scalar* x, Scalar* y) noexcept {
-      for (int i = 0; i < 4; ++i) y[i] = x[i];
+    static constexpr int inputs = Wide > 0 ? Wide : In, outputs = inputs, parameter_count = 0;
+    static void forward(const Scalar*, const Scalar* x, Scalar* y) noexcept(IsNoexcept) {
+      for (int i = 0; i < inputs; ++i) y[i] = x[i];
     }
-  };
-};
-
-struct Nothing {};
-
-struct NoForward {
-  template <class ScalarType, int In>
-  struct Bind {
-    using Scalar = ScalarType;
-    static constexpr int inputs = In, outputs = In, parameter_count = 0;
-  };
-};
-
-struct NoScalar {
-  template <class ScalarType, int In>
-  struct Bind {
-    static constexpr int inputs = In, outputs = In, parameter_count = 0;
-    static void forward(const ScalarType*, const ScalarType*, ScalarType*) noexcept {}
-  };
-};
-
-struct ForwardMayThrow {
-  template <class ScalarType, int In>
-  struct Bind {
-    using Scalar = ScalarType;
-    static constexpr int inputs = In, outputs = In, parameter_count = 0;
-    static void forward(const Scalar*, const Scalar*, Scalar*) {}
   };
 };
 
 template <bool ActivateIsNoexcept, bool SlopeIsNoexcept>
 struct Square {
   template <class Scalar, int In>
-  struct Bind : pinnquad::ElementwiseLayer<Bind<Scalar, In>, Scalar, In> {
+  struct Bind : ElementwiseLayer<Bind<Scalar, In>, Scalar, In> {
     static Scalar activate(Scalar v) noexcept(ActivateIsNoexcept) { return v * v; }
     static Scalar slope(Scalar y) noexcept(SlopeIsNoexcept) { return y; }
   };
@@ -67,7 +42,7 @@ struct Square {
 template <bool FromInputIsNoexcept>
 struct SquareByInput {
   template <class Scalar, int In>
-  struct Bind : pinnquad::ElementwiseLayer<Bind<Scalar, In>, Scalar, In> {
+  struct Bind : ElementwiseLayer<Bind<Scalar, In>, Scalar, In> {
     static Scalar activate(Scalar v) noexcept { return v * v; }
     static Scalar slope_from_input(Scalar v) noexcept(FromInputIsNoexcept) { return v + v; }
 #ifdef TWO_SLOPES
@@ -76,36 +51,41 @@ struct SquareByInput {
   };
 };
 
-#if defined(NOT_A_LAYER)
-using Net = pinnquad::Network<float, pinnquad::InputSize<4>, pinnquad::Dense<4>, Nothing>;
-#elif defined(LAYER_WITHOUT_FORWARD)
-using Net = pinnquad::Network<float, pinnquad::InputSize<4>, NoForward>;
-#elif defined(LAYER_WITHOUT_SCALAR)
-using Net = pinnquad::Network<float, pinnquad::InputSize<4>, NoScalar>;
-#elif defined(LAYER_OF_OTHER_WIDTH)
-using Net = pinnquad::Network<float, pinnquad::InputSize<4>, pinnquad::Dense<5>, FourWide>;
-#elif defined(FORWARD_MAY_THROW)
-using Net = pinnquad::Network<float, pinnquad::InputSize<4>, ForwardMayThrow>;
-#elif defined(ACTIVATION_MAY_THROW)
-using Net = pinnquad::Network<float, pinnquad::InputSize<4>, Square<false, true>>;
-#elif defined(SLOPE_MAY_THROW)
-using Net = pinnquad::Network<float, pinnquad::InputSize<4>, Square<true, false>>;
-#elif defined(SLOPE_FROM_INPUT_MAY_THROW)
-using Net = pinnquad::Network<float, pinnquad::InputSize<4>, SquareByInput<false>>;
-#elif defined(NO_LAYERS)
-using Net = pinnquad::Network<float, pinnquad::InputSize<4>>;
-#else
-using Net = pinnquad::Network<float, pinnquad::InputSize<4>, pinnquad::Dense<4>, pinnquad::Relu, Square<true, true>,
-                              SquareByInput<true>, FourWide>;
-#endif
+// SOUND
+const float y = answered<Dense<4>, Relu, Square<true, true>, SquareByInput<true>, Passes<4>, Passes<0>>();
 
-}  // namespace
-
-int main() {
-  const Net net{};
-  const float x[Net::inputs] = {};
-  float y[Net::outputs] = {};
-  net.forward(x, y);
-  pinnquad::PackedNetwork<Net>(net.parameters).forward(x, y);
-  return static_cast<int>(y[0]) + static_cast<int>(sizeof(Nothing) + sizeof(NoForward) + sizeof(NoScalar));
-}
+// CASE NOT_A_LAYER: pinnquad: this type is not a layer
+struct Nothing {};
+const float y = answered<Dense<4>, Nothing>();
+// CASE LAYER_WITHOUT_FORWARD: pinnquad: this type is not a layer
+struct NoForward {
+  template <class ScalarType, int In>
+  struct Bind {
+    using Scalar = ScalarType;
+    static constexpr int inputs = In, outputs = In, parameter_count = 0;
+  };
+};
+const float y = answered<NoForward>();
+// CASE LAYER_WITHOUT_SCALAR: pinnquad: this type is not a layer
+struct NoScalar {
+  template <class ScalarType, int In>
+  struct Bind {
+    static constexpr int inputs = In, outputs = In, parameter_count = 0;
+    static void forward(const ScalarType*, const ScalarType*, ScalarType*) noexcept {}
+  };
+};
+const float y = answered<NoScalar>();
+// CASE LAYER_OF_OTHER_WIDTH: pinnquad: a layer does not take the outputs of the layer before it
+const float y = answered<Dense<5>, Passes<4>>();
+// CASE FORWARD_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
+const float y = answered<Passes<0, false>>();
+// CASE ACTIVATION_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
+const float y = answered<Square<false, true>>();
+// CASE SLOPE_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
+const float y = answered<Square<true, false>>();
+// CASE SLOPE_FROM_INPUT_MAY_THROW: pinnquad: a layer's forward.., activate.. and slope.. must be noexcept
+const float y = answered<SquareByInput<false>>();
+// CASE TWO_SLOPES: pinnquad: an element-wise layer gives slope.y. or slope_from_input.v., not both
+const float y = answered<SquareByInput<true>>();
+// CASE NO_LAYERS: pinnquad: a network needs at least one layer
+const float y = answered<>();

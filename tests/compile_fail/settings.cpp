@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: MIT
-// CASE CHECK_RETURNS_A_BOOL: pinnquad: a policy's check.. must be
-// CASE CHECK_TAKES_A_VALUE: pinnquad: a policy's check.. must be
-// CASE CHECK_IS_NOT_CONST: pinnquad: a policy's check.. must be
 #include "pinnquad/schedule/settings.hpp"
 
-namespace {
+#define CHECKED(...) \
+  struct Policy {    \
+    __VA_ARGS__      \
+  };                 \
+  void checked() { pinnquad::check_settings(Policy{}); }
 
-struct Policy {
-#if defined(CHECK_RETURNS_A_BOOL)
-  bool check() const { return true; }
-#elif defined(CHECK_TAKES_A_VALUE)
-  void check(double) const {}
-#elif defined(CHECK_IS_NOT_CONST)
-  void check() {}
-#else
-  void check() const {}
-#endif
-};
+// SOUND
+CHECKED(void check() const {})
 
-}  // namespace
-
-int main() { pinnquad::check_settings(Policy{}); }
+// CASE CHECK_RETURNS_A_BOOL: pinnquad: a policy's check.. must be
+CHECKED(bool check() const { return true; })
+// CASE CHECK_TAKES_A_VALUE: pinnquad: a policy's check.. must be
+CHECKED(void check(double) const {})
+// CASE CHECK_IS_NOT_CONST: pinnquad: a policy's check.. must be
+CHECKED(void check(){})

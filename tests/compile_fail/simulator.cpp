@@ -1,44 +1,43 @@
 // SPDX-License-Identifier: MIT
-// CASE NOT_A_PILOT: pinnquad: this type is no pilot
-// CASE RECORDER_WITHOUT_HOLD: pinnquad: this type is no recorder
-// CASE RECORDER_WITHOUT_ROWS: pinnquad: this type is no recorder
-// CASE EFFECT_NOT_SWITCHED: pinnquad: this effect is none of those that are switched
 #include "pinnquad/simulation/simulator.hpp"
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/simulation/switched_quadrotor.hpp"
 
-namespace {
+using namespace pinnquad;
 
 struct Pilot {
-#if !defined(NOT_A_PILOT)
-  pinnquad::SetPoint<double> operator()(const pinnquad::State<double>&, double) { return {}; }
-#endif
+  SetPoint<double> operator()(const State<double>&, double) { return {}; }
 };
-
-struct Recorder {
-#if !defined(RECORDER_WITHOUT_HOLD)
-  void hold(const pinnquad::Commands<double>&, double) {}
-#endif
-#if !defined(RECORDER_WITHOUT_ROWS)
+struct Holds {
+  void hold(const Commands<double>&, double) {}
+};
+struct Rows {
   template <class... Effects>
-  pinnquad::Sample operator()(const pinnquad::Quadrotor<double, Effects...>&, const pinnquad::VehicleState<double>&,
-                              const pinnquad::Commands<double>&) {
+  Sample operator()(const Quadrotor<double, Effects...>&, const VehicleState<double>&, const Commands<double>&) {
     return {};
   }
-#endif
 };
+struct Recorder : Holds, Rows {};
 
-using Vehicle = pinnquad::Quadrotor<double>;
+template <class Pilot, class Recorder>
+void ticked() {
+  const Quadrotor<double> quadrotor(airframe_value<PaperQuadrotor, double>());
+  Simulator<Quadrotor<double>, Pilot, Recorder>(quadrotor, Pilot{}, {}, Recorder{}).tick();
+}
 
-}  // namespace
+// SOUND
+void run() { ticked<Pilot, Recorder>(); }
 
-int main() {
-  const Vehicle quadrotor(pinnquad::airframe_value<pinnquad::PaperQuadrotor, double>());
-  pinnquad::Simulator<Vehicle, Pilot, Recorder> simulator(quadrotor, Pilot{}, {}, Recorder{});
-#if defined(EFFECT_NOT_SWITCHED)
-  pinnquad::SwitchedEffects effects;
-  pinnquad::switch_effect(effects, pinnquad::RotorGroundEffect<pinnquad::Conyers>{});
-#endif
-  return simulator.tick() ? 0 : 1;
+// CASE NOT_A_PILOT: pinnquad: this type is no pilot
+struct Nothing {};
+void run() { ticked<Nothing, Recorder>(); }
+// CASE RECORDER_WITHOUT_HOLD: pinnquad: this type is no recorder
+void run() { ticked<Pilot, Rows>(); }
+// CASE RECORDER_WITHOUT_ROWS: pinnquad: this type is no recorder
+void run() { ticked<Pilot, Holds>(); }
+// CASE EFFECT_NOT_SWITCHED: pinnquad: this effect is none of those that are switched
+void run() {
+  SwitchedEffects effects;
+  switch_effect(effects, RotorGroundEffect<Conyers>{});
 }

@@ -9,15 +9,8 @@
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::EulerAngles;
-using pinnquad::Matrix;
-using pinnquad::Quaternion;
-using pinnquad::Vector3;
-using pinnquad::test::components;
-using pinnquad::test::distance;
-using pinnquad::test::draws;
-using pinnquad::test::RandomStates;
-using pinnquad::test::rotation_tolerance;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 namespace {
 

@@ -12,11 +12,7 @@
 #include "recorded_flight.hpp"
 #include "support/temporary_folder.hpp"
 
-using pinnquad::Flight;
-using pinnquad::InputError;
-using pinnquad::OutputError;
-using pinnquad::read_flight_csv;
-using pinnquad::write_flight_csv;
+using namespace pinnquad;
 using pinnquad_test::random_flight;
 using pinnquad_test::TemporaryFolder;
 

@@ -14,13 +14,7 @@
 
 #include "recorded_flight.hpp"
 
-using pinnquad::Dataset;
-using pinnquad::Flight;
-using pinnquad::RowSet;
-using pinnquad::RowSplit;
-using pinnquad::split_by_flight;
-using pinnquad::split_by_trajectory;
-using pinnquad::split_each_flight;
+using namespace pinnquad;
 using pinnquad_test::random_flight;
 
 namespace {

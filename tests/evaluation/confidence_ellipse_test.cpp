@@ -8,11 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-using pinnquad::angle_difference_deg;
-using pinnquad::confidence_ellipse;
-using pinnquad::ConfidenceEllipse;
-using pinnquad::covariance_ellipse;
-using pinnquad::ellipse_outline;
+using namespace pinnquad;
 using pinnquad::detail::JointMoments;
 using Series = std::vector<double>;
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Writes airframe files, sound and not, into a folder, for the fuzzer to begin with: airframe_seeds DIR
-#include <fstream>
 #include <string>
 
+#include "fuzz/seeds.hpp"
+
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
   const std::string numbers =
       "name = \"quad\"\nmass_kg = 1.0\ninertia_kg_m2 = [0.01, 0.012, 0.02]\nthrust_coefficient = 0.1\n"
       "power_coefficient = 0.05\npropeller_diameter_m = 0.25\nmax_rotor_speed_rev_s = 120.0\n"
@@ -18,17 +18,11 @@ int main(int argument_count, char** arguments) {
     for (const char* place : places) all += std::string("[[rotor]]\n") + place + more;
     return all;
   };
-  const std::string files[] = {
-      numbers + rotors(""),
-      numbers + "inertia_products_kg_m2 = [0.0001, 0.0, 0.0]\n" +
-          rotors("z_m = -0.01\naxis = [0.0, 0.0, -1.0]\nthrust_scale = 0.97\nthrust_curve = 0.5\n"
-                 "rise_time_constant_s = 0.02\nfall_time_constant_s = 0.04\n"),
-      numbers, "mass_kg = -1\n", "[[rotor"};
-  bool written = true;
-  int at = 0;
-  for (const std::string& text : files) {
-    std::ofstream out(std::string(arguments[1]) + "/airframe" + std::to_string(at++), std::ios::binary);
-    written = written && (out << text).flush().good();
-  }
-  return written ? 0 : 2;
+  return pinnquad_test::write_seeds(
+      argument_count, arguments,
+      {numbers + rotors(""),
+       numbers + "inertia_products_kg_m2 = [0.0001, 0.0, 0.0]\n" +
+           rotors("z_m = -0.01\naxis = [0.0, 0.0, -1.0]\nthrust_scale = 0.97\nthrust_curve = 0.5\n"
+                  "rise_time_constant_s = 0.02\nfall_time_constant_s = 0.04\n"),
+       numbers, "mass_kg = -1\n", "[[rotor"});
 }

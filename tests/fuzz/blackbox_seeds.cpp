@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Writes blackbox and DataFlash logs into a folder, for the fuzzer to begin with: blackbox_seeds DIR
-#include <fstream>
 #include <string>
 
+#include "fuzz/seeds.hpp"
 #include "programs/logs/ulog_bytes.hpp"
 
 namespace {
@@ -67,12 +67,6 @@ std::string dataflash() {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
-  bool written = true;
-  int at = 0;
-  for (const std::string& bytes : {blackbox("2"), blackbox("1"), blackbox("2") + blackbox("2"), dataflash()}) {
-    std::ofstream out(std::string(arguments[1]) + "/log" + std::to_string(at++), std::ios::binary);
-    written = written && (out << bytes).flush().good();
-  }
-  return written ? 0 : 2;
+  return pinnquad_test::write_seeds(argument_count, arguments,
+                                    {blackbox("2"), blackbox("1"), blackbox("2") + blackbox("2"), dataflash()});
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Writes uSD logs, versions 1 and 2, closed and not, into a folder, for the fuzzer to begin with: usd_log_seeds DIR
 #include <cstdint>
-#include <fstream>
 #include <string>
 
+#include "fuzz/seeds.hpp"
 #include "pinnquad/exported/checksum.hpp"
 
 namespace {
@@ -31,16 +31,11 @@ std::string log(unsigned version) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  if (argument_count != 2) return 2;
-  bool written = true;
-  int at = 0;
+  std::vector<std::string> seeds;
   for (const unsigned version : {1u, 2u}) {
     const std::string open = log(version);
     const std::uint32_t sum = pinnquad::crc32(reinterpret_cast<const unsigned char*>(open.data()), open.size());
-    for (const std::string& bytes : {open, open + number(sum, 4), open.substr(0, open.size() - 3)}) {
-      std::ofstream out(std::string(arguments[1]) + "/usd" + std::to_string(at++), std::ios::binary);
-      written = written && (out << bytes).flush().good();
-    }
+    seeds.insert(seeds.end(), {open, open + number(sum, 4), open.substr(0, open.size() - 3)});
   }
-  return written ? 0 : 2;
+  return pinnquad_test::write_seeds(argument_count, arguments, seeds);
 }

@@ -12,33 +12,8 @@
 #include "support/central_difference.hpp"
 #include "support/loss_batches.hpp"
 
-using pinnquad::AccelerationOutputs;
-using pinnquad::CommandOutputs;
-using pinnquad::Constant;
-using pinnquad::Context;
-using pinnquad::CyclicalAnnealing;
-using pinnquad::LinearizedBase;
-using pinnquad::Literal;
-using pinnquad::LocalMonotonicity;
-using pinnquad::Match;
-using pinnquad::Mse;
-using pinnquad::PaperFeatures;
-using pinnquad::PaperLoss;
-using pinnquad::PaperQuadrotor;
-using pinnquad::PhysicsInformed;
-using pinnquad::Pitch;
-using pinnquad::ResidualOutputs;
-using pinnquad::Roll;
-using pinnquad::RotorSpeedOutputs;
-using pinnquad::TanhStep;
-using pinnquad::Weighted;
-using pinnquad::Yaw;
-using pinnquad::test::central_differences;
-using pinnquad::test::flight_context;
-using pinnquad::test::gradient_error;
-using pinnquad::test::gradient_tolerance;
-using pinnquad::test::PaperBatch;
-using pinnquad::test::random_batch;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 namespace {
 
@@ -59,10 +34,10 @@ struct QuarticFirstOutput {
 };
 
 /// Terms with weights far apart, so that one in the wrong place shows.
-struct Wide : PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, CyclicalAnnealing>,
-                              Weighted<LocalMonotonicity<Pitch, TanhStep>, Constant>,
-                              Weighted<LocalMonotonicity<Yaw>, CyclicalAnnealing>> {
-  Wide() {
+struct FarApart : PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, CyclicalAnnealing>,
+                                  Weighted<LocalMonotonicity<Pitch, TanhStep>, Constant>,
+                                  Weighted<LocalMonotonicity<Yaw>, CyclicalAnnealing>> {
+  FarApart() {
     std::get<0>(terms).schedule = {0.7, 5, 0.2};
     std::get<1>(terms).schedule.value = 3.0;
     std::get<1>(terms).loss.step.gain = 0.4;
@@ -113,7 +88,7 @@ void check_gradient(const Loss& loss, ContextType context) {
 TEST_CASE_TEMPLATE("gradient of every loss", Loss, Mse, LocalMonotonicity<Roll>, LocalMonotonicity<Pitch>,
                    LocalMonotonicity<Yaw>, LocalMonotonicity<Roll, TanhStep, Literal>,
                    LocalMonotonicity<Pitch, TanhStep, Match>, PaperLoss<Constant, TanhStep, Match>,
-                   PaperLoss<Constant, TanhStep, Literal>, PaperLoss<CyclicalAnnealing>, PaperLoss<Constant>, Wide,
+                   PaperLoss<Constant, TanhStep, Literal>, PaperLoss<CyclicalAnnealing>, PaperLoss<Constant>, FarApart,
                    PhysicsInformed<Mse>, QuarticFirstOutput) {
   SUBCASE("commands") {
     check_gradient(Loss{}, flight_context<Context<PaperFeatures, PaperQuadrotor, CommandOutputs>>());

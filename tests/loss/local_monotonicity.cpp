@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Algorithm 1, with the readings of docs/paper.md, deviations 8 and 9.
+// Algorithm 1, with the readings of docs/paper.md, deviations 8 and 9, and the forms of the loss: literal as it is
+// printed, and the match of steps.
 #include "pinnquad/loss/local_monotonicity.hpp"
 
 #include <doctest/doctest.h>
@@ -27,10 +28,10 @@ using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
 /// The paper and docs/paper.md give four digits after the point.
 constexpr double printed_digits = 5e-5;
 
-template <class Step>
+template <class Form = Standardised, class Step>
 double value(const Step& step, const Array& m, const Array& n) {
   Array gradient = Array::Zero(m.size());
-  return pinnquad::local_monotonicity(step, m, n, 1.0, gradient);
+  return Form::compare(step, m, n, 1.0, gradient);
 }
 
 template <class Loss, class ContextType>
@@ -40,27 +41,56 @@ double value(const Loss& loss, const ContextType& context, const PaperBatch<doub
   return loss.evaluate(context, batch, 1.0, gradient);
 }
 
-/// The same number a second time: loops, the signs of Eq. (2) typed again, physical units.
-template <class ContextType, class ToCommand>
-double plain_monotonicity(const std::array<double, 4>& signs, int axis, double gain, const ContextType& context,
-                          const PaperBatch<double>& batch, const ToCommand& to_command) {
+/// Signed sum of the predicted commands and angular acceleration, physical units, the signs of Eq. (2) typed again.
+struct Series {
   std::vector<double> m, n;
+
+  /// Over all pairs.
+  template <class Pair>
+  double sum(const Pair& of) const {
+    double total = 0.0;
+    for (std::size_t i = 0; i + 1 < m.size(); ++i) total += of(m[i + 1] - m[i], n[i + 1] - n[i]);
+    return total;
+  }
+};
+constexpr std::array<double, 4> typed_signs[3] = {{-1, 1, 1, -1}, {1, -1, 1, -1}, {1, 1, -1, -1}};
+
+template <class ContextType, class ToCommand>
+Series physical_series(int axis, const ContextType& context, const PaperBatch<double>& batch,
+                       const ToCommand& to_command) {
+  Series series;
+  const auto feature = static_cast<std::size_t>(3 + axis);
   for (int sample = 0; sample < batch.size(); ++sample) {
     double sum = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
-      const double output =
-          batch.prediction(static_cast<int>(i), sample) * context.output.standard_deviation[i] + context.output.mean[i];
-      sum += signs[i] * to_command(output);
+      sum += typed_signs[axis][i] *
+             to_command(batch.prediction(static_cast<int>(i), sample) * context.output.standard_deviation[i] +
+                        context.output.mean[i]);
     }
-    m.push_back(sum / context.signed_sum_deviation[static_cast<std::size_t>(axis)]);
-    n.push_back(batch.features(3 + axis, sample));
+    series.m.push_back(sum);
+    series.n.push_back(batch.features(3 + axis, sample) * context.input.standard_deviation[feature] +
+                       context.input.mean[feature]);
   }
-  double total = 0.0;
-  for (std::size_t i = 0; i + 1 < m.size(); ++i) {
-    total += 1.0 - std::tanh(gain * (m[i + 1] - m[i])) * std::tanh(gain * (n[i + 1] - n[i]));
-  }
-  return m.size() > 1 ? total / static_cast<double>(m.size() - 1) : 0.0;
+  return series;
 }
+double as_it_is(double u) { return u; }
+
+/// The losses of a form about each axis, against expected(axis, batch), for batches of several sizes.
+template <class Form, class ContextType, class Expected>
+void check_axes(unsigned seed, const ContextType& context, double roundings, const Expected& expected) {
+  std::mt19937_64 engine(seed);
+  for (const int size : {1, 2, 3, 17, 64}) {
+    const auto batch = random_batch<double>(size, engine);
+    const double values[] = {value(LocalMonotonicity<Roll, TanhStep, Form>{}, context, batch),
+                             value(LocalMonotonicity<Pitch, TanhStep, Form>{}, context, batch),
+                             value(LocalMonotonicity<Yaw, TanhStep, Form>{}, context, batch)};
+    for (int axis = 0; axis < 3; ++axis) {
+      CAPTURE(axis);
+      CHECK(std::fabs(values[axis] - expected(axis, batch)) <= rounding<double>(roundings));
+    }
+  }
+}
+double mean_of_pairs(double total, int size) { return size > 1 ? total / (size - 1) : 0.0; }
 
 /// The paper's airframe with the connectors of two motors swapped: 1 <-> 3 (front right, front left).
 struct Swapped {
@@ -77,7 +107,7 @@ struct Swapped {
 
 }  // namespace
 
-TEST_CASE("footnote 2 of the paper") {
+TEST_CASE("footnote 2 of the paper, by each form") {
   const Array x = array({1, 2, 3, 4, 5});
   const Array y1 = array({1, -2, -3, 4, 5});
   const Array y2 = array({1, 2, 3, 1.9455, 2.5});
@@ -90,9 +120,21 @@ TEST_CASE("footnote 2 of the paper") {
     CHECK(std::fabs(value(TanhStep{1.0}, y2, x) - 0.7632) <= printed_digits);
   }
   SUBCASE("divided by N_b as printed, tanh gives neither (docs/paper.md, deviation 8)") {
-    CHECK(std::fabs(value(TanhStep{1.0}, y1, x) * 4.0 / 5.0 - 0.7992) <= printed_digits);
-    CHECK(std::fabs(value(TanhStep{1.0}, y2, x) * 4.0 / 5.0 - 0.6106) <= printed_digits);
+    const TanhStep step = LocalMonotonicity<Roll, TanhStep, Literal>{}.step;
+    CHECK(std::fabs(value<Literal>(step, y1, x) - 0.7992) <= printed_digits);
+    CHECK(std::fabs(value<Literal>(step, y2, x) - 0.6106) <= printed_digits);
   }
+  SUBCASE("the match: of four steps, all up in x, two and one go down; each costs (1 + 1)^2") {
+    CHECK(value<Match>(SignStep{}, y1, x) == 2.0);
+    CHECK(value<Match>(SignStep{}, y2, x) == 1.0);
+  }
+}
+
+TEST_CASE("the gain a form begins with; one that is set stays") {
+  CHECK(LocalMonotonicity<Roll>{}.step.gain == 3.0);
+  CHECK((LocalMonotonicity<Roll, TanhStep, Literal>{}.step.gain == 1.0));
+  CHECK((LocalMonotonicity<Roll, TanhStep, Match>{}.step.gain == 3.0));
+  CHECK((LocalMonotonicity<Roll, TanhStep, Literal>{TanhStep{2.0}}.step.gain == 2.0));
 }
 
 TEST_CASE("laws of the loss on two series") {
@@ -118,7 +160,7 @@ TEST_CASE("laws of the loss on two series") {
   }
 }
 
-TEST_CASE("0 for series that rise steeply together, 2 for opposed ones, 1 for one that stands still") {
+TEST_CASE("0 for series that rise steeply together, 2 (match: 4) for opposed ones, 1 for one that stands still") {
   const Array steep = array({0, 100, 300, 350, 900}), still = array({4, 4, 4, 4, 4});
   for (const double gain : {1.0, 3.0}) {
     CHECK(value(TanhStep{gain}, steep, steep) == 0.0);
@@ -128,6 +170,9 @@ TEST_CASE("0 for series that rise steeply together, 2 for opposed ones, 1 for on
   CHECK(value(SignStep{}, steep, steep) == 0.0);
   CHECK(value(SignStep{}, steep, Array(-steep)) == 2.0);
   CHECK(value(SignStep{}, still, steep) == 1.0);
+  CHECK(value<Match>(TanhStep{}, steep, steep) == 0.0);
+  CHECK(value<Match>(TanhStep{}, steep, Array(-steep)) == 4.0);
+  CHECK(value<Match>(TanhStep{}, still, steep) == 1.0);
 }
 
 TEST_CASE("every pair counts once: first, last and inner ones alike") {
@@ -181,33 +226,40 @@ TEST_CASE("the order of a batch matters: not a sum over samples (docs/paper.md, 
 
 TEST_CASE(
     "pairs of docs/paper.md, deviation 9: p_dot with -u1+u2+u3-u4, q_dot with u1-u2+u3-u4, r_dot with u1+u2-u3-u4") {
-  std::mt19937_64 engine(54);
-  const std::array<double, 4> roll = {-1, 1, 1, -1}, pitch = {1, -1, 1, -1}, yaw = {1, 1, -1, -1};
-  for (const int size : {1, 2, 3, 17, 64}) {
-    const auto batch = random_batch<double>(size, engine);
-    const double tolerance = rounding<double>(100);
-    SUBCASE("commands") {
-      const auto context = flight_context<PaperContext>();
-      const auto plain = [&](const std::array<double, 4>& signs, int axis) {
-        return plain_monotonicity(signs, axis, 3.0, context, batch, [](double u) { return u; });
-      };
-      CHECK(std::fabs(value(LocalMonotonicity<Roll>{}, context, batch) - plain(roll, 0)) <= tolerance);
-      CHECK(std::fabs(value(LocalMonotonicity<Pitch>{}, context, batch) - plain(pitch, 1)) <= tolerance);
-      CHECK(std::fabs(value(LocalMonotonicity<Yaw>{}, context, batch) - plain(yaw, 2)) <= tolerance);
-    }
-    SUBCASE("rotor speeds count as the commands they stand for (docs/paper.md, deviation 20)") {
-      const auto context = flight_context<Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>>();
-      const auto plain = [&](const std::array<double, 4>& signs, int axis) {
-        return plain_monotonicity(signs, axis, 3.0, context, batch, [](double speed_rev_s) {
-          const double n_max_rev_s = 8500.0 / 60.0;
-          return std::copysign(speed_rev_s * speed_rev_s / (n_max_rev_s * n_max_rev_s), speed_rev_s);
-        });
-      };
-      CHECK(std::fabs(value(LocalMonotonicity<Roll>{}, context, batch) - plain(roll, 0)) <= tolerance);
-      CHECK(std::fabs(value(LocalMonotonicity<Pitch>{}, context, batch) - plain(pitch, 1)) <= tolerance);
-      CHECK(std::fabs(value(LocalMonotonicity<Yaw>{}, context, batch) - plain(yaw, 2)) <= tolerance);
-    }
+  const auto check = [](const auto& context, const auto& to_command) {
+    const auto steps_of = [&](int axis, const PaperBatch<double>& batch, const auto& pair) {
+      const double deviation = context.signed_sum_deviation[static_cast<std::size_t>(axis)];
+      const Series series = physical_series(axis, context, batch, to_command);
+      return mean_of_pairs(
+          series.sum([&](double m, double n) { return pair(std::tanh(3.0 * m / deviation), std::tanh(3.0 * n)); }),
+          batch.size());
+    };
+    check_axes<Standardised>(54, context, 1000, [&](int axis, const PaperBatch<double>& batch) {
+      return steps_of(axis, batch, [](double m, double n) { return 1.0 - m * n; });
+    });
+    check_axes<Match>(66, context, 1000, [&](int axis, const PaperBatch<double>& batch) {
+      return steps_of(axis, batch, [](double m, double n) { return (m - n) * (m - n); });
+    });
+  };
+  SUBCASE("commands") { check(flight_context<PaperContext>(), as_it_is); }
+  SUBCASE("rotor speeds count as the commands they stand for (docs/paper.md, deviation 20)") {
+    check(flight_context<Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>>(), [](double speed_rev_s) {
+      const double n_max_rev_s = 8500.0 / 60.0;
+      return std::copysign(speed_rev_s * speed_rev_s / (n_max_rev_s * n_max_rev_s), speed_rev_s);
+    });
   }
+}
+
+TEST_CASE("literal: raw commands and rad/s^2, N_b - 1 terms over N_b, in every axis") {
+  auto context = flight_context<PaperContext>();
+  context.input.standard_deviation[3] = 11.0;
+  context.input.standard_deviation[4] = 7.0;
+  context.input.standard_deviation[5] = 0.9;
+  context.input.mean[3] = 2.0;
+  check_axes<Literal>(65, context, 1000, [&](int axis, const PaperBatch<double>& batch) {
+    const Series series = physical_series(axis, context, batch, as_it_is);
+    return series.sum([](double m, double n) { return 1.0 - std::tanh(m) * std::tanh(n); }) / batch.size();
+  });
 }
 
 TEST_CASE("the signs come from the airframe: swapped motors, swapped signs") {

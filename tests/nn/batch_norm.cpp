@@ -15,16 +15,7 @@
 #include "support/random_network.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::BatchNorm;
-using pinnquad::BatchNormMlp;
-using pinnquad::Dense;
-using pinnquad::DenseWithoutBias;
-using pinnquad::Hidden;
-using pinnquad::InputSize;
-using pinnquad::Network;
-using pinnquad::OutputSize;
-using pinnquad::Relu;
-using pinnquad::Tanh;
+using namespace pinnquad;
 using pinnquad::test::fill_uniform;
 using pinnquad::test::random_batch_norm_network;
 using pinnquad::test::rounding;

@@ -22,14 +22,7 @@
 #include "support/random_network.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::Dense;
-using pinnquad::Hidden;
-using pinnquad::InputSize;
-using pinnquad::Mlp;
-using pinnquad::Network;
-using pinnquad::OutputSize;
-using pinnquad::Relu;
-using pinnquad::Tanh;
+using namespace pinnquad;
 using pinnquad::test::fill_uniform;
 using pinnquad::test::random_parameters;
 using pinnquad::test::rounding;

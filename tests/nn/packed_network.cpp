@@ -18,17 +18,7 @@
 #include "support/random_network.hpp"
 #include "support/tolerances.hpp"
 
-using pinnquad::Dense;
-using pinnquad::GenericPack;
-using pinnquad::Hidden;
-using pinnquad::InputSize;
-using pinnquad::Mlp;
-using pinnquad::NativePack;
-using pinnquad::Network;
-using pinnquad::OutputSize;
-using pinnquad::PackedNetwork;
-using pinnquad::Relu;
-using pinnquad::Tanh;
+using namespace pinnquad;
 using pinnquad::test::fill_uniform;
 using pinnquad::test::random_parameters;
 using pinnquad::test::rounding;

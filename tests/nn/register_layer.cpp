@@ -17,11 +17,7 @@
 #include "support/packs.hpp"
 #include "support/random_network.hpp"
 
-using pinnquad::Dense;
-using pinnquad::InputSize;
-using pinnquad::Network;
-using pinnquad::PackedNetwork;
-using pinnquad::Relu;
+using namespace pinnquad;
 using pinnquad::test::fill_uniform;
 
 namespace {

@@ -11,7 +11,6 @@ from exported import AXES, Header
 
 DEMO = SOURCE / "examples/models/demo_quadrotor.hpp"
 STRUCTURED = SOURCE / "examples/models/structured_quadrotor.hpp"
-PARAMETER = r"[-+.\de]+f"
 
 
 def but_the_time(text, key="seconds"):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Ctrl-C in training keeps what is finished: the results are whole, the exit code says that it was interrupted."""
-import os
 import re
 import signal
 import time

@@ -4,7 +4,7 @@ are empty, slots that nobody uses, stamps that are wild. One flight in closed fo
 out as that flight; what cannot is refused in one line."""
 import re
 import struct
-from math import cos, degrees, pi, sin, sqrt
+from math import cos, degrees, pi, sin
 from pathlib import Path
 
 import pytest

@@ -25,13 +25,7 @@
 #include "support/own_layers.hpp"
 #include "support/random_network.hpp"
 
-using pinnquad::BackwardRule;
-using pinnquad::Dense;
-using pinnquad::DenseWithoutBias;
-using pinnquad::GenericPack;
-using pinnquad::is_elementwise;
-using pinnquad::Relu;
-using pinnquad::Tanh;
+using namespace pinnquad;
 using pinnquad::detail::BatchLayer;
 using pinnquad::test::central_differences;
 using pinnquad::test::ChannelScale;
@@ -39,7 +33,6 @@ using pinnquad::test::difference_step;
 using pinnquad::test::fill_uniform;
 using pinnquad::test::gradient_error;
 using pinnquad::test::gradient_tolerance;
-using pinnquad::test::LeakyRelu;
 using pinnquad::test::off_zero;
 using pinnquad::test::Softmax;
 
@@ -168,10 +161,10 @@ TEST_CASE_TEMPLATE("backward rule of every layer", Layer, Bound<Dense<1>, 1>, Bo
                    Bound<DenseWithoutBias<1>, 1>, Bound<DenseWithoutBias<5>, 3>, Bound<DenseWithoutBias<11>, 9>,
                    Bound<Relu, 7>, Bound<Tanh, 6>, Bound<pinnquad::Gelu, 5>, Bound<pinnquad::Silu, 6>,
                    Bound<pinnquad::Softplus, 7>, Bound<pinnquad::Sine, 4>, Bound<pinnquad::test::ScalarSquare, 3>,
-                   Bound<pinnquad::Elu, 6>, Bound<pinnquad::LeakyRelu, 7>, Bound<LeakyRelu, 5>, Bound<ChannelScale, 6>,
-                   Bound<Softmax, 5>, Bound<pinnquad::LayerNorm<6>, 6>, Bound<pinnquad::LayerNorm<4>, 6>,
-                   Bound<pinnquad::RmsNorm<5>, 5>, Bound<pinnquad::RmsNorm<3>, 4>, Bound<pinnquad::Glu<3>, 6>,
-                   Bound<pinnquad::Glu<2>, 7>) {
+                   Bound<pinnquad::Elu, 6>, Bound<pinnquad::LeakyRelu, 7>, Bound<test::LeakyRelu, 5>,
+                   Bound<ChannelScale, 6>, Bound<Softmax, 5>, Bound<pinnquad::LayerNorm<6>, 6>,
+                   Bound<pinnquad::LayerNorm<4>, 6>, Bound<pinnquad::RmsNorm<5>, 5>, Bound<pinnquad::RmsNorm<3>, 4>,
+                   Bound<pinnquad::Glu<3>, 6>, Bound<pinnquad::Glu<2>, 7>) {
   if constexpr (is_elementwise<Layer> || pinnquad::is_detected<pinnquad::detail::BackwardOf, Layer>) {
     SUBCASE("alone") { check_rule<Layer>(); }
   }

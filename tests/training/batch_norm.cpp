@@ -25,28 +25,9 @@
 #include "support/tolerances.hpp"
 #include "support/training_sets.hpp"
 
-using pinnquad::Adam;
-using pinnquad::BatchNorm;
-using pinnquad::BatchNormMlp;
-using pinnquad::Dense;
-using pinnquad::DenseWithoutBias;
-using pinnquad::GenericPack;
-using pinnquad::Hidden;
-using pinnquad::InputSize;
-using pinnquad::Mse;
-using pinnquad::NativePack;
-using pinnquad::Network;
-using pinnquad::OutputSize;
-using pinnquad::Relu;
-using pinnquad::Tanh;
+using namespace pinnquad;
 using pinnquad::detail::NetworkGradient;
-using pinnquad::test::central_differences;
-using pinnquad::test::fill_uniform;
-using pinnquad::test::gradient_error;
-using pinnquad::test::gradient_tolerance;
-using pinnquad::test::kink_margin;
-using pinnquad::test::random_batch_norm_network;
-using pinnquad::test::rounding;
+using namespace pinnquad::test;
 
 namespace {
 

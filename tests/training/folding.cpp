@@ -15,18 +15,7 @@
 #include "support/batch_norm_networks.hpp"
 #include "support/random_network.hpp"
 
-using pinnquad::BatchNorm;
-using pinnquad::BatchNormMlp;
-using pinnquad::Dense;
-using pinnquad::DenseWithoutBias;
-using pinnquad::folded;
-using pinnquad::Hidden;
-using pinnquad::InputSize;
-using pinnquad::Mlp;
-using pinnquad::Network;
-using pinnquad::OutputSize;
-using pinnquad::Relu;
-using pinnquad::Tanh;
+using namespace pinnquad;
 using pinnquad::detail::Folded;
 using pinnquad::test::fill_uniform;
 using pinnquad::test::random_batch_norm_network;

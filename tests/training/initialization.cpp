@@ -10,14 +10,7 @@
 #include "pinnquad/nn/relu.hpp"
 #include "support/own_layers.hpp"
 
-using pinnquad::Dense;
-using pinnquad::Hidden;
-using pinnquad::initialised;
-using pinnquad::InputSize;
-using pinnquad::Mlp;
-using pinnquad::Network;
-using pinnquad::OutputSize;
-using pinnquad::Relu;
+using namespace pinnquad;
 using pinnquad::test::ChannelScale;
 
 TEST_CASE_TEMPLATE("Xavier: bounds, mean and variance of each layer, biases 0", Scalar, float, double) {

@@ -23,17 +23,7 @@
 #include "support/own_layers.hpp"
 #include "support/random_network.hpp"
 
-using pinnquad::Dense;
-using pinnquad::DenseWithoutBias;
-using pinnquad::Gelu;
-using pinnquad::GenericPack;
-using pinnquad::InputSize;
-using pinnquad::Network;
-using pinnquad::Relu;
-using pinnquad::Silu;
-using pinnquad::Sine;
-using pinnquad::Softplus;
-using pinnquad::Tanh;
+using namespace pinnquad;
 using pinnquad::detail::NetworkGradient;
 using pinnquad::test::central_differences;
 using pinnquad::test::ChannelScale;
@@ -41,7 +31,6 @@ using pinnquad::test::fill_uniform;
 using pinnquad::test::gradient_error;
 using pinnquad::test::gradient_tolerance;
 using pinnquad::test::kink_margin;
-using pinnquad::test::LeakyRelu;
 using pinnquad::test::PackReciprocal;
 using pinnquad::test::Reciprocal;
 using pinnquad::test::ScalarSquare;
@@ -64,7 +53,7 @@ double smallest_kink_input(const double* parameters, const double* x) {
     using Layer = typename Net::template Layer<Index>;
     double smallest = std::numeric_limits<double>::infinity();
     if constexpr (std::is_same_v<Layer, Relu::Bind<double, Layer::inputs>> ||
-                  std::is_same_v<Layer, LeakyRelu::Bind<double, Layer::inputs>> ||
+                  std::is_same_v<Layer, test::LeakyRelu::Bind<double, Layer::inputs>> ||
                   std::is_same_v<Layer, pinnquad::LeakyRelu::Bind<double, Layer::inputs>>) {
       for (int i = 0; i < Layer::inputs; ++i) {
         // an input that is exactly 0 comes from a ReLU before, and stays 0 within the step
@@ -148,7 +137,7 @@ TEST_CASE_TEMPLATE("gradient of the library's layers in every order", Net, Netwo
 }
 
 TEST_CASE_TEMPLATE("gradient of a user's layers between them", Net,
-                   Network<double, InputSize<5>, Dense<6>, LeakyRelu, Dense<7>, LeakyRelu, Dense<4>>,
+                   Network<double, InputSize<5>, Dense<6>, test::LeakyRelu, Dense<7>, test::LeakyRelu, Dense<4>>,
                    Network<double, InputSize<5>, ChannelScale, Dense<6>, ChannelScale, Dense<3>, ChannelScale>,
                    Network<double, InputSize<5>, Dense<7>, ChannelScale, Tanh, Dense<3>>,
                    Network<double, InputSize<5>, Softmax, Dense<4>, Softmax, Dense<2>>) {
@@ -236,7 +225,7 @@ TEST_CASE_TEMPLATE("in float on the vector unit as in double by plain loops", Ne
                    Network<float, InputSize<5>, Dense<6>, Relu, Dense<17>, Relu, Dense<4>>,
                    Network<float, InputSize<5>, Dense<9>, Gelu, DenseWithoutBias<7>, Tanh, Dense<3>, Softplus>,
                    Network<float, InputSize<5>, Dense<9>, pinnquad::Elu, Dense<7>, pinnquad::LeakyRelu, Dense<3>>,
-                   Network<float, InputSize<3>, Dense<16>, Square, Dense<2>, LeakyRelu>) {
+                   Network<float, InputSize<3>, Dense<16>, Square, Dense<2>, test::LeakyRelu>) {
   std::mt19937_64 engine(93);
   constexpr double float_tolerance = 3.7e-7;  // of the largest: sums of at most 17 products, three layers deep
   for (const int samples : {1, 4, 7, 13}) {

@@ -10,8 +10,8 @@
 #include <type_traits>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
-#include "pinnquad/nn/relu.hpp"
 #include "pinnquad/features/motion_parts.hpp"
+#include "pinnquad/nn/relu.hpp"
 #include "pinnquad/training/initialization.hpp"
 #include "pinnquad/training/structured/closed_form.hpp"
 #include "pinnquad/training/training_data.hpp"
@@ -19,19 +19,7 @@
 #include "support/plain_network.hpp"
 #include "support/training_sets.hpp"
 
-using pinnquad::Context;
-using pinnquad::Flight;
-using pinnquad::Hidden;
-using pinnquad::initialised;
-using pinnquad::InputSize;
-using pinnquad::make_context;
-using pinnquad::make_trained_model;
-using pinnquad::Mlp;
-using pinnquad::OutputSize;
-using pinnquad::PaperFeatures;
-using pinnquad::PaperQuadrotor;
-using pinnquad::Relu;
-using pinnquad::RotorSpeedOutputs;
+using namespace pinnquad;
 using pinnquad::test::random_flight_rows;
 
 namespace {

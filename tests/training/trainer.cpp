@@ -24,32 +24,8 @@
 #include "support/random_network.hpp"
 #include "support/training_sets.hpp"
 
-using pinnquad::Adam;
-using pinnquad::CommandOutputs;
-using pinnquad::Constant;
-using pinnquad::Context;
-using pinnquad::CyclicalAnnealing;
-using pinnquad::Hidden;
-using pinnquad::initialised;
-using pinnquad::InputSize;
-using pinnquad::Mlp;
-using pinnquad::Mse;
-using pinnquad::OutputSize;
-using pinnquad::PaperFeatures;
-using pinnquad::PaperLoss;
-using pinnquad::PaperQuadrotor;
-using pinnquad::Progress;
-using pinnquad::Relu;
-using pinnquad::RotorSpeedOutputs;
-using pinnquad::ShuffledBatches;
-using pinnquad::Trainer;
-using pinnquad::test::central_differences;
-using pinnquad::test::flight_context;
-using pinnquad::test::gradient_error;
-using pinnquad::test::gradient_tolerance;
-using pinnquad::test::kink_margin;
-using pinnquad::test::known_map;
-using pinnquad::test::linear_map;
+using namespace pinnquad;
+using namespace pinnquad::test;
 
 namespace {
 

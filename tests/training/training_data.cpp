@@ -11,14 +11,7 @@
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "support/training_sets.hpp"
 
-using pinnquad::Context;
-using pinnquad::Flight;
-using pinnquad::IndexRange;
-using pinnquad::make_context;
-using pinnquad::PaperFeatures;
-using pinnquad::PaperQuadrotor;
-using pinnquad::RotorSpeedOutputs;
-using pinnquad::standardised;
+using namespace pinnquad;
 using pinnquad::test::random_flight_rows;
 
 namespace {

@@ -14,10 +14,7 @@
 #include "support/temporary_folder.hpp"
 #include "ulog_bytes.hpp"
 
-using pinnquad::logs::FlightLog;
-using pinnquad::logs::LogSelection;
-using pinnquad::logs::LogTopic;
-using pinnquad::logs::parse_blackbox;
+using namespace pinnquad::logs;
 using pinnquad_test::Bytes;
 
 namespace {

@@ -9,13 +9,7 @@
 
 #include "logs/log_checks.hpp"
 
-using pinnquad::logs::bridged_gap_s;
-using pinnquad::logs::clean_clock;
-using pinnquad::logs::CleanClock;
-using pinnquad::logs::common_clock;
-using pinnquad::logs::resample;
-using pinnquad::logs::Resampling;
-using pinnquad::logs::UniformClock;
+using namespace pinnquad::logs;
 
 namespace {
 std::vector<double> ticks(int rows, double period_s, double begin_s = 0) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Signals of real and simulated logs whose truth is known from elsewhere: derivatives, lags, and checks that have
-// nothing to find.
+// Signals of a simulated log whose truth is known from elsewhere: derivatives and lags.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -10,11 +9,7 @@
 
 #include "logs/clock.hpp"
 #include "logs/command_lag.hpp"
-#include "logs/motor_order_check.hpp"
-#include "logs/row_checks.hpp"
 #include "logs/savitzky_golay.hpp"
-#include "pinnquad/data/motion_checks.hpp"
-#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "programs/logs/finite_segments.hpp"
 #include "reference/reference_rows.hpp"
 
@@ -23,52 +18,8 @@ using namespace pinnquad::logs;  // NOLINT
 
 namespace {
 
-std::string logs_folder() { return test::reference_folder() + "/flight_logs/"; }
 std::string circle_folder() { return test::reference_folder() + "/sih/test_circle_csv/test_circle_"; }
 bool absent(const std::string& path) { return !std::ifstream(path); }
-
-/// Flights of ../shared/reference/flight_logs, parted where a row is missing; commands as logged, in the order of the
-/// airframe.
-std::vector<Flight> logged_flights(const std::string& name, double period_s) {
-  const test::ReferenceTable table(name, logs_folder());
-  std::vector<Flight> flights(1);
-  for (std::size_t row = 0; row < table.size(); ++row) {
-    const auto vector = [&](const char* prefix) {
-      const auto v = table.vector(row, prefix);
-      return Vector3<double>(v[0], v[1], v[2]);
-    };
-    Sample sample;
-    sample.time_s = table.at(row, "t");
-    const double step_s = flights.back().empty() ? period_s : sample.time_s - flights.back().back().time_s;
-    if (!(step_s > 0 && step_s < 1.5 * period_s)) flights.emplace_back();
-    sample.body_rates_rad_s = vector("w");
-    sample.velocity_m_s = vector("vb");
-    sample.linear_acceleration_m_s2 = vector("ab") - cross(sample.body_rates_rad_s, sample.velocity_m_s);
-    sample.angular_acceleration_rad_s2 = vector("dw");
-    sample.roll_rad = table.at(row, "roll");
-    sample.pitch_rad = table.at(row, "pitch");
-    sample.yaw_rad = table.at(row, "yaw");
-    sample.altitude_m = -table.at(row, "pz");
-    sample.commands = {table.at(row, "u1"), table.at(row, "u3"), table.at(row, "u4"), table.at(row, "u2")};
-    flights.back().push_back(sample);
-  }
-  return flights;
-}
-
-void check_nothing_found(const std::vector<Flight>& flights, double period_s, double lag_s) {
-  std::vector<Flight> aligned;
-  std::size_t grounded = 0;
-  for (const Flight& flight : flights) {
-    CHECK_FALSE(find_turning_mistake(flight).has_value());
-    const RowMask out = grounded_rows(flight, period_s);
-    grounded += static_cast<std::size_t>(std::count(out.begin(), out.end(), true));
-    aligned.push_back(remove_lag(flight, period_s, lag_s));
-  }
-  CHECK(grounded == 0);
-  const MotorOrderCheck order = check_motor_order(aligned, PaperQuadrotor::value<double>());
-  CHECK_FALSE(order.finding.has_value());
-  CHECK_FALSE(order.ambiguous);
-}
 
 std::vector<double> column(const test::ReferenceTable& table, const std::string& name) {
   std::vector<double> values;
@@ -82,43 +33,6 @@ std::vector<double> seconds(const test::ReferenceTable& table) {
 }
 
 }  // namespace
-
-/// Its authors took 30 ms, rows are 20 ms apart.
-TEST_CASE("NanoBench: the lag, the angular acceleration of the file, and nothing to complain of" *
-          doctest::skip(absent(logs_folder() + "nanobench_subset_50hz.csv"))) {
-  const std::vector<Flight> flights = logged_flights("nanobench_subset_50hz.csv", 0.02);
-  const CommandLag lag = estimate_command_lag(flights, 0.02);
-  std::printf("NanoBench: lag %.1f ms, confidence %.2f\n", 1e3 * lag.lag_s, lag.confidence);
-  CHECK(lag.found);
-  CHECK(lag.warning == "");
-  CHECK(std::abs(lag.lag_s - 0.03) < 0.01);
-  check_nothing_found(flights, 0.02, lag.lag_s);
-  // the file's derivative is filtered in its own way: alike, not equal
-  std::vector<double> rate, derivative;
-  for (const Sample& sample : flights.front()) {
-    rate.push_back(sample.body_rates_rad_s[1]);
-    derivative.push_back(sample.angular_acceleration_rad_s2[1]);
-  }
-  const auto choice = choose_savitzky_golay(rate, {{0, rate.size()}}, 0.02, 1);
-  const auto got = savitzky_golay(rate, 0.02, choice.filter, 1);
-  double both = 0, ours = 0, theirs = 0;
-  for (std::size_t row = 0; row < got.size(); ++row) {
-    both += got[row] * derivative[row];
-    ours += got[row] * got[row];
-    theirs += derivative[row] * derivative[row];
-  }
-  CHECK(both / std::sqrt(ours * theirs) > 0.97);
-}
-
-/// Its authors took 35 ms.
-TEST_CASE("arpl: the lag, and nothing to complain of" * doctest::skip(absent(logs_folder() + "arpl_crazyflie.csv"))) {
-  const std::vector<Flight> flights = logged_flights("arpl_crazyflie.csv", 0.005);
-  const CommandLag lag = estimate_command_lag(flights, 0.005);
-  std::printf("arpl: lag %.1f ms, confidence %.2f\n", 1e3 * lag.lag_s, lag.confidence);
-  CHECK(lag.found);
-  CHECK(std::abs(lag.lag_s - 0.035) < 0.006);
-  check_nothing_found(flights, 0.005, lag.lag_s);
-}
 
 /// Motors of 50 ms and one sample of transport (README of the flights): from the true rates the time constant comes
 /// back; the gyro's filter adds 6 ms, and its noise, which comes back as commands in this calm flight, some more.

@@ -11,11 +11,7 @@
 #include "support/temporary_folder.hpp"
 #include "ulog_bytes.hpp"
 
-using pinnquad::logs::FlightLog;
-using pinnquad::logs::kind_of_log;
-using pinnquad::logs::LogKind;
-using pinnquad::logs::LogSelection;
-using pinnquad::logs::read_log;
+using namespace pinnquad::logs;
 using pinnquad_test::Bytes;
 using pinnquad_test::TemporaryFolder;
 using pinnquad_test::UlogBytes;

@@ -14,11 +14,7 @@
 #include "support/temporary_folder.hpp"
 
 using pinnquad::Flight;
-using pinnquad::logs::ImportedDataset;
-using pinnquad::logs::kind_of_source;
-using pinnquad::logs::LogSettings;
-using pinnquad::logs::read_source;
-using pinnquad::logs::SourceKind;
+using namespace pinnquad::logs;
 using pinnquad_test::TemporaryFolder;
 
 namespace {

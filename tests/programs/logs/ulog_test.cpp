@@ -10,10 +10,7 @@
 #include "logs/ulog.hpp"
 #include "ulog_bytes.hpp"
 
-using pinnquad::logs::FlightLog;
-using pinnquad::logs::LogSelection;
-using pinnquad::logs::LogTopic;
-using pinnquad::logs::parse_ulog;
+using namespace pinnquad::logs;
 using pinnquad_test::Bytes;
 using pinnquad_test::UlogBytes;
 using Limits32 = std::numeric_limits<float>;
