@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -28,8 +29,8 @@
 #include "flight/waypoints.hpp"
 #include "loop/controlled_loop.hpp"
 #include "loop/loop_model.hpp"
-#include "loop/loop_verdict.hpp"
 #include "loop/vehicles.hpp"
+#include "model/model_evidence.hpp"
 #include "pinnquad/exported/model.hpp"
 
 namespace {
@@ -123,9 +124,37 @@ void print_json(const nlohmann::json& value) {
   std::printf("%s\n", value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
+/// The first row of each controller, the one with the least errors first; rows are by controller, then by condition.
+std::vector<std::size_t> best_first(const std::vector<nlohmann::json>& rows, std::size_t conditions) {
+  const auto error = [&](std::size_t begin) {
+    double sum = 0;
+    for (std::size_t i = begin; i < begin + conditions; ++i) {
+      if (rows[i]["crashed"].get<bool>()) return std::numeric_limits<double>::infinity();
+      sum += std::log(rows[i]["rmse_cm"].get<double>());
+    }
+    return sum;
+  };
+  std::vector<std::size_t> order;
+  for (std::size_t begin = 0; begin < rows.size(); begin += conditions) order.push_back(begin);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return error(a) < error(b); });
+  return order;
+}
+
+/// The verdict on `model`, worse where a controller that flies it loses the vehicle.
+programs::FlightVerdict controllers_verdict(const BlockModel& model, const std::vector<nlohmann::json>& rows) {
+  programs::FlightVerdict verdict = programs::model_verdict(programs::evidence_of(model));
+  for (const nlohmann::json& row : rows) {
+    const std::string controller = row["controller"];
+    const bool by_model = controller.find("structured") == 0 || controller == "adaptive";
+    if (!by_model || !row["crashed"].get<bool>()) continue;
+    verdict.refuse(controller + " loses the vehicle under " + row["condition"].get<std::string>(),
+                   programs::livelier_flight);
+  }
+  return verdict;
+}
+
 void print_errors(const LoopOptions& options, const std::vector<std::string>& conditions,
                   const std::vector<nlohmann::json>& rows, const std::string& airframe, double duration_s) {
-  programs::print_verdict(programs::controllers_verdict(rows, conditions.size()));
   programs::print_entry(
       "trajectory", programs::in_words("%s, flown by %s for %.0f s, with noise in what controllers see",
                                        printable(options.trajectory).c_str(), printable(airframe).c_str(), duration_s));
@@ -137,7 +166,7 @@ void print_errors(const LoopOptions& options, const std::vector<std::string>& co
     std::printf("  %-18s", "");
     for (std::size_t c = first; c < last; ++c) std::printf(" %15s", conditions[c].c_str());
     std::printf("\n");
-    for (const std::size_t begin : programs::best_first(rows, conditions.size())) {
+    for (const std::size_t begin : best_first(rows, conditions.size())) {
       std::printf("  %-18s", rows[begin]["controller"].get<std::string>().c_str());
       for (std::size_t c = first; c < last; ++c) {
         const nlohmann::json& row = rows[begin + c];
@@ -178,13 +207,16 @@ int fly_controllers(const LoopOptions& options, const programs::LoopModel& given
         ++finished;
       });
   programs::stop_if_interrupted();
+  const programs::FlightVerdict verdict = controllers_verdict(given.model, rows);
   if (options.json) {
     print_json({{"path", given.model.path()},
+                {"verdict", programs::verdict_json(verdict)},
                 {"airframe", given.airframe.name},
                 {"trajectory", options.trajectory},
                 {"duration_s", setting.duration_s},
                 {"rows", rows}});
   } else {
+    programs::print_verdict(verdict);
     print_errors(options, conditions, rows, given.airframe.name, setting.duration_s);
   }
   return 0;
@@ -235,7 +267,9 @@ int loop(const LoopOptions& options) {
       model, {options.trajectory, given.airframe.value, options.guard == "envelope", given.columns, given.battery});
   programs::stop_if_interrupted();
   nlohmann::json report = report_of(options, model, given.airframe.name, given.columns, flights);
-  const programs::FlightVerdict verdict = programs::loop_verdict(report);
+  programs::ModelEvidence evidence = programs::evidence_of(model, false);
+  evidence.flown = programs::flight_evidence(flights, options.trajectory);
+  const programs::FlightVerdict verdict = programs::model_verdict(evidence);
   report["verdict"] = programs::verdict_json(verdict);
   if (options.json) {
     print_json(report);
@@ -312,8 +346,8 @@ Command loop_command(CLI::App& program) {
       "  pinnquad loop trained.block --battery 3x2200 --battery-charge 40\n"
       "  pinnquad loop trained.block --controllers adaptive,indi --conditions calm,payload\n"
       "  pinnquad loop --vehicles 20 --out flown\n"
-      "Exit codes: 0; 1 do not fly: the model loses the vehicle, flies it worse than no model, or answers nothing; 2\n"
-      "bad input or a file that can't be read; 130 interrupted.");
+      "Exit codes: 0; 1 do not fly (docs/log_training.md, The verdict); 2 bad input or a file that can't be read; 130\n"
+      "interrupted.");
   return {line, [options] { return loop(*options); }};
 }
 
