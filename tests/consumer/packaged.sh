@@ -64,7 +64,7 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null && [ -
     "$1" fly --samples 20 --out "$work/flight.csv" --watch "$work/flight.html" 2>&1
   }
   if said=$(watch "$tree/bin/pinnquad"); then echo "flown with a page that is not built: $said"; exit 1; fi
-  [[ $said == *flight.html:*Node.js* ]] || { echo "without the page: expected a line about Node.js, found '$said'"; exit 1; }
+  [[ $said == *flight.html:*nodejs* ]] || { echo "without the page: expected a line about nodejs, found '$said'"; exit 1; }
   echo '{"style":"", "body":"the stand-in", "script":""}' >"$tree/share/pinnquad/watch.json"
   (cd "$tree" && cpack >/dev/null)
   dpkg-deb -x "$tree"/pinnquad_*.deb "$work/installed"

@@ -49,7 +49,7 @@ def sealed(block):
 
 
 @pytest.mark.parametrize("offset, value, keyword", [
-    (0, b"X", "another file"), (8, b"\x05", "train and export again"), (8, b"\x02", "found 2"), (12, b"\xff", "cut short"),
+    (0, b"X", "another file"), (8, b"\x05", "train and export again"), (8, b"\x02", "found 2"), (12, b"\xff", "bytes that this block records as its length, found "),
     (16, b"\x03", "size"), (20, b"\x11", ""), (28, b"\x01", ""), (40, b"\x00", "hash")])
 def test_changed(pinnquad, offset, value, keyword):
     """With its checksum made right again."""
@@ -65,7 +65,7 @@ def test_refused(pinnquad, flown):
     Path("empty.block").touch()
     Path("weight.block").write_bytes(sealed(bytearray(whole[:-8] + b"\x00\x00\x80\x7f" + whole[-4:])))
     shutil.copy(flown("--seed 9 --samples 500"), "flight.csv")
-    for name, keyword in (("cut.block", "cut short"), ("empty.block", "cut short"), ("weight.block", "NaN"),
+    for name, keyword in (("cut.block", "cut short"), ("empty.block", "60 bytes or more, found 0"), ("weight.block", "NaN"),
                           ("flight.csv", "model block"), ("none.block", "found none")):
         pinnquad.refused("block", name, at=name, keyword=keyword)
 

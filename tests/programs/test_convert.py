@@ -258,6 +258,15 @@ def test_commands_take_it(pinnquad, flown):
     header = converted(pinnquad, "affine.safetensors")
     assert "NOT PROVEN" in header.text
     assert "provable" in pinnquad("certify model/model.block --seconds 1", code=1).out
+    # one verdict, whoever gives it: of this one, and of a network that is refuted and flies well
+    def verdicts(model, *more):
+        said = [pinnquad(words, model, *rest, code=(0, 1)).flat for words, *rest in (
+            ["certify"], ["loop"], ["loop", "--controllers", "structured"], *more)]
+        assert all("evidence R^2" in text or "evidence judged" in text for text in said), said
+        return {re.search("verdict ([a-z ]+): ", text).group(1) for text in said}
+    assert verdicts("model/model.block", ["evaluate", flight]) == {"do not fly"}
+    assert "verdict do not fly: " in pinnquad("convert affine.safetensors --features features.toml --out model").flat
+    assert verdicts(SOURCE / "examples/models/demo_quadrotor.block") == {"fly with care"}
 
 
 def test_networks_py_knows_each_activation(pinnquad):

@@ -23,10 +23,10 @@ def bundle(work):
 
 def test_without_the_bundle(driver):
     """Refused before anything flies or is written."""
-    driver.refused("out.html rows.csv", at="out.html", keyword="Node.js")
+    driver.refused("out.html rows.csv", at="out.html", keyword="apt-get install nodejs npm")
     assert not Path("rows.csv").exists()
     Path("watch.json").write_text('{"style":"no body","script":""}')
-    driver.refused("out.html rows.csv 10", at="out.html", keyword="Node.js")
+    driver.refused("out.html rows.csv 10", at="out.html", keyword="apt-get install nodejs npm")
 
 
 def test_refused(driver, bundle):

@@ -49,6 +49,7 @@ def test_pairs_are_tested(run):
     assert bad.contender == "bad_one" and bad.pairs == 8 and bad.difference > 0.005
     assert bad.p_value == pytest.approx(2 / 2**8)  # all eight of one sign: the least that Wilcoxon's test has
     assert bad.p_holm == bad.p_value and np.isnan(same.p_value)  # equal to the reference: nothing to rank
+    assert (bad.why_no_p, same.why_no_p) == ("", "none: equal errors") and "none: equal errors" in run.to_latex()
     assert bad.p_value == stats.wilcoxon([row["mean_absolute_error"] for row in run.rows[8:16]],
                                          [row["mean_absolute_error"] for row in run.rows[:8]]).pvalue
 

@@ -2,7 +2,7 @@
 // May this model fly? One answer and one wording for every command, page and header: the reason, and what to do next.
 #pragma once
 
-#include <cstddef>
+#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,8 +27,9 @@ inline const char* word_of(MayFly may_fly) {
 /// Begins as fit; each doubt makes it worse, none better.
 class FlightVerdict {
  public:
-  /// `facts`: what makes it fit, in words.
-  explicit FlightVerdict(std::string facts = {}) : facts_(std::move(facts)) {}
+  /// `evidence`: what the verdict is made of; of a model that is fit it is why. `subject` goes before it there.
+  explicit FlightVerdict(std::string evidence = {}, std::string subject = {})
+      : evidence_(std::move(evidence)), subject_(std::move(subject)) {}
 
   /// `next`: a flight to record or a command to type; that of the worst finding, of equals the first, is shown.
   void care(const std::string& why, const std::string& next) { add(MayFly::with_care, why, next); }
@@ -40,7 +41,7 @@ class FlightVerdict {
 
   MayFly may_fly() const { return may_fly_; }
   const std::vector<std::string>& reasons() const { return reasons_; }
-  const std::string& facts() const { return facts_; }
+  const std::string& evidence() const { return evidence_; }
   const std::string& next() const { return next_; }
 
   /// "do not fly": the verdict without its reasons.
@@ -52,11 +53,11 @@ class FlightVerdict {
     }
     return "";
   }
-  /// Reasons where there are any, else the facts.
+  /// Reasons where there are any, else the evidence.
   std::string why() const {
     std::string text;
     for (const std::string& reason : reasons_) text += (text.empty() ? "" : "; ") + reason;
-    return reasons_.empty() ? facts_ : text;
+    return reasons_.empty() ? subject_ + evidence_ : text;
   }
   /// "do not fly: why".
   std::string words() const { return short_words() + (why().empty() ? "" : ": " + why()); }
@@ -72,20 +73,26 @@ class FlightVerdict {
   }
 
   MayFly may_fly_ = MayFly::in_simulation_and_bench;
-  std::string facts_, next_;
+  std::string evidence_, subject_, next_;
   std::vector<std::string> reasons_;
 };
 
 /// The first lines of a command's answer.
-inline void print_verdict(const FlightVerdict& verdict) {
-  print_entry("verdict", verdict.words());
-  if (!verdict.next().empty()) print_entry("next", verdict.next());
+inline std::string verdict_text(const FlightVerdict& verdict) {
+  const auto unless_empty = [](const char* name, const std::string& text) {
+    return text.empty() ? std::string() : entry(name, text);
+  };
+  return entry("verdict", verdict.words()) + unless_empty("next", verdict.next()) +
+         (verdict.reasons().empty() ? "" : unless_empty("evidence", verdict.evidence()));
 }
+
+inline void print_verdict(const FlightVerdict& verdict) { std::fputs(verdict_text(verdict).c_str(), stdout); }
 
 inline nlohmann::json verdict_json(const FlightVerdict& verdict) {
   return {{"may_fly", word_of(verdict.may_fly())},
           {"in_words", verdict.words()},
           {"why", verdict.why()},
+          {"evidence", verdict.evidence()},
           {"next", verdict.next()}};
 }
 

@@ -21,6 +21,7 @@
 #include "convert/convert_network.hpp"
 #include "convert/python_answer.hpp"
 #include "model/given_model.hpp"
+#include "model/model_evidence.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/logs/read_dataset.hpp"
@@ -45,7 +46,9 @@ void convert_network(const ConvertOptions& options) {
   roles.reads("--features", options.features);
   roles.writes("--out", options.out + "/model.hpp");
   roles.writes("--out", options.out + "/model.block");
-  std::fputs(programs::convert_network(options, programs::run_python).c_str(), stdout);
+  const std::string files = programs::convert_network(options, programs::run_python);
+  programs::print_verdict(programs::model_verdict(programs::evidence_of(BlockModel(options.out + "/model.block"))));
+  std::fputs(files.c_str(), stdout);
 }
 
 /// Of a model a network.
@@ -82,12 +85,15 @@ void begin_features(const ConvertOptions& options) {
   file.stream() << text;
   file.commit();
   programs::print_entry("next", "look at ranges and units in " + printable(options.out) +
-                                    ", add mean and scale if the network was standardised, name the airframe");
+                                    ", add mean and scale if the network was standardised, name the airframe; then: "
+                                    "pinnquad convert NETWORK --features " +
+                                    printable(options.out) + " --out my_model");
 }
 
 int convert(const ConvertOptions& options) {
   const std::string ending = std::filesystem::path(options.source).extension().string();
-  if (ending == ".csv" || std::filesystem::is_directory(options.source)) {
+  if (std::filesystem::path(options.out).extension() == ".toml" || ending == ".csv" ||
+      std::filesystem::is_directory(options.source)) {
     begin_features(options);
     return 0;
   }

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "command_line/flight_verdict.hpp"
 #include "command_line/folder_lock.hpp"
+#include "command_line/in_columns.hpp"
 #include "command_line/in_words.hpp"
 #include "convert/converted_model.hpp"
 #include "convert/exported_network.hpp"
@@ -91,14 +91,7 @@ std::string write_model(const Conversion& conversion, const ForeignMeaning& mean
   block_file.close();
   header_file.commit();
   block_file.commit();
-  FlightVerdict verdict;
-  if (written.signs_unproven) {
-    verdict.care("no proof that more angular acceleration asked is more torque commanded",
-                 "pinnquad certify " + printable(block_path));
-  }
-  verdict.care("no flight judged it", "pinnquad evaluate " + printable(block_path) + " FLIGHTS");
-  return entry("verdict", verdict.words()) + entry("next", verdict.next()) +
-         entry("files", printable(header_path) + ": struct " + conversion.name + ", " +
+  return entry("files", printable(header_path) + ": struct " + conversion.name + ", " +
                             std::to_string(model.network().parameter_count()) + " parameters") +
          entry("", printable(block_path) + ": " + std::to_string(block.size()) + " bytes") +
          entry("checked", "at most " + in_words("%.1e", difference) + " from the source's commands, over " +

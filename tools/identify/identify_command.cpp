@@ -14,6 +14,7 @@
 #include "airframe/choice.hpp"
 #include "command_line/commands.hpp"
 #include "command_line/file_roles.hpp"
+#include "command_line/like_warnings.hpp"
 #include "command_line/progress_line.hpp"
 #include "identify/told_vehicle.hpp"
 #include "identify/vehicle_verdict.hpp"
@@ -77,7 +78,9 @@ void print_json(const programs::ToldVehicle& vehicle, const logs::ImportedDatase
 void print_table(const programs::ToldVehicle& vehicle, const logs::ImportedDataset& dataset) {
   for (const std::string& taken : dataset.taken) programs::print_message(taken);
   if (!dataset.curve.told.empty()) programs::print_message(dataset.curve.told);
-  for (const std::string& warning : dataset.warnings) programs::print_message("warning: " + warning);
+  for (const std::string& warning : programs::collapsed(dataset.warnings, "--json prints all")) {
+    programs::print_message("warning: " + warning);
+  }
   programs::print_entry("flights", programs::in_words("%zu, %.1f s, in %zu blocks", dataset.flights.size(),
                                                       vehicle.found.duration_s, vehicle.found.blocks));
   std::printf("%-38s %10s  %-22s %-8s %s\n", "number", "value", "95 % interval", "unit", "excitation");

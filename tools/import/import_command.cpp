@@ -13,6 +13,7 @@
 #include "command_line/commands.hpp"
 #include "command_line/in_columns.hpp"
 #include "command_line/in_words.hpp"
+#include "command_line/like_warnings.hpp"
 #include "command_line/progress_line.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
 
@@ -68,7 +69,9 @@ void print_text(const logs::ImportedDataset& dataset, const std::string& out) {
   }
   for (const std::string& missing : dataset.absent)
     std::printf("absent: %s (the logs lack it; filled with 0)\n", missing.c_str());
-  for (const std::string& warning : dataset.warnings) programs::print_message("warning: " + warning);
+  for (const std::string& warning : programs::collapsed(dataset.warnings, "--json prints all")) {
+    programs::print_message("warning: " + warning);
+  }
   programs::print_message(
       programs::in_words("%zu rows of %zu flights, every %g s, lag of %g s removed: ", dataset.flights.rows(),
                          dataset.flights.size(), dataset.sample_period_s, dataset.lag_removed_s) +

@@ -57,8 +57,11 @@ OfferedMapping required_offer(const std::string& path) {
   const bool is_folder = std::filesystem::is_directory(path);
   throw InputError(
       path, 0, 0, "a flight, a dataset, or a --mapping of the log's columns (" + mapping_names() + ", or a .toml file)",
-      is_folder ? "a folder without logs"
-                : "columns that none of these names; what a mapping says: pinnquad import --list, docs/import.md");
+      is_folder
+          ? "a folder without logs"
+          : "columns that none of these names; write mine.toml (docs/import.md, A table of your own), then: pinnquad "
+            "import " +
+                printable(path) + " --mapping mine.toml --out dataset");
 }
 
 /// Fewest rows of a flight: a batch of training.
@@ -163,7 +166,6 @@ class Import {
       set_thrust_curve(airframe, dataset_.curve.k);
     }
     check_vehicle(dataset_, airframe, !settings_.airframe.empty(), settings_.on_progress);
-    merge_warnings();
     return std::move(dataset_);
   }
 
@@ -333,30 +335,6 @@ class Import {
     has_velocity_.push_back(log_rows.has_velocity);
     has_altitude_.push_back(log_rows.has_altitude);
     passages_.push_back(std::move(passage));
-  }
-
-  /// Five warnings or more that say the same are one line.
-  void merge_warnings() {
-    constexpr std::size_t fewest = 5;
-    const auto rest_of = [](const std::string& warning) {
-      const std::size_t colon = warning.find(": ");
-      return colon == std::string::npos ? warning : warning.substr(colon + 2);
-    };
-    std::map<std::string, std::vector<std::string>> names;  // by the rest
-    for (const std::string& warning : dataset_.warnings) {
-      names[rest_of(warning)].push_back(warning.substr(0, warning.find(": ")));
-    }
-    std::vector<std::string> merged;
-    for (const std::string& warning : dataset_.warnings) {
-      const std::string rest = rest_of(warning);
-      const std::vector<std::string>& of = names[rest];
-      if (of.size() < fewest) {
-        merged.push_back(warning);
-      } else {
-        add(merged, many_flights(of) + ": " + rest);
-      }
-    }
-    dataset_.warnings = std::move(merged);
   }
 
   /// Attitude and force of a blackbox log are the accelerometer's.

@@ -28,9 +28,10 @@
 #include "loop/controlled_loop.hpp"
 #include "loop/loop_flights.hpp"
 #include "loop/loop_model.hpp"
-#include "loop/loop_verdict.hpp"
+#include "loop/loop_spread.hpp"
 #include "loop/quantile.hpp"
 #include "loop/vehicles.hpp"
+#include "model/model_evidence.hpp"
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 
@@ -125,6 +126,19 @@ void print_table(const LoopOptions& options, const BlockModel& model, const std:
 
 void print_json(const nlohmann::json& value) {
   std::printf("%s\n", value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+}
+
+/// The verdict on `model`, worse where a controller that flies it loses the vehicle.
+programs::FlightVerdict controllers_verdict(const BlockModel& model, const std::vector<programs::LoopSpread>& spreads) {
+  programs::FlightVerdict verdict = programs::model_verdict(programs::evidence_of(model));
+  for (const programs::LoopSpread& each : spreads) {
+    const bool by_model = each.controller.find("structured") == 0 || each.controller == "adaptive";
+    if (!by_model || each.lost == 0) continue;
+    const std::string times =
+        each.flights() == 1 ? "" : programs::in_words(" in %zu of %zu flights", each.lost, each.flights());
+    verdict.refuse(each.controller + " loses the vehicle under " + each.condition + times, programs::livelier_flight);
+  }
+  return verdict;
 }
 
 /// Controllers down, conditions across: of one seed.
@@ -228,9 +242,14 @@ int fly_controllers(const LoopOptions& options, const programs::LoopModel& given
                           return row;
                         });
   const std::vector<programs::LoopSpread> spreads = programs::loop_spreads(rows);
-  nlohmann::json report = {{"path", given.model.path()},         {"airframe", given.airframe.name},
-                           {"trajectory", options.trajectory},   {"duration_s", loop.setting().duration_s},
-                           {"summary", nlohmann::json::array()}, {"rows", rows}};
+  const programs::FlightVerdict verdict = controllers_verdict(given.model, spreads);
+  nlohmann::json report = {{"path", given.model.path()},
+                           {"verdict", programs::verdict_json(verdict)},
+                           {"airframe", given.airframe.name},
+                           {"trajectory", options.trajectory},
+                           {"duration_s", loop.setting().duration_s},
+                           {"summary", nlohmann::json::array()},
+                           {"rows", rows}};
   for (const programs::LoopSpread& each : spreads) report["summary"].push_back(spread_json(each));
   if (!out.empty()) {
     write_rows(out + "/rows.csv", rows);
@@ -242,7 +261,7 @@ int fly_controllers(const LoopOptions& options, const programs::LoopModel& given
     print_json(report);
     return 0;
   }
-  programs::print_verdict(programs::controllers_verdict(spreads, conditions.size()));
+  programs::print_verdict(verdict);
   programs::print_entry(
       "trajectory", programs::in_words("%s, flown by %s for %.0f s, with noise in what controllers see",
                                        printable(options.trajectory).c_str(), printable(given.airframe.name).c_str(),
@@ -304,7 +323,9 @@ int loop(const LoopOptions& options) {
       model, {options.trajectory, given.airframe.value, options.guard == "envelope", given.columns, given.battery});
   programs::stop_if_interrupted();
   nlohmann::json report = report_of(options, model, given.airframe.name, given.columns, flights);
-  const programs::FlightVerdict verdict = programs::loop_verdict(report);
+  programs::ModelEvidence evidence = programs::evidence_of(model, false);
+  evidence.flown = programs::flight_evidence(flights, options.trajectory);
+  const programs::FlightVerdict verdict = programs::model_verdict(evidence);
   report["verdict"] = programs::verdict_json(verdict);
   if (options.json) {
     print_json(report);
@@ -389,8 +410,8 @@ Command loop_command(CLI::App& program) {
       "  pinnquad loop trained.block --battery 3x2200 --battery-charge 40\n"
       "  pinnquad loop trained.block --controllers adaptive --conditions drawn --seeds 1000 --out flown\n"
       "  pinnquad loop --vehicles 20 --out flown\n"
-      "Exit codes: 0; 1 do not fly: the model loses the vehicle, flies it worse than no model, or answers nothing; 2\n"
-      "bad input or a file that can't be read; 130 interrupted.");
+      "Exit codes: 0; 1 do not fly (docs/log_training.md, The verdict); 2 bad input or a file that can't be read; 130\n"
+      "interrupted.");
   return {line, [options] { return loop(*options); }};
 }
 

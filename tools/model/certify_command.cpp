@@ -19,7 +19,7 @@
 #include "command_line/console.hpp"
 #include "model/findings.hpp"
 #include "model/given_model.hpp"
-#include "model/model_verdict.hpp"
+#include "model/model_evidence.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "training/certificate_words.hpp"
 
@@ -65,7 +65,6 @@ void print_thrust(const BlockModel& model, const Findings& findings) {
                 in_words("the residual may take %.6f: half of the airframe's is sure over a step of %.3g m/s^2 or more",
                          range, range / (held - floor)));
   }
-  if (const auto doubt = programs::thrust_doubt(certificate, own)) print_entry("warning", *doubt);
 }
 
 void print_with_rates(const Findings& findings) {
@@ -131,9 +130,8 @@ void print_proof(const BlockModel& model, const Findings& findings) {
     }
     print_entry(axis == 0 ? "slope" : "", line);
   }
-  for (const std::string& doubt : programs::slope_doubts(findings.proof->held_slope, own)) {
-    print_entry("warning", doubt);
-  }
+  const std::string doubt = programs::slopes_doubt(programs::odd_slopes(*findings.proof, model.airframe()));
+  if (!doubt.empty()) print_entry("warning", doubt);
   if (findings.certificate() == nullptr) return;
   print_entry("bound", programs::bound_in_words(*findings.certificate()));
   print_bias(model);
@@ -142,10 +140,18 @@ void print_proof(const BlockModel& model, const Findings& findings) {
   print_rounding(findings);
 }
 
+programs::FlightVerdict verdict_of(const BlockModel& model, const Findings& findings) {
+  programs::ModelEvidence evidence = programs::evidence_of(model);
+  if (!findings.proven()) {
+    evidence.signs = findings.search.found ? programs::Signs::refuted : programs::Signs::unrefuted;
+    if (findings.search.found) evidence.refuted_about = axes[findings.search.found->asked.axis];
+  }
+  return programs::model_verdict(evidence);
+}
+
 void print_text(const BlockModel& model, const Findings& findings) {
   const programs::Counterexample* found = findings.search.found ? &*findings.search.found : nullptr;
-  programs::print_verdict(
-      programs::model_verdict(model, findings.proof, found != nullptr ? axes[found->asked.axis] : nullptr));
+  programs::print_verdict(verdict_of(model, findings));
   print_entry("model", printable(model.path()) + ", for " + model.airframe_name());
   if (findings.proven()) return print_proof(model, findings);
   if (found == nullptr) {
@@ -178,7 +184,8 @@ int certify(const CertifyOptions& options) {
   const BlockModel model = programs::read_model(options.model);
   const Findings findings = programs::findings_of(model, options.seconds, options.seed);
   if (options.json) {
-    const nlohmann::json report = programs::findings_json(model, findings);
+    nlohmann::json report = programs::findings_json(model, findings);
+    report["flight_verdict"] = programs::verdict_json(verdict_of(model, findings));
     std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
     print_text(model, findings);

@@ -17,6 +17,7 @@
 #include "command_line/progress_line.hpp"
 #include "model/evaluation.hpp"
 #include "model/given_model.hpp"
+#include "model/model_evidence.hpp"
 #include "pinnquad/data/csv.hpp"
 #include "training/training_flights.hpp"
 
@@ -32,10 +33,10 @@ struct EvaluateOptions {
 };
 
 void print_table(const BlockModel& model, const Dataset& dataset, const programs::EvaluatedModel& evaluation) {
-  std::printf("model       %s: %s, for %s\n", printable(model.path()).c_str(), model.answer().c_str(),
-              model.airframe_name().c_str());
-  std::printf("rows        %zu of %s, %zu outside the training envelope\n", evaluation.answered.rows.size(),
-              pinnquad::flight_names(dataset).c_str(), evaluation.outside_envelope);
+  programs::print_entry("model", printable(model.path()) + ": " + model.answer() + ", for " + model.airframe_name());
+  programs::print_entry(
+      "rows", programs::in_words("%zu of %s, %zu outside the training envelope", evaluation.answered.rows.size(),
+                                 flight_names(dataset).c_str(), evaluation.outside_envelope));
   if (evaluation.without_features > 0) {
     std::printf("            %zu more without a whole window of instants, which count for nothing\n",
                 evaluation.without_features);
@@ -55,13 +56,21 @@ int evaluate(const EvaluateOptions& options) {
   const programs::EvaluatedModel evaluation =
       programs::evaluated(model, rows, [&progress](double share) { progress.update(share); });
   progress.clear();
+  const double r_squared = evaluation.judged.errors.mean.r_squared;
+  programs::ModelEvidence evidence = programs::evidence_of(model);
+  if (!evidence.held_out || !(r_squared >= evidence.held_out->test_r_squared)) {  // the worse of recorded and found
+    evidence.held_out = Verdict{r_squared};
+    evidence.rows = "these flights";
+  }
+  const programs::FlightVerdict verdict = programs::model_verdict(evidence);
   if (options.json) {
-    const nlohmann::json report = programs::evaluation_json(model, dataset, options.rows, evaluation);
+    nlohmann::json report = programs::evaluation_json(model, dataset, options.rows, evaluation);
+    report["verdict"] = programs::verdict_json(verdict);
     std::printf("%s\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
+    programs::print_verdict(verdict);
     print_table(model, dataset, evaluation);
   }
-  const double r_squared = evaluation.judged.errors.mean.r_squared;
   if (std::isfinite(r_squared) && r_squared >= 0) return 0;
   programs::complain("evaluate", model.path() + ": worse than the mean of the commands on these rows");
   return programs::exit_failed;

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 #
-# Installs the locked packages into the folder PACKAGES and runs bundle.mjs, which writes to FOLDER. Run by the targets watch_page
-# and watch_bundle with NODE, NPM, SOURCE, PACKAGES, FOLDER and REQUIRED (ON or AUTO). What fails under AUTO is a notice.
+# Installs the locked packages into the folder PACKAGES and runs bundle.mjs, which writes to FOLDER. Run by the target watch_page
+# with NODE, NPM, SOURCE, PACKAGES, FOLDER, BUILD and REQUIRED (ON or AUTO). What fails under AUTO is a notice.
 file(MAKE_DIRECTORY "${FOLDER}")
 
 macro(give_up what output)
   file(REMOVE "${FOLDER}/watch.json" "${FOLDER}/charts.json") # of older sources they would be a lie
   if(REQUIRED STREQUAL "AUTO")
-    message(NOTICE "pinnquad: ${what}; fly --watch is not available, and pages have tables for charts. With a network: build the target watch_bundle. It said:\n${output}")
+    message(NOTICE "pinnquad: ${what}, so pages have tables instead of charts and fly --watch has no page. With a network: cmake ${BUILD} && cmake --build ${BUILD} --target watch_page\n${output}")
     return()
   endif()
   message(FATAL_ERROR "pinnquad: ${what}. It said:\n${output}")

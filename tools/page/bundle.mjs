@@ -28,7 +28,6 @@ function bundle(name, folder, sheets) {
   const { outputFiles, metafile } = buildSync({
     entryPoints: [join(source, 'main.js')],
     nodePaths: [join(packages, 'node_modules')],
-    alias: { hammerjs: join(here, 'charts/no_touch.js') },
     bundle: true,
     minify: true,
     write: false,

@@ -20,7 +20,7 @@ namespace programs {
 namespace {
 
 constexpr const char* unavailable =
-    "the page to watch a flight is not beside this program: it was built without Node.js, npm or the network";
+    "this program was built without its pages: apt-get install nodejs npm, then build it again, with a network";
 
 /// Base64 of the values as a little-endian array, on any machine.
 template <class Value>

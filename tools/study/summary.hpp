@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -39,7 +40,9 @@ inline void print_summary(const Plan& plan, const StoredRows& stored) {
   for (const Contender& contender : plan.contenders) {
     for (const std::uint64_t seed : flight_seeds(plan, contender)) {
       const auto cell = [&](const char* name, double scale, int digits) {
-        return programs::mean_and_deviation(column(stored, contender, seed, name), scale, digits);
+        const std::vector<double> values = column(stored, contender, seed, name);
+        const bool known = !values.empty() && std::isfinite(values.front());  // no validation rows: none is known
+        return known ? programs::mean_and_deviation(values, scale, digits) : std::string("-");
       };
       std::printf("%-22s %-10s %18s %16s %16s %16s %18s\n", contender.id.c_str(),
                   (contender.flight + "/" + std::to_string(seed)).c_str(), cell("mae", 1e3, 3).c_str(),

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "command_line/in_words.hpp"
+#include "command_line/listed.hpp"
 #include "pinnquad/control/motion_bias.hpp"
+#include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/deploy/opening_comment.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
@@ -28,35 +30,28 @@ inline std::string least_share_in_words(const pinnquad::AxisSlopes& slopes, cons
   return in_words("by at least %.2f of the airframe's own slope in hover", least);
 }
 
-inline constexpr const char* unlike_slopes =
-    "trained on quiet or noisy flights, on a log with rotor lag or latency in it, or for another airframe";
-
-/// A line for each slope that is far from the airframe's own, with what may be the cause.
-inline std::vector<std::string> slope_doubts(const pinnquad::AxisSlopes& slopes, const pinnquad::AxisSlopes& own,
-                                             const std::string& cause = unlike_slopes) {
-  constexpr double least = least_undoubted, most = most_undoubted;
-  std::vector<std::string> doubts;
-  for (std::size_t axis = 0; axis < slopes.size(); ++axis) {
-    const double ratio = slopes[axis] / own[axis];
-    if (ratio >= least && ratio <= most) continue;
-    doubts.push_back(std::string("the ") + axis_names[axis] + " slope is not the airframe's: " + cause +
-                     "; where the angular acceleration is not noisy, train --slopes pinned takes the airframe's slope "
-                     "in hover instead of learning one");
-  }
-  return doubts;
+/// A line for each slope that is far from the airframe's own, short: "its roll slope is 0.45 of the airframe's".
+inline std::vector<std::string> odd_slopes(const pinnquad::BlockModel::ProvenSigns& signs,
+                                           const pinnquad::Airframe<double>& airframe) {
+  std::vector<std::string> odd;
+  const auto look = [&odd](const char* name, double share) {
+    if (share >= least_undoubted && share <= most_undoubted) return;
+    odd.push_back(in_words("its %s slope is %.2f of the airframe's", name, share));
+  };
+  const pinnquad::AxisSlopes own = pinnquad::hover_slopes(airframe);
+  if (signs.structure) look("thrust", signs.structure->held_thrust_slope / pinnquad::hover_thrust_slope(airframe));
+  for (std::size_t axis = 0; axis < own.size(); ++axis) look(axis_names[axis], signs.held_slope[axis] / own[axis]);
+  return odd;
 }
 
-/// Of a model that asks for thrust, where its base follows it far less or more than the airframe in hover.
-inline std::optional<std::string> thrust_doubt(const pinnquad::Certificate& certificate, double own) {
-  const double share = certificate.held_thrust_slope / own;
-  if (share >= least_undoubted && share <= most_undoubted) return {};
-  const bool sinks = !(share >= pinnquad::least_thrust_share);
-  return in_words(
-      "the sum of the commands follows the thrust that is asked by %.2f of what the airframe's own does in "
-      "hover: %s (docs/certificate.md)",
-      share,
-      sinks ? "below 0.5 a position loop sinks under a load that it should carry"
-            : "another mass or other rotors flew, or a noisy accelerometer or rotor lag hid it");
+/// The same in one line, with what may be the cause; empty where there are none.
+inline std::string slopes_doubt(const std::vector<std::string>& odd) {
+  if (odd.empty()) return "";
+  return listed(odd) +
+         ": trained on quiet or noisy flights, on a log with rotor lag or latency in it, or for another airframe; "
+         "where "
+         "the angular acceleration is not noisy, train --slopes pinned takes the airframe's slopes in hover; below 0.5 "
+         "in thrust a position loop sinks under a load (docs/certificate.md)";
 }
 
 inline bool any_smoothed(const pinnquad::SlopesOfSums& slopes) {

@@ -28,6 +28,7 @@
 #include "pinnquad/simulation/tracking.hpp"
 #include "training/command_comparison.hpp"
 #include "training/flown_vehicle.hpp"
+#include "training/model_verdict.hpp"
 
 namespace programs {
 
@@ -186,40 +187,6 @@ inline FlownEnvelope flown_envelope(const pinnquad::RowSet& rows, bool has_veloc
   return envelope;
 }
 
-/// A slow path is flown as well without its jerk as with it: so much further off than the analytic inverse is no fault.
-inline constexpr double slack_of_loops = 1.5;
-
-/// Of what fly_logged() found: why the model is not fit to fly; empty if it is, or was not flown.
-inline std::string unfit_to_fly(const nlohmann::json& flown) {
-  constexpr double least_answered = 0.5;
-  if (!flown.contains("model")) return "";
-  const nlohmann::json& model = flown["model"];
-  if (lost_vehicle(flown)) {
-    return in_words("loses the vehicle in the closed loop (%.1f m off)", model["largest_error_m"].get<double>());
-  }
-  if (model["answered_share"] < least_answered) {
-    return in_words("answers %.1f %% of a figure-eight that the flights' own limits hold",
-                    100 * model["answered_share"].get<double>());
-  }
-  const double rmse_m = model["rmse_m"];
-  if (rmse_m > flown["without_jerk"]["rmse_m"] && rmse_m > slack_of_loops * flown["formula"]["rmse_m"].get<double>()) {
-    return in_words(
-        "flies a figure-eight %.1f cm off, where the analytic inverse is %.1f cm off without the path's jerk",
-        100 * rmse_m, 100 * flown["without_jerk"]["rmse_m"].get<double>());
-  }
-  return turned_round(flown.value("against_formula", nlohmann::json::object()));
-}
-
-/// "3.1 cm off a figure-eight (analytic inverse 2.9 cm, without the path's jerk 5.2 cm)"; why there was none where it
-/// was not flown.
-inline std::string flight_in_words(const nlohmann::json& flown) {
-  if (flown.is_null()) return "not flown here: it looks ahead";
-  if (!flown.contains("model")) return "not flown here: " + flown["why_not"].get<std::string>();
-  return in_words("%.1f cm off a figure-eight (analytic inverse %.1f cm, without the path's jerk %.1f cm)",
-                  100 * flown["model"]["rmse_m"].get<double>(), 100 * flown["formula"]["rmse_m"].get<double>(),
-                  100 * flown["without_jerk"]["rmse_m"].get<double>());
-}
-
 /// Whether there is nothing to compare with: the analytic inverse loses the vehicle, or flies worse than without jerk.
 inline bool analytic_inverse_fails(const nlohmann::json& flown) {
   return lost_vehicle(flown, "formula") ||
@@ -232,14 +199,7 @@ inline nlohmann::json fly_given(const pinnquad::BlockModel& model, const pinnqua
   try {
     LoopFlights flown = fly_loop(model, {loop_trajectories.front(), airframe, true, usual_columns(model, training),
                                          battery_of_flights(model, training, airframe)});
-    nlohmann::json result = {{"trajectory", "figure-eight"},
-                             {"half_length_m", flown.half_length_m},
-                             {"period_s", flown.period_s},
-                             {"formula", loop_figures(flown.analytic_inverse)},
-                             {"without_jerk", loop_figures(flown.without_jerk)},
-                             {"model", loop_figures(flown.model)},
-                             {"against_formula", nlohmann::json::object()}};
-    result["model"]["answered_share"] = answered_share(flown.model.fallback);
+    nlohmann::json result = flight_evidence(flown, loop_trajectories.front());
     if (analytic_inverse_fails(result)) {
       return {{"why_not", "the airframe's own analytic inverse does not fly it"}};
     }

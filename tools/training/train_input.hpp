@@ -220,10 +220,17 @@ inline std::vector<Fold> folds_asked_for(const TrainOptions& options, const pinn
     throw std::invalid_argument("--validate: say with --hold-out what judges besides");
   }
   if (!options.flights.empty()) return {fold_in_order(flights)};
+  using pinnquad::printable;
+  if (flights.size() == 1) {
+    throw std::invalid_argument("one flight can't train a model and judge it: cut it: pinnquad import " +
+                                (options.logs.empty() ? "LOG" : printable(options.logs.front())) +
+                                (options.mapping.empty() ? "" : " --mapping " + printable(options.mapping)) +
+                                " --cut 60 --out dataset, then pinnquad train dataset --hold-out-each flight");
+  }
   throw std::invalid_argument(
-      "say what judges: --hold-out NAME[,NAME...] or --hold-out-each flight|trajectory; the flights are " +
-      listed(flights.flights(), [](const auto& flight) { return pinnquad::printable(flight.name); }) +
-      (flights.size() == 1 ? "; make several of one log: pinnquad import LOG --cut 60 --out dataset" : ""));
+      "name the flights that judge, --hold-out NAME[,NAME...], or let each judge in turn, --hold-out-each "
+      "flight|trajectory; the flights are " +
+      listed(flights.flights(), [](const auto& flight) { return "'" + printable(flight.name) + "'"; }));
 }
 
 /// The dataset of the options, read or imported. `airframe`: of the flights.

@@ -25,9 +25,9 @@
 #include "logs/command_curve.hpp"
 #include "logs/vehicle_check.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
+#include "training/beside_others.hpp"
 #include "training/closed_loop.hpp"
 #include "training/export_choice.hpp"
-#include "training/export_verdict.hpp"
 #include "training/fit_store.hpp"
 #include "training/flown_vehicle.hpp"
 #include "training/inputs_code.hpp"
@@ -102,7 +102,7 @@ class Training {
               {vehicle.given && !programs::is_airframe_file(options.airframe), options.altitude, options.pinned_slopes,
                options.flights.empty()},
               programs::past_rows_of(dataset, vehicle.airframe.value, options.flights.empty())},
-        report_(options.out + "/report.json", plan_, dataset, facts_of_trainings()) {
+        report_(options.out + "/report.json", plan_, dataset, facts_of_trainings(), options.verbose) {
     report_.vehicle(programs::vehicle_json(vehicle));
   }
 
@@ -366,20 +366,21 @@ class Training {
     }
     report_.write_not_exported("the export was not finished");
     std::optional<Exported> made;
+    std::vector<std::string> warnings;
     for (const std::size_t k : order) {
       if (k != order.front() && verdict_of(k).worse_than_mean()) continue;
       Exported next = exported(k);
       if (is_default_choice() && !next.model->is_proven()) {
-        report_.warn(std::string(judged_.kinds[k].kind.title) +
-                     ", fitted to all flights, is not proven to turn the way it is told to: it stays out");
+        warnings.push_back(std::string(judged_.kinds[k].kind.title) +
+                           ": fitted to all flights, is not proven to turn the way it is told to: it stays out");
         continue;
       }
       next.flown = fly(next, judged_.kinds[k].kind, next.traces);
       const std::string unfit = programs::unfit_to_fly(next.flown);
-      if (!unfit.empty()) {
-        unfit_.push_back(k);
-        report_.warn(std::string(judged_.kinds[k].kind.title) + " " + unfit + ": not fit to fly" +
-                     (k != order.back() ? "; the next best is tried" : ""));
+      if (!unfit.empty()) unfit_.push_back(k);
+      if (!unfit.empty() && k != order.back()) {
+        warnings.push_back(std::string(judged_.kinds[k].kind.title) + " " + unfit +
+                           ": not fit to fly; the next best is tried");
       }
       if (unfit.empty() || !made) {
         made = std::move(next);
@@ -387,6 +388,7 @@ class Training {
       }
       if (unfit.empty()) break;
     }
+    report_.warn(warnings);
     if (!made) return refuse("of no model that was fitted to all flights are the signs proven");
     if (order.size() > 1 && !programs::unfit_to_fly(made->flown).empty()) {
       report_.warn("no model is fit to fly in the closed loop: what is exported is the best by its figures alone");
@@ -411,13 +413,6 @@ class Training {
       report_.warn(title + " does not beat linear regression on the paper's features (R^2 " +
                    decimals(verdict.test_r_squared, 4) + " against " +
                    decimals(verdict.linear_regression_r_squared, 4) + "): a linear map of them would fly as well");
-    }
-    if (verdict.has_poor_motor()) {
-      report_.warn("one motor's commands are predicted worse than by their mean (R^2 " +
-                   decimals(verdict.worst_motor_r_squared, 4) + " on the rows held out)");
-    }
-    if (kind.kind.reach == programs::TimeReach::centred) {
-      report_.warn(title + " looks ahead: it takes planned trajectories, not measured motion");
     }
     announce("[4/5] export " + title);
     write(made, kind.kind, verdict);
@@ -454,21 +449,16 @@ class Training {
     const std::vector<std::string> beaten = programs::beaten_in_words(others, judged_, *chosen_);
     const bool by_a_proven_one =
         others.beaten() && judged_.kinds[*others.best].proven() && !programs::any_smoothed(made.model->slopes());
-    programs::ExportFacts facts{kind.title, verdict, made.flown, by_a_proven_one ? beaten.front() : ""};
+    programs::ModelEvidence evidence{kind.title, verdict, made.flown, by_a_proven_one ? beaten.front() : ""};
     const std::optional<BlockModel::ProvenSigns> signs = made.model->block()->proven_signs();
-    facts.proven = signs.has_value();
-    facts.known = vehicle_.is_known();
-    facts.flight = missing_flight();
-    facts.last_commands_err_less = others.last_commands < others.own;
-    if (signs && vehicle_.is_known()) {
-      const Airframe<double>& airframe = plan_.airframe.value;
-      const double thrust_share =
-          signs->structure ? signs->structure->held_thrust_slope / hover_thrust_slope(airframe) : 1;
-      facts.slopes = programs::odd_slopes(signs->held_slope, hover_slopes(airframe), thrust_share);
-    }
-    const programs::FlightVerdict of_header = programs::export_verdict(facts);  // without a path of this machine
-    facts.block = options_.out + "/model.block";
-    found_ = programs::export_verdict(facts);
+    if (!signs) evidence.signs = programs::Signs::unknown;
+    evidence.known = vehicle_.is_known();
+    evidence.flight = missing_flight();
+    evidence.last_commands_err_less = others.last_commands < others.own;
+    if (signs && evidence.known) evidence.slopes = programs::odd_slopes(*signs, plan_.airframe.value);
+    const programs::FlightVerdict of_header = programs::model_verdict(evidence);  // without a path of this machine
+    evidence.block = options_.out + "/model.block";
+    found_ = programs::model_verdict(evidence);
     traces_ = made.traces;
     inputs_ = programs::inputs_code(*made.model->block(), options_.model_name);
     made_ = true;
@@ -484,7 +474,8 @@ class Training {
                                 programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
                                                         plan_.settings, made.seed, plan_.epochs, verdict),
                                 bias, vehicle_.is_known());
-    from.fitness = of_header.words() + ". Next: " + of_header.next();
+    from.fitness = of_header.words() + ". Next: " + of_header.next() +
+                   (of_header.reasons().empty() ? "" : ". Evidence: " + of_header.evidence());
     from.beside = beside;
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";
@@ -558,15 +549,9 @@ class Training {
       detail(std::string("95 % intervals of the training rows, ") +
              (known_vehicle ? "over the airframe's own" : "s^2/rad and s^2/m") + ": " + intervals);
     }
-    if (known_vehicle) {
-      const std::string cause = vehicle_.identified() && !vehicle_.given
-                                    ? "trained on quiet or noisy flights, or by the lag of the rotors, " +
-                                          decimals(1e3 * vehicle_.asked->found.lag_s.value, 0) + " ms"
-                                    : programs::unlike_slopes;
-      for (const std::string& doubt : programs::slope_doubts(slopes, own, cause)) report_.warn(doubt);
-    }
-    if (!structure) return;
-    if (const auto doubt = programs::thrust_doubt(*structure, own_thrust)) report_.warn(*doubt);
+    if (!known_vehicle) return;
+    const std::string doubt = programs::slopes_doubt(programs::odd_slopes(*signs, airframe));
+    if (!doubt.empty()) report_.warn(doubt);
   }
 
   void add_file(const std::string& name, const std::string& text) { summary_.push_back(programs::entry(name, text)); }
@@ -584,11 +569,7 @@ class Training {
   void tell_flight(const nlohmann::json& flown) {
     if (flown.is_null()) return;
     report_.flown(flown);
-    if (flown.contains("why_not")) {
-      const std::string why_not = "the model was not flown: " + flown["why_not"].get<std::string>();
-      vehicle_.asked ? report_.warn(why_not) : detail(why_not);
-      return;
-    }
+    if (!flown.contains("model")) return;
     const auto centimetres = [&](const char* who) { return decimals(100 * flown[who]["rmse_m"].get<double>(), 1); };
     summary_.push_back(programs::entry(
         "flown", "a figure-eight of " + decimals(flown["period_s"].get<double>(), 1) + " s, on the vehicle that " +
@@ -598,16 +579,6 @@ class Training {
     const std::string compared = programs::comparison_in_words(flown["against_formula"]);
     if (!compared.empty()) {
       detail("its sums of commands beside the formula's there, slope (rms difference): " + compared);
-    }
-    const double answered = flown["model"]["answered_share"];
-    if (answered < 0.99 && programs::unfit_to_fly(flown).empty()) {
-      report_.warn("under its guard the model answered " + decimals(100 * answered, 1) +
-                   " % of the figure-eight, which the flights' own limits hold: the analytic inverse flew the rest");
-    }
-    const std::string status = flown["model"]["status"];
-    if (status != to_string(Status::ok)) {
-      report_.warn("in the closed loop the model ended the flight after " + decimals(flown["model"]["flown_s"], 1) +
-                   " s: " + status);
     }
   }
 

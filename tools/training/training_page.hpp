@@ -13,6 +13,7 @@
 
 #include "command_line/flight_verdict.hpp"
 #include "command_line/in_words.hpp"
+#include "command_line/like_warnings.hpp"
 #include "command_line/listed.hpp"
 #include "page/page.hpp"
 #include "training/drawings.hpp"
@@ -109,6 +110,7 @@ inline nlohmann::json table_rows(const TrainingPage& in, bool centred) {
                           {"key", kind.kind.key},
                           {"sees", word_of(kind.kind.reach)},
                           {"exported", in.exported == k},
+                          {"planned", centred},
                           {"r2", shown_figure(over_seeds(kind, error_figures[0]), 1, 3)},
                           {"rmse", shown_figure(over_seeds(kind, error_figures[3]), 1e3, 1)},
                           {"badge", badge_of(in.verdicts[k].standing)},
@@ -427,11 +429,14 @@ inline nlohmann::json lines_of(const std::string& text) {
 /// The verdict; false where there is none.
 inline nlohmann::json found_json(const TrainingPage& in) {
   if (in.found == nullptr) return false;
-  std::string why = in.found->why();
-  for (std::size_t at; (at = why.find("R^2")) != std::string::npos;) why.replace(at, 3, "R²");
+  const auto shown = [](std::string text) {
+    for (std::size_t at; (at = text.find("R^2")) != std::string::npos;) text.replace(at, 3, "R²");
+    return text;
+  };
   return {{"may_fly", word_of(in.found->may_fly())},
           {"short", in.found->short_words()},
-          {"why", why},
+          {"why", shown(in.found->why())},
+          {"evidence", or_false(in.found->reasons().empty() ? "" : shown(in.found->evidence()))},
           {"next", or_false(in.found->next())}};
 }
 
@@ -457,7 +462,8 @@ inline std::string training_page(const TrainingPage& in) {
   nlohmann::json page = {
       {"title", "What the models of these flights are worth"},
       {"held_out", detail::or_false(in.judged.flights.size() <= most_named ? listed(in.judged.flights) : "")},
-      {"flight_count", in.judged.flights.size()},
+      {"flight_count", std::to_string(in.judged.flights.size()) +
+                           (in.judged.flights.size() == 1 ? " held-out flight" : " held-out flights")},
       {"rows", rows},
       {"all_rows", in.dataset.flights.rows()},
       {"seeds", in.plan.seeds},
@@ -475,11 +481,12 @@ inline std::string training_page(const TrainingPage& in) {
       {"bias_least", shown::number(in.plan.past.least_time_constant_s, 2)},
       {"causal", detail::table_rows(in, false)},
       {"centred", detail::table_rows(in, true)},
+      {"ranked", nlohmann::json::array()},
       {"not_applicable", nlohmann::json::array()},
       {"folds", detail::folds_json(in.plan)},
       {"steps", nlohmann::json::array()},
       {"notes", in.dataset.notes},
-      {"warnings", in.report["warnings"]},
+      {"warnings", collapsed(in.report["warnings"], "report.json has all")},
       {"period", shown::number(1e3 * in.dataset.sample_period_s, 1)},
       {"lag", shown::number(1e3 * in.dataset.lag_removed_s, 0)},
       {"absent", detail::or_false(listed(in.dataset.absent))},
@@ -493,6 +500,9 @@ inline std::string training_page(const TrainingPage& in) {
       {"moments", nlohmann::json::array()},
       {"shown", false},
       {"watched", !in.watched.empty()}};
+  for (const char* reach : {"causal", "centred"}) {
+    for (const nlohmann::json& row : page[reach]) page["ranked"].push_back(row);
+  }
   for (const JudgedKind& kind : in.judged.kinds) {
     if (!kind.applicable())
       page["not_applicable"].push_back({{"title", kind.kind.title}, {"reason", kind.not_applicable}});

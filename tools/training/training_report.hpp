@@ -14,6 +14,7 @@
 
 #include "command_line/build_facts.hpp"
 #include "command_line/console.hpp"
+#include "command_line/like_warnings.hpp"
 #include "pinnquad/data/dataset.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/csv_table.hpp"
@@ -21,8 +22,8 @@
 #include "pinnquad/logs/read_dataset.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/version.hpp"
+#include "training/beside_others.hpp"
 #include "training/certificate_words.hpp"
-#include "training/export_verdict.hpp"
 #include "training/held_out_dynamics.hpp"
 #include "training/kind_figures.hpp"
 #include "training/kind_verdict.hpp"
@@ -159,8 +160,8 @@ class TrainingReport {
  public:
   /// `trainings`: facts of what is trained, beside the other settings.
   TrainingReport(std::string path, const FitPlan& plan, const pinnquad::logs::ImportedDataset& dataset,
-                 const nlohmann::json& trainings = nlohmann::json::object())
-      : path_(std::move(path)) {
+                 const nlohmann::json& trainings = nlohmann::json::object(), bool verbose = false)
+      : path_(std::move(path)), verbose_(verbose) {
     nlohmann::json flights = nlohmann::json::array(), folds = nlohmann::json::array(), kinds = nlohmann::json::array();
     for (const pinnquad::Flight& flight : dataset.flights.flights()) {
       flights.push_back({{"flight", pinnquad::printable(flight.name)},
@@ -225,14 +226,17 @@ class TrainingReport {
              {"noise_ceiling", nullptr},
              {"warnings", nlohmann::json::array()}};
     json_["settings"].update(trainings);
-    for (const std::string& warning : dataset.warnings) warn("import: " + warning);
+    warn(dataset.warnings, "import: ");
   }
 
-  /// A warning: no reason to stop; printed on stderr too.
-  void warn(const std::string& text) {
-    complain("train", "warning: " + text);
-    json_["warnings"].push_back(pinnquad::printable(text));
+  /// Warnings: no reason to stop; printed on stderr too, those of one kind as one line.
+  void warn(const std::vector<std::string>& texts, const std::string& from = "") {
+    for (const std::string& text : verbose_ ? texts : collapsed(texts, "--verbose prints all")) {
+      complain("train", "warning: " + from + text);
+    }
+    for (const std::string& text : texts) json_["warnings"].push_back(pinnquad::printable(from + text));
   }
+  void warn(const std::string& text) { warn(std::vector<std::string>{text}); }
 
   void judged(const FitPlan& plan, const JudgedKinds& judgement, const std::vector<KindVerdict>& verdicts) {
     json_["rows_judged"] = judgement.rows;
@@ -294,11 +298,8 @@ class TrainingReport {
 
   /// The words that an export's header begins with.
   void export_verdict(const FlightVerdict& found, const std::string& beside, nlohmann::json errors) {
+    json_["verdict"].update(verdict_json(found));
     json_["verdict"].update({{"fit_to_fly", found.may_fly() != MayFly::no},
-                             {"may_fly", word_of(found.may_fly())},
-                             {"in_words", pinnquad::printable(found.words())},
-                             {"why", pinnquad::printable(found.why())},
-                             {"next", pinnquad::printable(found.next())},
                              {"beside_in_words", beside},
                              {"held_out_rmse", std::move(errors)}});
   }
@@ -378,6 +379,7 @@ class TrainingReport {
 
  private:
   std::string path_;
+  bool verbose_ = false;  ///< prints all warnings
   nlohmann::json json_;
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -69,9 +70,13 @@ void print_kinds(const JudgedKinds& judged, const Mark& mark) {
            mark(k));
     }
   }
+  std::map<std::string, std::string> not_applicable;  // titles by the reason
   for (const JudgedKind& kind : judged.kinds) {
-    if (!kind.applicable()) print_line(kind.kind.title + (": not applicable: " + kind.not_applicable), 2);
+    if (kind.applicable()) continue;
+    std::string& titles = not_applicable[kind.not_applicable];
+    titles += (titles.empty() ? "" : "; ") + std::string(kind.kind.title);
   }
+  for (const auto& [reason, titles] : not_applicable) print_line("not applicable: " + titles + ": " + reason, 2);
 }
 
 /// "3000 rows of 1 flight, mean +- deviation over 5 seeds".

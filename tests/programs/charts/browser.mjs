@@ -9,6 +9,7 @@ import { fileURLToPath } from 'node:url';
 import {
   check,
   chromium,
+  drag,
   drawn,
   evaluate,
   given,
@@ -135,6 +136,31 @@ async function dragZooms() {
   }
 }
 
+async function fingersZoom() {
+  const of = path(1);
+  await resize(390, 844, { mobile: true, deviceScaleFactor: 1 });
+  await chromium.send('Emulation.setTouchEmulationEnabled', { enabled: true, maxTouchPoints: 2 });
+  const whole = await range(of);
+  const at = await Promise.all([0.3, 0.45, 0.55, 0.7, 0.05, 0.95].map((share) => place(of, share, 0.5)));
+  const scrolled = await evaluate('scrollY');
+  await drag([at[1], at[2]], [at[0], at[3]]);
+  const spread = await range(of);
+  const share = (spread[1] - spread[0]) / (whole[1] - whole[0]);
+  check('two fingers spread the time, four times as far apart', near(share, 0.25, 0.06), share);
+  check('the page stays as it is', (await evaluate('visualViewport.scale')) === 1 && (await evaluate('scrollY')) === scrolled);
+  await screenshot('report_pinch.png');
+  await drag([at[3]], [at[0]]);
+  const moved = await range(of);
+  const shift = (moved[0] - spread[0]) / (spread[1] - spread[0]);
+  check('a finger moves a chart that is spread', near(shift, 0.4, 0.06) && near(moved[1] - moved[0], spread[1] - spread[0], 1e-6), shift);
+  await drag([at[4], at[5]], [at[1], at[2]]);
+  check('fingers that close go back to all of it', (await range(of)).every((v, i) => near(v, whole[i], 1e-6)), await range(of));
+  await drag([at[2]], [[at[2][0], at[2][1] - 150]]);
+  check('a finger scrolls the page over a whole chart', (await evaluate('scrollY')) > scrolled + 50, await evaluate('scrollY'));
+  await chromium.send('Emulation.setTouchEmulationEnabled', { enabled: false });
+  await resize(1280, 800);
+}
+
 async function legendToggles() {
   const button = `[...document.querySelectorAll('main > figure .legend button')].find((b) => b.textContent === 'with the model')`;
   const hidden = async () => {
@@ -206,9 +232,9 @@ async function phonesAndSchemes() {
 
 async function restWorks() {
   const licences = await evaluate(`document.querySelector('.licence pre').textContent`);
-  for (const name of ['chart.js', 'chartjs-plugin-zoom', '@kurkle/color'])
+  for (const name of ['chart.js', 'chartjs-plugin-zoom', '@kurkle/color', 'hammerjs'])
     check(`the licence of ${name}`, new RegExp(`^${name}\n\nThe MIT License`, 'm').test(licences));
   await isWhole();
 }
 
-await run(pageOpens, dataAreTheRuns, hoverTells, dragZooms, legendToggles, copies, chaptersDraw, phonesAndSchemes, restWorks);
+await run(pageOpens, dataAreTheRuns, hoverTells, dragZooms, fingersZoom, legendToggles, copies, chaptersDraw, phonesAndSchemes, restWorks);

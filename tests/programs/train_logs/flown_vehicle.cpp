@@ -174,21 +174,6 @@ TEST_CASE("a vehicle that leaves its path by more than the figure, or falls, is 
 }
 
 TEST_CASE(
-    "a model is fit to fly that is hardly further off than the analytic inverse, or less than that without jerk") {
-  const auto unfit = [](double model_m, double formula_m, double without_jerk_m) {
-    return programs::unfit_to_fly(
-        {{"model", {{"answered_share", 1}, {"status", "ok"}, {"largest_error_m", 0.1}, {"rmse_m", model_m}}},
-         {"formula", {{"rmse_m", formula_m}}},
-         {"without_jerk", {{"largest_error_m", 0.1}, {"rmse_m", without_jerk_m}}},
-         {"half_length_m", 1}});
-  };
-  CHECK(unfit(0.19, 0.02, 0.2).empty());
-  CHECK(unfit(0.21, 0.02, 0.2).find("21.0 cm off") != std::string::npos);
-  CHECK(unfit(0.21, 0.19, 0.2).empty());  // a slow path
-  CHECK(unfit(0.31, 0.19, 0.2).find("31.0 cm off") != std::string::npos);
-}
-
-TEST_CASE(
     "beside the formula's, commands of motors that were swapped move the wrong way, whatever the feedback makes good") {
   using namespace pinnquad;
   const auto airframe = PaperQuadrotor::value<double>();

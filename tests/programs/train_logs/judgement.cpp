@@ -13,10 +13,11 @@
 
 #include "judged_run.hpp"
 #include "support/temporary_folder.hpp"
+#include "training/beside_others.hpp"
 #include "training/export_choice.hpp"
-#include "training/export_verdict.hpp"
 #include "training/fit_store.hpp"
 #include "training/log_kinds.hpp"
+#include "training/model_verdict.hpp"
 #include "training/train_input.hpp"
 #include "training/training_report.hpp"
 
@@ -577,47 +578,51 @@ TEST_CASE(
 }
 
 TEST_CASE("the verdict on an export: not fit where it is worse than the mean, flies ill or a proven one errs less") {
-  const auto facts = [](double r2, double model_m) {
-    programs::ExportFacts all;
+  const auto facts = [](double r2, double model_m, double formula_m = 0.02) {
+    programs::ModelEvidence all;
     all.title = "ridge";
-    all.held_out = {r2, 0.1, r2};
+    all.held_out = pinnquad::Verdict{r2, 0.1, r2};
     all.flown = {{"model", {{"answered_share", 1}, {"status", "ok"}, {"largest_error_m", 0.1}, {"rmse_m", model_m}}},
-                 {"formula", {{"rmse_m", 0.02}}},
+                 {"formula", {{"rmse_m", formula_m}}},
                  {"without_jerk", {{"largest_error_m", 0.1}, {"rmse_m", 0.2}}},
                  {"half_length_m", 1}};
     return all;
   };
-  const programs::FlightVerdict fit = programs::export_verdict(facts(0.9, 0.03));
+  const programs::FlightVerdict fit = programs::model_verdict(facts(0.9, 0.03));
   CHECK(fit.may_fly() == programs::MayFly::in_simulation_and_bench);
   CHECK(fit.words().find("fit for simulation and bench: ridge, R^2 0.900") == 0);
   CHECK(fit.next().find("pinnquad loop model.block") == 0);
+  for (const double model_m : {0.19, 0.21}) {  // hardly further off than the analytic inverse on a slow path
+    CHECK(programs::model_verdict(facts(0.9, model_m, 0.19)).may_fly() == programs::MayFly::in_simulation_and_bench);
+  }
 
-  std::vector<programs::ExportFacts> unfit = {facts(-0.1, 0.03), facts(0.49, 0.03), facts(0.9, 0.21), facts(0.9, 0.03)};
+  std::vector<programs::ModelEvidence> unfit = {facts(-0.1, 0.03), facts(0.49, 0.03), facts(0.9, 0.21),
+                                                facts(0.9, 0.31, 0.19), facts(0.9, 0.03)};
   unfit.back().beaten = "beaten";
-  for (const programs::ExportFacts& one : unfit) {
-    const programs::FlightVerdict verdict = programs::export_verdict(one);
+  for (const programs::ModelEvidence& one : unfit) {
+    const programs::FlightVerdict verdict = programs::model_verdict(one);
     CHECK(verdict.may_fly() == programs::MayFly::no);
     CHECK(verdict.words().find("do not fly: ") == 0);
     CHECK_FALSE(verdict.next().empty());
   }
 
-  std::vector<programs::ExportFacts> doubted(7, facts(0.9, 0.03));
-  doubted[0].proven = false;
+  std::vector<programs::ModelEvidence> doubted(7, facts(0.9, 0.03));
+  doubted[0].signs = programs::Signs::refuted;
   doubted[1].known = false;
   doubted[2].slopes = {"its roll slope is 0.40 of the airframe's"};
   doubted[3].last_commands_err_less = true;
-  doubted[4].held_out.answered_share = 0.5;
-  doubted[5].held_out.test_r_squared = 0.7;
+  doubted[4].held_out->answered_share = 0.5;
+  doubted[5].held_out->test_r_squared = 0.7;
   doubted[6].flown = nullptr;
-  for (const programs::ExportFacts& one : doubted) {
-    const programs::FlightVerdict verdict = programs::export_verdict(one);
+  for (const programs::ModelEvidence& one : doubted) {
+    const programs::FlightVerdict verdict = programs::model_verdict(one);
     CHECK(verdict.may_fly() == programs::MayFly::with_care);
     CHECK(verdict.reasons().size() == 1);
     CHECK(verdict.next().find("pinnquad loop") != 0);
   }
   // a reason not to fly hides lesser ones
-  doubted[0].held_out.test_r_squared = -1;
-  CHECK(programs::export_verdict(doubted[0]).reasons().size() == 1);
+  doubted[0].held_out->test_r_squared = -1;
+  CHECK(programs::model_verdict(doubted[0]).reasons().size() == 1);
 }
 
 TEST_CASE("an export beside the others: a tenth less is said, and the commands of 100 ms ago, and what to do") {

@@ -116,6 +116,7 @@ TEST_CASE("the page: figures, verdicts, drawings, worst moments with their links
   CHECK(page.find("· speed ") != std::string::npos);
   CHECK(page.find("nan") == std::string::npos);
   CHECK(page.find("{{") == std::string::npos);
+  CHECK(page.find("<th>signed sum of the commands</th>") == std::string::npos);  // none were compared
   // over time, gain and phase, residuals; flights, errors over, ellipses; four moments
   const std::vector<nlohmann::json> charts = charts_of(page);
   REQUIRE(charts.size() == 3 + 3 + 4);
@@ -209,6 +210,7 @@ TEST_CASE("the page begins with the verdict, the path flown with and without the
   REQUIRE(verdict != std::string::npos);
   CHECK(page.find("R² 0.7 is &lt;low&gt;.") != std::string::npos);
   CHECK(page.find("<b>Next:</b> record more") != std::string::npos);
+  CHECK(page.find("Evidence: all is well.") != std::string::npos);
   CHECK(verdict < page.find("<b>1.2 cm</b>"));
   CHECK(page.find("45.6 cm without it") != std::string::npos);
   CHECK(page.find("<b>75.0&#160;%</b><span>of the path") != std::string::npos);
@@ -223,6 +225,7 @@ TEST_CASE("the page begins with the verdict, the path flown with and without the
   CHECK(series_of(path, 1, "without the model")["y"] == nlohmann::json({0.0, 25.0}));
   CHECK(page.find("first line&#10;second line&#10;") < page.find("<details"));
   CHECK(page.find("{{") == std::string::npos);
+  CHECK(page.find("<th>signed sum of the commands</th>") == std::string::npos);  // none were compared
 }
 
 TEST_CASE("the page draws what the first seed's model predicts") {

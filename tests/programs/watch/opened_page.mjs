@@ -104,6 +104,21 @@ export async function mouse(type, x, y, button = 'left') {
     clickCount: 1,
   });
 }
+async function touch(type, ...points) {
+  await chromium.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+}
+/** Fingers that go from one place to another each, in steps. */
+export async function drag(from, to, steps = 6) {
+  await touch('touchStart', ...from);
+  for (let i = 1; i <= steps; ++i)
+    await touch(
+      'touchMove',
+      ...from.map(([x, y], f) => [x + ((to[f][0] - x) * i) / steps, y + ((to[f][1] - y) * i) / steps]),
+    );
+  await touch('touchEnd');
+  await drawn();
+}
+
 export async function click(selector, share = 0.5) {
   const box = await evaluate(`document.querySelector('${selector}').getBoundingClientRect().toJSON()`);
   const [x, y] = [box.x + share * box.width, box.y + box.height / 2];

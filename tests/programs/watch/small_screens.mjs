@@ -7,6 +7,7 @@ import {
   chromium,
   click,
   distance,
+  drag,
   drawn,
   evaluate,
   figure,
@@ -46,21 +47,6 @@ export async function axisIsTrue(where) {
   await click('#timeline', tick.share);
   const pixel = (rows[rows.length - 1].t - rows[0].t) / timeline.width;
   check(`${where}: a click at ${tick.seconds}`, near(await figure('time'), parseFloat(tick.seconds), pixel + 0.006));
-}
-
-async function touch(type, ...points) {
-  await chromium.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
-}
-/** Fingers that go from one place to another each, in steps. */
-async function drag(from, to, steps = 6) {
-  await touch('touchStart', ...from);
-  for (let i = 1; i <= steps; ++i)
-    await touch(
-      'touchMove',
-      ...from.map(([x, y], f) => [x + ((to[f][0] - x) * i) / steps, y + ((to[f][1] - y) * i) / steps]),
-    );
-  await touch('touchEnd');
-  await drawn();
 }
 
 /** A small screen: nothing over the view, everything within the window, fingers do what the mouse does. */

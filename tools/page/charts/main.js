@@ -83,6 +83,11 @@ function scale({ name, least, most, logarithmic, rows }, isX, values, ticks) {
   };
 }
 
+/** One finger scrolls the page over a whole chart, and moves a spread one. */
+function takeFingers({ chart }) {
+  chart.canvas.style.touchAction = chart.isZoomedOrPanned() ? 'none' : 'pan-y';
+}
+
 /** A panel as a chart: hover by the nearest instant, or by the nearest point where x is no time. */
 function plot(panel) {
   const overX = panel.height > 0 && panel.y.rows.length === 0;
@@ -112,10 +117,20 @@ function plot(panel) {
               `${label}: ${overX ? shown(y) : `${shown(x)}, ${panel.y.rows[y] ?? shown(y)}`}`,
           },
         },
-        zoom: { zoom: { mode: 'xy', drag: { enabled: true, backgroundColor: () => ink('accent', 0.2) } } },
+        zoom: {
+          limits: { x: { min: 'original', max: 'original' }, y: { min: 'original', max: 'original' } },
+          zoom: {
+            mode: 'xy',
+            drag: { enabled: true, backgroundColor: () => ink('accent', 0.2) },
+            pinch: { enabled: true },
+            onZoomComplete: takeFingers,
+          },
+          pan: { enabled: true, onPanStart: ({ chart, event }) => event.pointerType !== 'mouse' && chart.isZoomedOrPanned() },
+        },
       },
     },
   });
+  takeFingers({ chart });
   canvas.addEventListener('dblclick', () => chart.resetZoom('none'));
   return { place, chart };
 }
@@ -142,7 +157,8 @@ function legend(panels, charts) {
     });
     bar.append(button);
   }
-  bar.append(element('span', '', 'Drag to zoom, double-click to go back'));
+  bar.append(element('span', 'by_mouse', 'Drag to zoom, double-click to go back'));
+  bar.append(element('span', 'by_finger', 'Spread two fingers to zoom, drag to move, double-tap to go back'));
   return bar;
 }
 

@@ -70,6 +70,16 @@ class Comparison:
     difference: float  #: of the mean absolute errors, contender - reference, the mean over seeds
     p_value: float  #: Wilcoxon's signed-rank test, two-sided; NaN below 6 pairs, and where all differences are 0
     p_holm: float  #: Holm's correction for as many contenders
+    why_no_p: str = ""  #: why p_value is NaN; empty where it is a number
+
+
+FEWEST_PAIRS = 6  #: below, Wilcoxon's exact two-sided p is 2^(1-n) at least, above 0.05
+
+
+def _why_no_p(pairs, p):
+    if p == p:
+        return ""
+    return f"none: {pairs} of {FEWEST_PAIRS} seeds" if pairs < FEWEST_PAIRS else "none: equal errors"
 
 
 @dataclass(frozen=True)
@@ -93,14 +103,14 @@ class Study:
                 continue
             seeds = sorted(errors[name].keys() & errors[self.reference].keys())
             off = np.array([errors[name][seed] - errors[self.reference][seed] for seed in seeds])
-            p = float(stats.wilcoxon(off).pvalue) if len(off) > 5 and np.any(off) else float("nan")
+            p = float(stats.wilcoxon(off).pvalue) if len(off) >= FEWEST_PAIRS and np.any(off) else float("nan")
             found.append((name, len(off), float(off.mean()) if len(off) else float("nan"), p))
         corrected, worst = {}, 0.0
         known = sorted((one for one in found if one[3] == one[3]), key=lambda one: one[3])
         for place, one in enumerate(known):
             worst = max(worst, min(1.0, one[3] * (len(known) - place)))
             corrected[one[0]] = worst
-        return [Comparison(name, self.reference, pairs, off, p, corrected.get(name, float("nan")))
+        return [Comparison(name, self.reference, pairs, off, p, corrected.get(name, float("nan")), _why_no_p(pairs, p))
                 for name, pairs, off, p in found]
 
     def to_latex(self):
@@ -114,8 +124,8 @@ class Study:
             if mean == min(means.values()):
                 cells = [f"\\textbf{{{cells[0]}}}"]
             cells += [f"{np.mean([row[key] for row in own]):.5f}" for key in ("rmse", "r2")]
-            p = tested[name].p_holm if name in tested else float("nan")
-            cells += [str(len(own)), "reference" if name not in tested else "--" if p != p else f"{p:.2g}"]
+            test = tested.get(name)
+            cells += [str(len(own)), "reference" if test is None else test.why_no_p or f"{test.p_holm:.2g}"]
             lines.append(" & ".join([name.replace("_", "\\_")] + cells) + " \\\\")
         return "\n".join(["\\begin{tabular}{lccccc}", "\\toprule",
                           "Model & Mean absolute error & RMSE & $R^2$ & Seeds & $p$ \\\\", "\\midrule", *lines, "\\bottomrule",

@@ -54,8 +54,17 @@ void BlockModel::open_as() {
 }
 
 PINNQUAD_BODY void BlockModel::open() {
-  const bool is_double =
-      length_ >= ModelBlockHeader::size && detail::read_u32(data() + ModelBlockHeader::scalar_bytes) == sizeof(double);
+  using Header = ModelBlockHeader;
+  constexpr std::size_t least = Header::size + Header::checksum_size;
+  if (length_ < least) {
+    refuse("a model block, " + std::to_string(least) + " bytes or more", std::to_string(length_) + " bytes");
+  }
+  const std::size_t recorded = detail::read_u32(data() + Header::length);
+  if (detail::check_bytes(data(), length_) == Status::block_truncated) {
+    refuse("the " + std::to_string(recorded) + " bytes that this block records as its length",
+           std::to_string(length_) + ": it is cut short, or that number was changed; copy or export it again");
+  }
+  const bool is_double = detail::read_u32(data() + Header::scalar_bytes) == sizeof(double);
   is_double ? open_as<double>() : open_as<float>();
 }
 

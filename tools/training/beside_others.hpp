@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verdict on what is exported: may it fly (command_line/flight_verdict.hpp), and which models err less held out.
+// The exported model beside the others of the same run, by their errors on the rows held out.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "command_line/flight_verdict.hpp"
-#include "training/certificate_words.hpp"
-#include "training/closed_loop.hpp"
 #include "training/export_choice.hpp"
 #include "training/kind_figures.hpp"
 #include "training/log_kinds.hpp"
@@ -117,88 +114,6 @@ inline std::vector<std::string> beaten_in_words(const BesideOthers& beside, cons
                     ": fly flights that cover what is held out, or let it learn a bias in flight (docs/adaptive.md)");
   }
   return lines;
-}
-
-/// R^2 on rows held out: below the first a model is not to be flown, below the second with care.
-inline constexpr double least_r2 = 0.5, good_r2 = 0.8;
-
-/// All that the verdict on an export is made of.
-struct ExportFacts {
-  std::string title;
-  pinnquad::Verdict held_out;
-  nlohmann::json flown;               ///< in the closed loop; null: it was not
-  std::string beaten;                 ///< by a proven model of the same run by a tenth: how; empty: it is not
-  bool proven = true;                 ///< that more angular acceleration asked is more torque commanded
-  bool known = true;                  ///< the vehicle: by --airframe, or the flights
-  std::string flight{};               ///< to record where it is not
-  std::vector<std::string> slopes{};  ///< that are not the airframe's: "roll slope 0.45 of the airframe's"
-  bool last_commands_err_less = false;
-  std::string block = "model.block";  ///< its file, for the command to type next
-};
-
-/// A line for each slope that is far from the airframe's own, short.
-inline std::vector<std::string> odd_slopes(const pinnquad::AxisSlopes& slopes, const pinnquad::AxisSlopes& own,
-                                           double thrust_share) {
-  std::vector<std::string> odd;
-  const auto look = [&odd](const char* name, double share) {
-    if (share >= least_undoubted && share <= most_undoubted) return;
-    odd.push_back(in_words("its %s slope is %.2f of the airframe's", name, share));
-  };
-  look("thrust", thrust_share);
-  for (std::size_t axis = 0; axis < slopes.size(); ++axis) look(axis_names[axis], slopes[axis] / own[axis]);
-  return odd;
-}
-
-inline FlightVerdict export_verdict(const ExportFacts& facts) {
-  constexpr double least_answered = 0.9, usually_answered = 0.99;
-  const std::string loop = "pinnquad loop " + facts.block, airframe = "name the vehicle with --airframe FILE.toml";
-  const std::string r2 = "R^2 " + decimals(facts.held_out.test_r_squared, 3);
-  FlightVerdict verdict(facts.title + ", " + r2 + " on the rows held out, " + flight_in_words(facts.flown));
-  const std::string unfit = unfit_to_fly(facts.flown);
-  if (!(facts.held_out.test_r_squared >= least_r2)) {
-    verdict.refuse(facts.title +
-                       (facts.held_out.worse_than_mean() ? " is worse than the mean of the commands"
-                                                         : " explains less than half of the commands' variance") +
-                       " on the rows held out (" + r2 + ")",
-                   std::string(livelier_flight) + "; docs/low_r2.md");
-  }
-  if (!unfit.empty()) {
-    verdict.refuse(facts.title + " " + unfit + ": " + flight_in_words(facts.flown),
-                   std::string("fly the analytic inverse of the airframe, or ") + livelier_flight);
-  }
-  if (!facts.beaten.empty()) verdict.refuse(facts.beaten, "train again with that --export");
-  if (!facts.proven) {
-    verdict.care("no proof that more angular acceleration asked is more torque commanded",
-                 "pinnquad certify " + facts.block + " looks for a counterexample");
-  }
-  if (!facts.known) {
-    verdict.care("the flights do not identify the vehicle, so its airframe is assumed",
-                 airframe + (facts.flight.empty() ? "" : ", or record: " + facts.flight));
-  }
-  if (facts.held_out.test_r_squared < good_r2) {
-    verdict.care(r2 + " on the rows held out is low", std::string(livelier_flight) + "; docs/low_r2.md");
-  }
-  if (facts.held_out.has_poor_motor()) {
-    verdict.care("one motor is predicted worse than by its mean", "look at that motor: docs/low_r2.md");
-  }
-  for (const std::string& slope : facts.slopes) verdict.care(slope, livelier_flight);
-  if (facts.last_commands_err_less) {
-    verdict.care("the commands of 100 ms ago err less", "fly it with AdaptiveInverse (docs/adaptive.md)");
-  }
-  if (facts.held_out.answered_share < least_answered) {
-    verdict.care("its guard answers " + decimals(100 * facts.held_out.answered_share, 0) + " % of the rows held out",
-                 "train on flights as fast as those that you will fly");
-  }
-  if (facts.flown.is_null() || !facts.flown.contains("model")) {
-    verdict.care(flight_in_words(facts.flown), facts.flown.is_null() ? "plan its trajectories offline" : airframe);
-  } else if (facts.flown["model"]["answered_share"] < usually_answered) {
-    verdict.care("the analytic inverse flew " +
-                     decimals(100 - 100 * facts.flown["model"]["answered_share"].get<double>(), 1) +
-                     " % of a figure-eight inside the flights' limits",
-                 loop);
-  }
-  verdict.then(loop + "; then the bench, propellers off (docs/in_flight.md)");
-  return verdict;
 }
 
 }  // namespace programs

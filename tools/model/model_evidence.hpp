@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Evidence for the verdict on a model, by its block alone (training/model_verdict.hpp).
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "command_line/held_columns.hpp"
+#include "flight/block_loop.hpp"
+#include "pinnquad/io/decimal.hpp"
+#include "pinnquad/io/file_error.hpp"
+#include "training/model_verdict.hpp"
+
+namespace programs {
+
+/// A figure-eight that the model flies in the simulator, its columns held at the middle of their training ranges.
+inline nlohmann::json eight_of(const pinnquad::BlockModel& model) {
+  if (model.features().window().latest_s > 0) return {};
+  try {
+    const std::string eight = loop_trajectories.front();
+    const std::vector<double> columns = held_columns(range_of(model).columns(), {});
+    return flight_evidence(fly_loop(model, {eight, model.airframe(), true, columns}), eight);
+  } catch (const std::invalid_argument& refused) {
+    return {{"why_not", refused.what()}};
+  }
+}
+
+/// The figures that the block records, the proof of its signs, and how it flies eight_of(); `flies`: false where the
+/// caller has a flight of its own.
+inline ModelEvidence evidence_of(const pinnquad::BlockModel& model, bool flies = true) {
+  ModelEvidence evidence{model.name(), {}, flies ? eight_of(model) : nlohmann::json()};
+  evidence.block = pinnquad::printable(model.path());
+  const std::string airframe = model.airframe_name(), assumed = "assumed";
+  evidence.known = airframe.size() <= assumed.size() ||
+                   airframe.compare(airframe.size() - assumed.size(), assumed.size(), assumed) != 0;
+  double r2 = 0;
+  if (pinnquad::parse_number(model.provenance("test_r_squared"), r2)) evidence.held_out.emplace().test_r_squared = r2;
+  if (model.angular_accelerations().empty()) {
+    evidence.signs = Signs::not_asked;
+  } else if (const auto proof = model.proven_signs()) {
+    if (evidence.known) evidence.slopes = odd_slopes(*proof, model.airframe());
+  } else {
+    evidence.signs = Signs::unknown;
+  }
+  return evidence;
+}
+
+}  // namespace programs
