@@ -14,29 +14,47 @@ namespace pinnquad::logs {
 namespace {
 
 /// Columns of outlier_rows(): accelerations, velocity, rates, altitude, and the attitude as a quaternion whose sign
-/// does not jump, for near a pitch of 90 degrees roll and yaw do; each with the deviation that counts at least.
-struct JudgedColumn {
-  std::vector<double> values;
-  double smallest_scale;
-};
+/// does not jump, for near a pitch of 90 degrees roll and yaw do.
+constexpr std::array<std::size_t, 13> judged_fields = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 16};
+using JudgedRow = std::array<double, judged_fields.size() + 4>;
 
-std::vector<JudgedColumn> judged_columns(const Flight& flight) {
-  constexpr double smallest_scale_of_q = 0.02;
-  std::vector<JudgedColumn> columns;
-  for (const std::size_t field : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 10u, 11u, 12u, 16u}) {
-    columns.push_back({detail::column_of(flight, field), column_plausibility[field].smallest_scale / 2});
-  }
-  const std::size_t first = columns.size();
-  columns.resize(first + 4, {{}, smallest_scale_of_q});
+/// The deviation that counts at least.
+double smallest_scale_of(std::size_t column) {
+  constexpr double of_q = 0.02;
+  return column < judged_fields.size() ? column_plausibility[judged_fields[column]].smallest_scale / 2 : of_q;
+}
+
+std::vector<JudgedRow> judged_rows(const Flight& flight) {
+  std::vector<JudgedRow> rows;
+  rows.reserve(flight.size());
   Quaternion<double> last;
   for (const Sample& sample : flight) {
     Quaternion<double> q = attitude(sample);
     if (q.w * last.w + q.x * last.x + q.y * last.y + q.z * last.z < 0) q = {-q.w, -q.x, -q.y, -q.z};
     last = q;
-    const std::array<double, 4> parts = {q.w, q.x, q.y, q.z};
-    for (std::size_t i = 0; i < parts.size(); ++i) columns[first + i].values.push_back(parts[i]);
+    const Sample::Values values = to_values(sample);
+    JudgedRow row{};
+    for (std::size_t i = 0; i < judged_fields.size(); ++i) row[i] = values[judged_fields[i]];
+    std::copy_n(std::array<double, 4>{q.w, q.x, q.y, q.z}.begin(), 4, row.begin() + judged_fields.size());
+    rows.push_back(row);
   }
-  return columns;
+  return rows;
+}
+
+/// Columns that step far from a row to both sides, as an outlier does.
+std::array<bool, std::tuple_size<JudgedRow>::value> stepping_columns(const std::vector<JudgedRow>& rows,
+                                                                     double deviations) {
+  std::array<bool, std::tuple_size<JudgedRow>::value> found{}, before;
+  before.fill(true);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const bool after =
+          row + 1 == rows.size() || std::abs(rows[row + 1][k] - rows[row][k]) > deviations / 2 * smallest_scale_of(k);
+      found[k] = found[k] || (before[k] && after);
+      before[k] = after;
+    }
+  }
+  return found;
 }
 
 /// A flight of that name and those extra columns, without rows.
@@ -164,17 +182,13 @@ RowMask outlier_rows(const Flight& flight) {
   constexpr double normal = 1.4826, deviations = 12;
   RowMask mask(flight.size(), false);
   if (flight.size() < 2 * around + 1) return mask;
-  for (const JudgedColumn& column : judged_columns(flight)) {
-    const std::vector<double>& values = column.values;
-    const auto step = [&values](std::size_t row) { return std::abs(values[row] - values[row - 1]); };
-    const double least_step = deviations * column.smallest_scale / 2;  // to both sides of an outlier
-    bool steps = false;
-    for (std::size_t row = 1; row <= values.size() && !steps; ++row) {
-      const bool before = row == 1 || step(row - 1) > least_step,
-                 after = row == values.size() || step(row) > least_step;
-      steps = before && after;
-    }
-    if (!steps) continue;
+  const std::vector<JudgedRow> rows = judged_rows(flight);
+  const auto steps = stepping_columns(rows, deviations);
+  for (std::size_t column = 0; column < steps.size(); ++column) {
+    if (!steps[column]) continue;
+    std::vector<double> values;
+    values.reserve(rows.size());
+    for (const JudgedRow& row : rows) values.push_back(row[column]);
     std::vector<double> distance(values.size(), 0.0);
     for (std::size_t row = 0; row < values.size(); ++row) {
       const std::size_t begin = std::min(row > around ? row - around : 0, values.size() - (2 * around + 1));
@@ -183,7 +197,7 @@ RowMask outlier_rows(const Flight& flight) {
       std::nth_element(near.begin(), near.begin() + around, near.end());
       distance[row] = std::abs(values[row] - near[around]);
     }
-    const double scale = std::max(normal * detail::median_of(distance), column.smallest_scale);
+    const double scale = std::max(normal * detail::median_of(distance), smallest_scale_of(column));
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (!(distance[row] > deviations * scale)) continue;
       const double before = row > 0 ? std::abs(values[row - 1] - values[row]) : distance[row];

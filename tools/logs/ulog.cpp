@@ -158,12 +158,14 @@ class Reader {
     last_time_s_ = std::max(last_time_s_, time_s);
     if (!from.wanted) return;
     LogTopic& topic = log_.topics[from.topic];
-    if (topic.size() == topic.time_s.capacity()) make_room(topic, from, message.place);
+    constexpr std::size_t few = 1024;
+    if (topic.size() >= few && topic.size() == topic.time_s.capacity()) make_room(topic, from, message.place);
     topic.time_s.push_back(time_s);
     topic.place.push_back(message.place);
     for (std::size_t i = 0; i < from.numbers.size(); ++i) {
       const Leaf& leaf = from.numbers[i];
-      topic.columns[from.columns[i]].values.push_back(number(leaf.type, data + leaf.offset));
+      const double value = number(leaf.type, data + leaf.offset);
+      topic.columns[from.columns[i]].values.push_back(value);
     }
     for (std::size_t i = 0; i < from.texts.size(); ++i) {
       topic.texts[i].values.emplace_back(text_of({data + from.texts[i].offset, from.texts[i].length}));
@@ -174,11 +176,8 @@ class Reader {
   /// grow are there twice, and have half as much too much.
   void make_room(LogTopic& topic, const Subscription& from, std::uint64_t place) const {
     constexpr double spare = 1.02;
-    constexpr std::size_t first = 1024;
-    const double share = static_cast<double>(place + 1) / static_cast<double>(size_);
-    const double likely = spare * static_cast<double>(topic.size()) / share;
-    const std::size_t rows =
-        topic.size() + first + static_cast<std::size_t>(likely - static_cast<double>(topic.size()));
+    const double share = static_cast<double>(place) / static_cast<double>(size_);
+    const auto rows = 1 + static_cast<std::size_t>(spare * static_cast<double>(topic.size()) / share);
     topic.time_s.reserve(rows);
     topic.place.reserve(rows);
     for (const std::size_t column : from.columns) topic.columns[column].values.reserve(rows);

@@ -4,18 +4,22 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "complaint.hpp"
 #include "counted_memory.hpp"
 #include "logs/ulog.hpp"
+#include "support/temporary_folder.hpp"
 #include "ulog_bytes.hpp"
 
 using pinnquad::logs::FlightLog;
 using pinnquad::logs::parse_ulog;
+using pinnquad::logs::read_ulog;
 using pinnquad_test::Bytes;
 using pinnquad_test::counted_memory;
+using pinnquad_test::TemporaryFolder;
 using pinnquad_test::UlogBytes;
 
 namespace {
@@ -118,6 +122,34 @@ TEST_CASE("a byte of the data that is wrong: every row behind the next sync mess
     }
   }
   CHECK(silent == 0);
+}
+
+TEST_CASE("a file of several blocks is read as its bytes are, wherever it is damaged or cut") {
+  constexpr unsigned rows = 120000;
+  UlogBytes file;
+  file.format(simple).topic(0, 0, "a");
+  for (unsigned i = 0; i < rows; ++i) {
+    file.data(0, Bytes().u64(i).f32(static_cast<float>(i)));
+    if (i % 1000 == 0) file.sync().said('4', i, std::string(i % 60000, 'x'));
+  }
+  const TemporaryFolder folder;
+  std::minstd_rand engine(1);
+  for (std::size_t way = 0; way < 12; ++way) {
+    std::string bytes = file.str();
+    if (way % 3 == 1) bytes.replace(bytes.size() / 4, 300000 * way, 300000 * way, '\0');
+    for (std::size_t flip = 0; flip < way; ++flip) {
+      const std::size_t place = 100 + engine() % (bytes.size() - 100);
+      bytes[place] = static_cast<char>(bytes[place] ^ static_cast<char>(1 + engine() % 255));
+    }
+    if (way % 2 == 1) bytes.resize(bytes.size() - engine() % (bytes.size() / 2));
+    const std::string path = folder.write("x.ulg", bytes);
+    const FlightLog log = read_ulog(path), same = parse_ulog(bytes, path);
+    INFO("way " << way);
+    CHECK(log.warnings == same.warnings);
+    REQUIRE(log.topics.size() == 1);
+    CHECK(rows_of(log) == rows_of(same));
+    CHECK(log.topics[0].column("x")->values == same.topics[0].column("x")->values);
+  }
 }
 
 TEST_CASE("a region of rubbish is left out, with its bytes; many are counted") {

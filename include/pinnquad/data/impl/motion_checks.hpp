@@ -2,6 +2,7 @@
 // Bodies of motion_checks.hpp.
 #pragma once
 
+#include "pinnquad/data/impl/velocity_readings.hpp"
 #include "pinnquad/data/motion_checks.hpp"
 
 namespace pinnquad {
@@ -16,28 +17,11 @@ PINNQUAD_BODY std::string times_text(double factor) {
   return number_text(factor < 1 ? std::round(factor * 1e4) / 1e4 : std::round(factor * 100) / 100) + " times";
 }
 
-PINNQUAD_BODY EulerAngles<double> angles_of(const Sample& sample) {
-  return {sample.roll_rad, sample.pitch_rad, sample.yaw_rad};
-}
-
 PINNQUAD_BODY Vector3<double> turn_vector(const Quaternion<double>& q) {
   const double shorter_way = q.w < 0 ? -1 : 1;
   const Vector3<double> v = shorter_way * Vector3<double>(q.x, q.y, q.z);
   const double sine = v.norm();
   return v * (sine > 1e-12 ? 2 * std::atan2(sine, shorter_way * q.w) / sine : 2.0);
-}
-
-/// Attitudes of a flight whose angles `angles(row)` gives.
-template <class Angles>
-std::vector<Quaternion<double>> attitudes(std::size_t rows, const Angles& angles) {
-  std::vector<Quaternion<double>> result;
-  result.reserve(rows);
-  for (std::size_t row = 0; row < rows; ++row) result.push_back(from_euler(angles(row)));
-  return result;
-}
-
-PINNQUAD_BODY std::vector<Quaternion<double>> attitudes_of(const Flight& flight) {
-  return attitudes(flight.size(), [&](std::size_t row) { return angles_of(flight[row]); });
 }
 
 PINNQUAD_BODY MotionPair turning_pair(const Flight& flight, const TurningReading& reading) {
@@ -214,82 +198,6 @@ PINNQUAD_BODY std::optional<Implausible> wrong_axis(const MotionBlocks& sums, st
                          field_name(first_field, mistake->column),
                      found + ", by how rates and velocity change from row to row"};
 }
-PINNQUAD_BODY Vector3<double> in_axes(const Vector3<double>& v, std::size_t kind) {
-  switch (kind) {
-    case 1: return swap_enu_ned(v);
-    case 2: return swap_flu_frd(v);
-    case 3: return swap_enu_ned(swap_flu_frd(v));
-    case 4: return swap_flu_frd(swap_enu_ned(v));
-    default: return v;
-  }
-}
-
-/// A reading of the columns that should hold the derivative of the body-frame velocity.
-struct AccelerationReading {
-  enum Kind { kinematic, without_turning, world_derivative, world, world_force, no_gravity, accelerometer };
-  Kind kind = kinematic;
-  std::size_t axes = 0;  ///< of a vector of the world: axes_kinds
-
-  std::string text() const {
-    const std::string in_world = axes == 0   ? " in axes north, east, down"
-                                 : axes == 1 ? " in axes east, north, up"
-                                             : " in axes of another convention (ENU, or z up)";
-    switch (kind) {
-      case without_turning: return "the world's acceleration in the body's axes (subtract w x v)";
-      case world_derivative:
-      case world: return "the world's acceleration" + in_world + " (turn it into the body, subtract w x v)";
-      case world_force: return "the specific force" + in_world + " of the world (turn it into the body)";
-      case no_gravity: return "that with gravity added once too often (an accelerometer's without gravity?)";
-      case accelerometer: return "what an accelerometer reads (add gravity in the body's axes, subtract w x v)";
-      case kinematic: break;
-    }
-    return "";
-  }
-
-  Vector3<double> body_derivative(const Sample& sample, const Quaternion<double>& q) const {
-    const Vector3<double> given = sample.linear_acceleration_m_s2;
-    if (kind == kinematic) return given;
-    const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
-    const bool falls = kind == world_force || kind == no_gravity || kind == accelerometer;
-    const Vector3<double> gravity =
-        falls ? world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>)) : Vector3<double>::Zero();
-    switch (kind) {
-      case without_turning: return given - turning;
-      case world_derivative: return world_to_body(q, in_axes(given, axes)) - turning;
-      case world: return world_to_body(q, in_axes(given + turning, axes)) - turning;
-      case world_force: return world_to_body(q, in_axes(given + turning - gravity, axes)) + gravity - turning;
-      case no_gravity: return given - gravity;
-      case accelerometer: return given + gravity - turning;
-      case kinematic: break;
-    }
-    return given;
-  }
-};
-PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
-                                             const VelocityReading& reading) {
-  std::vector<Vector3<double>> velocity, acceleration;
-  velocity.reserve(flight.size());
-  acceleration.reserve(flight.size());
-  for (std::size_t row = 0; row < flight.size(); ++row) {
-    const Sample& sample = flight[row];
-    Vector3<double> read = in_axes(sample.velocity_m_s, reading.of_columns);
-    for (int turn = 0; turn < reading.turns; ++turn) {
-      read = body_to_world(attitude[row], read);
-      if (turn == 0) read = in_axes(read, reading.of_world);
-    }
-    velocity.push_back(read);
-    const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
-    acceleration.push_back(body_to_world(attitude[row], Vector3<double>(sample.linear_acceleration_m_s2 + turning)));
-  }
-  return {flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-          [&](std::size_t row) -> Vector3<double> { return velocity[row + 1] - velocity[row]; },
-          [&](std::size_t row) -> const Vector3<double>& { return acceleration[row]; }};
-}
-
-PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const VelocityReading& reading) {
-  return world_velocity_pair(flight, attitudes_of(flight), reading);
-}
-
 /// Velocities that are negated along one axis of the world, of another unit, or late.
 PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& flight,
                                                                const std::vector<Quaternion<double>>& attitude) {
@@ -372,15 +280,15 @@ PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& fli
 PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
   using namespace detail;
   constexpr double unexplained = 0.1, better = 0.25;
-  const auto sums = [&](Vector3<double> Sample::*const value, const auto& rate) {
+  const auto sums = [&](const auto& value, const auto& rate) {
     return MotionPair(
                flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-               [&](std::size_t row) { return Vector3<double>(flight[row + 1].*value - flight[row].*value); }, rate)
+               [&](std::size_t row) { return Vector3<double>(value(row + 1) - value(row)); }, rate)
         .sums(acceleration_step_s);
   };
-  const MotionBlocks angular = sums(&Sample::body_rates_rad_s, [&](std::size_t row) -> const Vector3<double>& {
-    return flight[row].angular_acceleration_rad_s2;
-  });
+  const MotionBlocks angular =
+      sums([&](std::size_t row) -> const Vector3<double>& { return flight[row].body_rates_rad_s; },
+           [&](std::size_t row) -> const Vector3<double>& { return flight[row].angular_acceleration_rad_s2; });
   if (auto mistake = wrong_axis(angular, angular_field, rates_field)) return mistake;
   const std::vector<Quaternion<double>> attitude = attitudes_of(flight);
   if (auto mistake = find_velocity_mistake(flight, attitude)) return mistake;
@@ -388,12 +296,21 @@ PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const
   const auto left_of = [](const MotionSums& block) {
     return block.changes.sum() + block.integrals.sum() - 2 * block.products.trace();
   };
-  std::vector<Vector3<double>> derivative(flight.size());
+  std::vector<AccelerationReading::Row> rows;  // in one place: they are read in many ways
+  std::vector<Vector3<double>> derivative(flight.size()), velocity;
+  rows.reserve(flight.size());
+  velocity.reserve(flight.size());
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    const Sample& sample = flight[row];
+    rows.push_back(
+        {sample.linear_acceleration_m_s2, cross(sample.body_rates_rad_s, sample.velocity_m_s), attitude[row]});
+    velocity.push_back(sample.velocity_m_s);
+  }
   const auto read_as = [&](const AccelerationReading& reading) {
-    for (std::size_t row = 0; row < flight.size(); ++row) {
-      derivative[row] = reading.body_derivative(flight[row], attitude[row]);
-    }
-    return sums(&Sample::velocity_m_s, [&](std::size_t row) -> const Vector3<double>& { return derivative[row]; });
+    std::transform(rows.begin(), rows.end(), derivative.begin(),
+                   [&](const AccelerationReading::Row& row) { return reading.body_derivative(row); });
+    return sums([&](std::size_t row) -> const Vector3<double>& { return velocity[row]; },
+                [&](std::size_t row) -> const Vector3<double>& { return derivative[row]; });
   };
   const MotionBlocks linear = read_as({});
   const double left = left_of(linear);

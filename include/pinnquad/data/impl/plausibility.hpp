@@ -69,13 +69,19 @@ PINNQUAD_BODY std::optional<Implausible> find_implausible_command(const Flight& 
   return std::nullopt;
 }
 
+/// Least and greatest value of each column.
+using Ranges = std::array<std::pair<double, double>, sample_value_count>;
+
 /// The first cell outside its column's physical range; NaN and infinity are outside every range, as is what no float
 /// holds.
-PINNQUAD_BODY std::optional<Implausible> find_out_of_range(const Flight& flight) {
+PINNQUAD_BODY std::optional<Implausible> find_out_of_range(const Flight& flight, Ranges& ranges) {
   for (std::size_t row = 0; row < flight.size(); ++row) {
     const Sample::Values values = to_values(flight[row]);
     for (std::size_t field = 0; field < values.size(); ++field) {
       const ColumnPlausibility& column = column_plausibility[field];
+      auto& [least, most] = ranges[field];
+      least = row > 0 ? std::min(least, values[field]) : values[field];
+      most = row > 0 ? std::max(most, values[field]) : values[field];
       if (values[field] >= column.lowest && values[field] <= column.highest) continue;
       return Implausible{row, field, range_text(column) + " " + column_text(field), number_text(values[field])};
     }
@@ -91,16 +97,17 @@ PINNQUAD_BODY double row_period_s(const Flight& flight) {
 
 /// The cell of a column that is furthest from its median and has no neighbour like it. Beside a gap nothing is known of
 /// a neighbour: a knock whose next row was dropped is no wrong cell.
-PINNQUAD_BODY std::optional<Implausible> find_outlier(const Flight& flight, std::size_t field, double period_s) {
+PINNQUAD_BODY std::optional<Implausible> find_outlier(const Flight& flight, std::size_t field, const Ranges& ranges,
+                                                      double period_s) {
   const ColumnPlausibility& column = column_plausibility[field];
   if (!(column.smallest_scale > 0) || flight.empty()) return std::nullopt;
   constexpr double normal = 1.4826;  // standard deviation of a normal column over its median absolute deviation
-  const std::vector<double> values = column_of(flight, field);
   const double nearest = most_robust_deviations * column.smallest_scale;  // that an outlier is to its median
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  if (*most - *least <= nearest) return std::nullopt;
+  const auto& [least, most] = ranges[field];
+  if (most - least <= nearest) return std::nullopt;
+  const std::vector<double> values = column_of(flight, field);
   const double median = median_of(values);
-  if (*most - median <= nearest && median - *least <= nearest) return std::nullopt;
+  if (most - median <= nearest && median - least <= nearest) return std::nullopt;
   std::vector<double> distance;
   distance.reserve(values.size());
   for (const double value : values) distance.push_back(std::abs(value - median));
@@ -154,10 +161,11 @@ PINNQUAD_BODY std::optional<detail::Implausible> find_implausible(const Flight& 
   if (auto found = detail::find_implausible_command(flight)) return found;
   if (auto found = detail::find_other_clock(flight)) return found;
   if (auto found = find_turning_mistake(flight)) return found;
-  if (auto found = detail::find_out_of_range(flight)) return found;
+  detail::Ranges ranges{};
+  if (auto found = detail::find_out_of_range(flight, ranges)) return found;
   const double period_s = detail::row_period_s(flight);
   for (std::size_t field = 0; field < sample_value_count; ++field) {
-    if (auto found = detail::find_outlier(flight, field, period_s)) return found;
+    if (auto found = detail::find_outlier(flight, field, ranges, period_s)) return found;
   }
   return find_acceleration_mistake(flight);
 }
