@@ -136,11 +136,7 @@ struct PackAvx2Double : OneColumn<PackAvx2Double, double, 4> {
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;
 
-  __m256d value;
-
-  PackAvx2Double() = default;
-  PINNQUAD_ALWAYS_INLINE PackAvx2Double(__m256d v) noexcept : value(v) {}
-  using OneColumn::repeat;
+  using OneColumn::OneColumn, OneColumn::repeat;
 
   static PINNQUAD_ALWAYS_INLINE PackAvx2Double load(const double* p) noexcept { return {_mm256_loadu_pd(p)}; }
   static PINNQUAD_ALWAYS_INLINE PackAvx2Double broadcast(double v) noexcept { return {_mm256_set1_pd(v)}; }

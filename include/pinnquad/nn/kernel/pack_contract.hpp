@@ -157,24 +157,30 @@ PINNQUAD_ALWAYS_INLINE Pack positive_part_by_bits(const Pack& a) noexcept {
   return {reinterpret_cast<decltype(Pack::value)>(bits & (bits >= bound))};
 }
 
-/// The second contract but for repeat<First>(), head<Count>() and sum_of_values(): a pack with a row in each lane takes
-/// one input per step.
+/// The register of a pack with a row in each lane, which takes one input per step; the second contract but for
+/// repeat<First>(), head<Count>() and sum_of_values().
 template <class Pack, class ScalarType, int Width>
 struct OneColumn {
   using Scalar = ScalarType;
+  using Register __attribute__((vector_size(Width * sizeof(Scalar)))) = Scalar;
   static constexpr int width = Width;
   static constexpr int columns = 1;
   static constexpr int values = Width;
   static constexpr int blocks_per_register = 1;
 
-  static constexpr int lane_of_value(int value) noexcept { return value; }
+  Register value;
+
+  OneColumn() = default;
+  PINNQUAD_ALWAYS_INLINE OneColumn(Register v) noexcept : value(v) {}
+
+  static constexpr int lane_of_value(int i) noexcept { return i; }
   static constexpr int row_of_pair(int, int pair) noexcept { return pair; }
 
   static PINNQUAD_ALWAYS_INLINE Pack repeat(const Scalar* x) noexcept { return Pack::broadcast(*x); }
   static PINNQUAD_ALWAYS_INLINE Pack repeat_last(const Pack& v) noexcept { return v.template repeat<0>(); }
   static PINNQUAD_ALWAYS_INLINE Pack from_scalar(Scalar v) noexcept { return Pack::broadcast(v); }
   static PINNQUAD_ALWAYS_INLINE Pack collect(const Pack* sum) noexcept { return *sum; }
-  PINNQUAD_ALWAYS_INLINE Scalar first_value() const noexcept { return static_cast<const Pack*>(this)->value[0]; }
+  PINNQUAD_ALWAYS_INLINE Scalar first_value() const noexcept { return value[0]; }
   template <int Count>
   PINNQUAD_ALWAYS_INLINE void store_values(Scalar* y) const noexcept {
     if constexpr (Count == width) {

@@ -20,11 +20,7 @@ struct PackNeon : OneColumn<PackNeon, float, 4> {
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;
 
-  float32x4_t value;
-
-  PackNeon() = default;
-  PINNQUAD_ALWAYS_INLINE PackNeon(float32x4_t v) noexcept : value(v) {}
-  using OneColumn::repeat;
+  using OneColumn::OneColumn, OneColumn::repeat;
 
   static PINNQUAD_ALWAYS_INLINE PackNeon load(const float* p) noexcept { return {vld1q_f32(p)}; }
   static PINNQUAD_ALWAYS_INLINE PackNeon broadcast(float v) noexcept { return {vdupq_n_f32(v)}; }
@@ -71,11 +67,7 @@ struct PackNeonDouble : OneColumn<PackNeonDouble, double, 2> {
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;
 
-  float64x2_t value;
-
-  PackNeonDouble() = default;
-  PINNQUAD_ALWAYS_INLINE PackNeonDouble(float64x2_t v) noexcept : value(v) {}
-  using OneColumn::repeat;
+  using OneColumn::OneColumn, OneColumn::repeat;
 
   static PINNQUAD_ALWAYS_INLINE PackNeonDouble load(const double* p) noexcept { return {vld1q_f64(p)}; }
   static PINNQUAD_ALWAYS_INLINE PackNeonDouble broadcast(double v) noexcept { return {vdupq_n_f64(v)}; }

@@ -29,11 +29,7 @@ struct PackSse2 : OneColumn<PackSse2, float, 4> {
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 1;
 
-  __m128 value;
-
-  PackSse2() = default;
-  PINNQUAD_ALWAYS_INLINE PackSse2(__m128 v) noexcept : value(v) {}
-  using OneColumn::repeat;
+  using OneColumn::OneColumn, OneColumn::repeat;
 
   static PINNQUAD_ALWAYS_INLINE PackSse2 load(const float* p) noexcept { return {_mm_loadu_ps(p)}; }
   static PINNQUAD_ALWAYS_INLINE PackSse2 broadcast(float v) noexcept { return {_mm_set1_ps(v)}; }
@@ -94,11 +90,7 @@ struct PackSse2Double : OneColumn<PackSse2Double, double, 2> {
   static constexpr int tile_rows = 4;
   static constexpr int tile_vectors = 2;
 
-  __m128d value;
-
-  PackSse2Double() = default;
-  PINNQUAD_ALWAYS_INLINE PackSse2Double(__m128d v) noexcept : value(v) {}
-  using OneColumn::repeat;
+  using OneColumn::OneColumn, OneColumn::repeat;
 
   static PINNQUAD_ALWAYS_INLINE PackSse2Double load(const double* p) noexcept { return {_mm_loadu_pd(p)}; }
   static PINNQUAD_ALWAYS_INLINE PackSse2Double broadcast(double v) noexcept { return {_mm_set1_pd(v)}; }
