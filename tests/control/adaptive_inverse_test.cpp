@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The inverse with a bias in closed loops that it was not made for: lag, late states, a payload beside them; payload, weak
-// rotor and wind alone: tests/programs/test_loop.py.
+// The inverse with a bias in closed loops that it was not made for: lag, late states, a payload beside them. Payload,
+// weak rotor and wind alone are in tests/programs/test_loop.py.
 // And what it must not do: depend on the motion asked for, learn what did not fly.
 #include "pinnquad/control/adaptive_inverse.hpp"
 

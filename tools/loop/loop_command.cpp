@@ -359,9 +359,7 @@ Command loop_command(CLI::App& program) {
       ->capture_default_str()
       ->check(CLI::Validator(refused, ""));
   CLI::Option* guard =
-      line->add_option(
-              "--guard", options->guard,
-              "what flies outside of the model's training envelope: the analytic inverse, or the model too (none)")
+      line->add_option("--guard", options->guard, "envelope: beyond it the analytic inverse flies; none: the model")
           ->capture_default_str()
           ->check(CLI::IsMember({"envelope", "none"}));
   const std::vector<std::string> of_model = names_of(loop_controllers), under = names_of(loop_conditions);
@@ -385,8 +383,8 @@ Command loop_command(CLI::App& program) {
   duration->excludes(guard);
   VehiclesOptions& unknown = options->unknown;
   CLI::Option* vehicles = add_number(*line, "--vehicles", unknown.vehicles, std::size_t{1}, std::size_t{10'000},
-                                     "fly so many unknown vehicles, no model, by " + listed(vehicle_controllers()) +
-                                         "; under " + listed(vehicle_conditions()))
+                                     "fly so many unknown vehicles by " + listed(vehicle_controllers()) + "; under " +
+                                         listed(vehicle_conditions()))
                               ->default_str("");
   for (const char* other : {"--column", "--airframe", "--battery", "--battery-charge", "--trajectory", "--guard",
                             "--seeds", "--duration"}) {
