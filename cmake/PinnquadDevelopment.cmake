@@ -26,7 +26,7 @@ target_compile_options(pinnquad_flags INTERFACE
 # which needs no more memory without. Who installs the Python package may have less memory.
 set(collection --param=ggc-min-heapsize=1000000)
 if(PINNQUAD_BUILD_PYTHON AND NOT PINNQUAD_BUILD_TOOLS)
-  set(collection --param=ggc-min-heapsize=400000 --param=ggc-min-expand=30 -w) # nor does who installs it read warnings
+  set(collection --param=ggc-min-heapsize=400000 --param=ggc-min-expand=30)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(pinnquad_flags INTERFACE -fno-tree-slp-vectorize ${collection})
