@@ -60,7 +60,7 @@ def own_here(own, work):
 def test_model_of_a_users_own(pinnquad, own_here):
     rmse, largest, answered, asked = map(float, Program("./compiled")().out.split())
     looped = flown_by(pinnquad, OWN, code=1)  # further off than no model: not to be flown
-    assert looped["verdict"]["may_fly"] == "no" and "off the path" in looped["verdict"]["why"]
+    assert looped["verdict"]["may_fly"] == "no" and "cm off" in looped["verdict"]["why"]
     model = looped["model"]
     assert looped["columns"] == {"battery_voltage": 15.2}
     assert abs(model["rmse_m"] - rmse) < 1e-5 and abs(model["largest_error_m"] - largest) < 1e-5, (rmse, largest)

@@ -92,8 +92,8 @@ void begin_features(const ConvertOptions& options) {
 
 int convert(const ConvertOptions& options) {
   const std::string ending = std::filesystem::path(options.source).extension().string();
-  if (std::filesystem::path(options.out).extension() == ".toml" || ending == ".csv" ||
-      std::filesystem::is_directory(options.source)) {
+  const bool begins = options.features.empty() && std::filesystem::path(options.out).extension() == ".toml";
+  if (begins || ending == ".csv" || std::filesystem::is_directory(options.source)) {
     begin_features(options);
     return 0;
   }
