@@ -4,13 +4,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "logs/log_checks.hpp"
 #include "logs/row_checks.hpp"
-#include "logs/standing_columns.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/logs/read_dataset.hpp"
@@ -27,11 +27,18 @@ inline std::size_t count(const pinnquad::logs::RowMask& mask) {
   throw pinnquad::InputError(file, 0, 0, expected, found);
 }
 
-inline void require_motion(const std::string& file, const pinnquad::Flight& flight, double period_s) {
-  const bool moves = std::any_of(flight.begin(), flight.end(),
-                                 [](const pinnquad::Sample& sample) { return sample.velocity_m_s.squaredNorm() > 0; });
-  const auto standing = pinnquad::logs::standing_rows(flight, {moves, moves, false}, period_s, flight.front().time_s);
-  if (!standing.told.empty()) refuse_flight(file, "columns that change with the motion", standing.told.front());
+inline void require_motion(const std::string& file, const pinnquad::Flight& flight) {
+  constexpr std::array<const char*, 3> columns = {"w_x", "w_y", "w_z"};
+  std::vector<double> time_s, rate;
+  for (const pinnquad::Sample& sample : flight) time_s.push_back(sample.time_s);
+  for (int axis = 0; axis < 3; ++axis) {
+    rate.clear();
+    for (const pinnquad::Sample& sample : flight) rate.push_back(sample.body_rates_rad_s[axis]);
+    const std::string column = columns[static_cast<std::size_t>(axis)];
+    if (const auto finding = pinnquad::logs::check_frozen(column, time_s, rate)) {
+      refuse_flight(file, "a body rate that is measured in column " + column, *finding);
+    }
+  }
 }
 
 /// On the ground throughout no row is unlike the others, and grounded_rows() finds none.
@@ -77,7 +84,7 @@ inline std::vector<pinnquad::Flight> sound_flights(const pinnquad::logs::Importe
   for (std::size_t i = 0; i < dataset.flights.size(); ++i) {
     const pinnquad::Flight& flight = dataset.flights[i];
     const std::string& file = dataset.sources[i];
-    detail::require_motion(file, flight, period_s);
+    detail::require_motion(file, flight);
     detail::require_flight(file, flight);
     detail::require_free_commands(file, flight);
     const pinnquad::logs::RowMask grounded = pinnquad::logs::grounded_rows(flight, period_s);

@@ -6,7 +6,28 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "pinnquad/data/split.hpp"
+
 namespace pinnquad::logs {
+namespace {
+
+/// Runs of identical values that last `longest_s` or longer and hold `fewest_rows` or more; NaN ends a run.
+std::vector<IndexRange> frozen_rows(const std::vector<double>& time_s, const std::vector<double>& values,
+                                    double longest_s = 0.3, std::size_t fewest_rows = 10) {
+  std::vector<IndexRange> runs;
+  for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
+    for (end = begin + 1; end < values.size() && !(values[end] < values[begin] || values[end] > values[begin]) &&
+                          std::isfinite(values[end]);) {
+      ++end;
+    }
+    if (!std::isfinite(values[begin]) || end - begin < fewest_rows) continue;
+    if (time_s[end - 1] - time_s[begin] >= longest_s) runs.push_back({begin, end});
+  }
+  return runs;
+}
+
+}  // namespace
+
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 std::string short_number(double value) {
@@ -60,6 +81,21 @@ std::optional<std::string> check_log_rate(const std::string& topic, double perio
     sentence += ": set SDLOG_PROFILE to 25 (default 1, system identification 8 and high rate 16 together) and restart";
   }
   return sentence;
+}
+
+std::optional<std::string> check_frozen(const std::string& name, const std::vector<double>& time_s,
+                                        const std::vector<double>& values, double longest_s) {
+  const std::vector<IndexRange> runs = frozen_rows(time_s, values, longest_s);
+  if (runs.empty()) return std::nullopt;
+  double sum_s = 0;
+  for (const IndexRange& run : runs) sum_s += time_s[run.end - 1] - time_s[run.begin];
+  const IndexRange& first = runs.front();
+  const bool whole = first.size() == values.size();
+  return whole ? name + " never changes: it was not measured"
+               : name + " stands still for " + short_number(sum_s) + " s in " + std::to_string(runs.size()) +
+                     (runs.size() == 1 ? " stretch" : " stretches") + ", first at " +
+                     short_number(time_s[first.begin] - time_s.front()) +
+                     " s: what stopped there measured nothing, drop it";
 }
 
 }  // namespace pinnquad::logs

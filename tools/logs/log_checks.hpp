@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Checks of a log, each an observation and its remedy in a sentence for the pilot, or nothing: time that jumps, a
-// recording that starts again, a logger that was too slow or lost rows.
+// recording that starts again, a logger that was too slow or lost rows, a signal that stands still while its last value
+// is still written.
 #pragma once
 
 #include <optional>
@@ -34,5 +35,12 @@ inline constexpr double least_log_rate_Hz = 25;
 
 /// Too slow to show what a motor does; `px4`: say which profile has it at full rate. number: the rate.
 std::optional<std::string> check_log_rate(const std::string& topic, double period_s, bool px4);
+
+/// Of a signal that is measured and in motion: body rates, specific force, attitude in the air. Not of commands (they
+/// saturate), battery voltage (it is coarse), nor of rows on the ground. number: seconds that are frozen.
+/// Limits: a signal of few digits that hardly moves looks frozen; one that is held longer than it is measured (a topic
+/// copied at a higher rate) does so only from `longest_s` on.
+std::optional<std::string> check_frozen(const std::string& name, const std::vector<double>& time_s,
+                                        const std::vector<double>& values, double longest_s = 0.3);
 
 }  // namespace pinnquad::logs

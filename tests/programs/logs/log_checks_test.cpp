@@ -172,3 +172,21 @@ TEST_CASE("propellers that turn the other way are told, and a flight that says n
   CHECK_FALSE(hover.finding.has_value());
   CHECK(pinnquad::logs::check_motor_order({}, airframe).ambiguous);
 }
+
+TEST_CASE("a signal that stands still is found where it does; noise, steps and few rows are not") {
+  std::vector<double> time_s, values;
+  for (int row = 0; row < 1000; ++row) {
+    time_s.push_back(0.01 * row);
+    values.push_back(std::sin(0.1 * row));
+  }
+  CHECK_FALSE(pinnquad::logs::check_frozen("p", time_s, values).has_value());
+  for (std::size_t row = 400; row < 420; ++row) values[row] = values[400];
+  CHECK_FALSE(pinnquad::logs::check_frozen("p", time_s, values).has_value());  // 0.19 s
+  for (std::size_t row = 400; row < 500; ++row) values[row] = values[400];
+  CHECK(
+      says(pinnquad::logs::check_frozen("p", time_s, values), "p stands still for 0.99 s in 1 stretch, first at 4 s"));
+  values.assign(values.size(), 2.5);
+  CHECK(says(pinnquad::logs::check_frozen("p", time_s, values), "never changes"));
+  values.assign(values.size(), std::nan(""));
+  CHECK_FALSE(pinnquad::logs::check_frozen("p", time_s, values).has_value());
+}
