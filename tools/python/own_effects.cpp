@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "pinnquad/core/attributes.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "python/effects.hpp"
 
@@ -43,7 +44,8 @@ void throw_failure() {
   if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
 }
 
-void OwnWind::surroundings(Surroundings<double>& air) const noexcept {
+// Not inlined: a vehicle's step is flattened, and would hold them whole many times (1.9 GB of compiler).
+PINNQUAD_NOINLINE void OwnWind::surroundings(Surroundings<double>& air) const noexcept {
   Vector3<double> wind_m_s(no_number, no_number, no_number);
   guarded([&] {
     const py::array_t<double> time_s(1, &air.time_s);
@@ -53,10 +55,10 @@ void OwnWind::surroundings(Surroundings<double>& air) const noexcept {
   if (failure) air.status = Status::output_not_finite;
 }
 
-void OwnWrench::surroundings(Surroundings<double>& air) const noexcept { place_m = air.position_m; }
+PINNQUAD_NOINLINE void OwnWrench::surroundings(Surroundings<double>& air) const noexcept { place_m = air.position_m; }
 
-Wrench<double> OwnWrench::wrench(const RotorCondition<double>& condition,
-                                 const Airframe<double>& airframe) const noexcept {
+PINNQUAD_NOINLINE Wrench<double> OwnWrench::wrench(const RotorCondition<double>& condition,
+                                                   const Airframe<double>& airframe) const noexcept {
   Wrench<double> result;
   result.force_N = result.torque_N_m = Vector3<double>(no_number, no_number, no_number);
   guarded([&] {
