@@ -36,6 +36,17 @@ TEST_CASE("commands that fit stay, others shift together") {
   CHECK(same(desaturate(rotors, {-0.2, 0.1, 0.3, 0.0}), {0.0, 0.3, 0.5, 0.2}));
 }
 
+TEST_CASE("a spread that no thrust carries makes no more yaw than asked") {
+  const pinnquad::Rotors<double> rotors(pinnquad::PaperQuadrotor::value<double>());
+  // 1.8 between rotors that turn alike: pitch alone is more than they have; yaw asked for is u1 + u2 - u3 - u4 = 0.2
+  const Commands<double> wanted{1.5, -0.3, 0.9, 0.1};
+  const Commands<double> given = desaturate(rotors, wanted);
+  const double asked = rotors.wrench(wanted, 1.0).torque_N_m[2],
+               made = rotors.wrench(pinnquad::clipped(given), 1.0).torque_N_m[2];
+  CHECK(made / asked >= 0);
+  CHECK(made / asked <= 1 + 1e-12);
+}
+
 TEST_CASE("saturated: a rotor at its end, or NaN") {
   CHECK(!saturated(Commands<float>{0.1f, 0.2f, 0.3f, 0.99f}));
   CHECK(saturated(Commands<float>{0.0f, 0.2f, 0.3f, 0.4f}));
@@ -115,6 +126,21 @@ TEST_CASE("within a range: what torque can be had is had, in its direction, what
     CHECK(yaw_gave > 100);
     MESSAGE("thrust gave way ", thrust_gave, ", yaw ", yaw_gave, ", roll and pitch ", tilt_gave, " times");
   }
+}
+
+TEST_CASE("a spread that no thrust carries: yaw gives way, then roll and pitch by one share, no further than needed") {
+  const pinnquad::Rotors<double> rotors(nose_heavy());
+  pinnquad::Wrench<double> rolling;
+  rolling.force_N[2] = -15;
+  rolling.torque_N_m = {3 * 1.0, 3 * 0.5, 0.1};  // more than the rotors have
+  const Commands<double> given = desaturate(rotors, rotors.commands(rolling, 1.0), turning_on);
+  const pinnquad::Wrench<double> made = rotors.wrench(given, 1.0);
+  CHECK(made.torque_N_m[0] == doctest::Approx(2 * made.torque_N_m[1]).epsilon(1e-9));
+  CHECK(std::abs(made.torque_N_m[2]) <= rounding);
+  double largest = 0, smallest = 1;
+  for (const double u : given) largest = std::max(largest, u), smallest = std::min(smallest, u);
+  CHECK(largest == doctest::Approx(1.0).epsilon(1e-9));  // both ends are reached: no more roll could be had
+  CHECK(smallest == doctest::Approx(0.02).epsilon(1e-9));
 }
 
 TEST_CASE("commands within the range stay, to the bit; a floor does not turn the vehicle") {

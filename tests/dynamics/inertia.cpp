@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "pinnquad/dynamics/integrator.hpp"
+#include "pinnquad/dynamics/linearized.hpp"
+#include "support/linearized.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 #include "support/uneven_airframe.hpp"
@@ -40,13 +42,11 @@ Airframe<double> of_masses(RandomStates& random) {
 }
 }  // namespace
 
-TEST_CASE_TEMPLATE("Euler's equation with and without products of inertia, against dense algebra", Scalar, float,
-                   double) {
+TEST_CASE_TEMPLATE("Euler's equation with products of inertia, against dense algebra", Scalar, float, double) {
+  const Airframe<Scalar> a = pinnquad::test::uneven_airframe<Scalar>();
+  const Eigen::Matrix3d j = tensor(a);
   RandomStates random(81);
   for (int draw = 0; draw < draws; ++draw) {
-    const Airframe<Scalar> a =
-        draw % 2 == 0 ? pinnquad::PaperQuadrotor::value<Scalar>() : pinnquad::test::uneven_airframe<Scalar>();
-    const Eigen::Matrix3d j = tensor(a);
     const Vector3<Scalar> w = random.vector<Scalar>(6), torque = random.vector<Scalar>(2);
     const Eigen::Vector3d wd = w.template cast<double>(), td = torque.template cast<double>();
     const Eigen::Vector3d expected = j.partialPivLu().solve(td - wd.cross(Eigen::Vector3d(j * wd)));
@@ -84,6 +84,19 @@ TEST_CASE("torque-free motion keeps angular momentum (world) and energy over man
   }
 }
 
+TEST_CASE_TEMPLATE("required_wrench and accelerations with products are each other's inverse", Scalar, float, double) {
+  const Airframe<Scalar> a = pinnquad::test::uneven_airframe<Scalar>();
+  RandomStates random(83);
+  for (int draw = 0; draw < draws; ++draw) {
+    const State<Scalar> state = random.state<Scalar>();
+    const pinnquad::Accelerations<Scalar> motion = random.motion<Scalar>();
+    const pinnquad::Accelerations<Scalar> back =
+        pinnquad::accelerations(a, state, pinnquad::required_wrench(a, state, motion, Scalar(9.8)), Scalar(9.8));
+    CHECK(pinnquad::test::distance(back.angular_rad_s2, motion.angular_rad_s2) <=
+          200.0 * pinnquad::test::evaluation_tolerance<Scalar>);
+  }
+}
+
 TEST_CASE_TEMPLATE("products that are next to nothing change next to nothing", Scalar, float, double) {
   const Airframe<Scalar> diagonal = pinnquad::PaperQuadrotor::value<Scalar>();
   Airframe<Scalar> full = diagonal;
@@ -117,4 +130,36 @@ TEST_CASE("any body of point masses is allowed; one whose mass would be negative
   CHECK(check_airframe(a) == Status::invalid_airframe);
   a.inertia_products_kg_m2[0] = std::nan("");
   CHECK(check_airframe(a) == Status::invalid_airframe);
+}
+
+TEST_CASE("Eq. (3) with uneven rotors: the slope of the nonlinear model at hover, and its inverse") {
+  const Airframe<double> a = pinnquad::test::uneven_airframe<double>();
+  const pinnquad::Rotors<double> rotors(a);
+  const double g = 9.80665;
+  pinnquad::Wrench<double> hover;
+  hover.force_N[2] = -a.mass_kg * g;
+  const pinnquad::Commands<double> u0 = rotors.commands(hover, 1.0);
+  const double h = 1e-6;
+  for (std::size_t i = 0; i < 4; ++i) {
+    pinnquad::Commands<double> more = u0, less = u0;
+    more[i] += h;
+    less[i] -= h;
+    const auto full = [&](const pinnquad::Commands<double>& u) {
+      return pinnquad::accelerations(a, State<double>{}, rotors.wrench(u, 1.0), g);
+    };
+    const auto linear = [&](const pinnquad::Commands<double>& u) {
+      return pinnquad::test::linearized_accelerations(a, 0.0, 0.0, rotors.wrench(u, 1.0), g);
+    };
+    const Vector3<double> d1 = full(more).linear_m_s2 - full(less).linear_m_s2,
+                          d2 = linear(more).linear_m_s2 - linear(less).linear_m_s2;
+    const Vector3<double> w1 = full(more).angular_rad_s2 - full(less).angular_rad_s2,
+                          w2 = linear(more).angular_rad_s2 - linear(less).angular_rad_s2;
+    CHECK(pinnquad::test::distance(d1, d2) <= 1e-8 * d1.norm());
+    CHECK(pinnquad::test::distance(w1, w2) <= 1e-8 * w1.norm());
+  }
+  const pinnquad::Commands<double> u{0.4, 0.5, 0.6, 0.7};
+  CHECK(pinnquad::test::distance(
+            pinnquad::linearized_commands(
+                a, rotors, pinnquad::test::linearized_accelerations(a, 0.1, -0.1, rotors.wrench(u, 0.9), g), g, 0.9),
+            u) <= 1e-12);
 }

@@ -5,12 +5,83 @@
 
 #include <cmath>
 
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
+#include "pinnquad/dynamics/rigid_body.hpp"
 #include "support/random_states.hpp"
 #include "support/tolerances.hpp"
 
 using namespace pinnquad;
 using namespace pinnquad::test;
 using pinnquad::detail::StateDerivative;
+
+namespace {
+
+/// The derivative that belongs to body-frame accelerations.
+template <class Scalar>
+StateDerivative<Scalar> derivative(const State<Scalar>& state, const pinnquad::Accelerations<Scalar>& motion) {
+  return {state.velocity_m_s, pinnquad::world_acceleration(state, motion.linear_m_s2),
+          pinnquad::attitude_rate(state.attitude, state.body_rates_rad_s), motion.angular_rad_s2};
+}
+
+/// World acceleration and body torque as given functions of time, on a rigid body.
+template <class Scalar>
+struct Driven {
+  Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
+  Scalar start_s{0};
+  bool free = false;
+
+  StateDerivative<Scalar> operator()(const State<Scalar>& state, Scalar offset_s) const {
+    const Scalar t = start_s + offset_s;
+    pinnquad::Wrench<Scalar> wrench;
+    if (!free) {
+      wrench.force_N = {std::sin(Scalar(3) * t), Scalar(2) * std::cos(t),
+                        -Scalar(14) + state.velocity_m_s[0] * state.velocity_m_s[1]};
+      wrench.torque_N_m = {Scalar(0.1) * std::cos(Scalar(2) * t), Scalar(0.1) * std::sin(t), Scalar(0.05)};
+    }
+    return derivative(state, pinnquad::accelerations(airframe, state, wrench, free ? Scalar(0) : Scalar(9.80665)));
+  }
+};
+
+template <class Step>
+State<double> fly(State<double> state, double duration_s, int steps, Driven<double> body, const Step& step) {
+  const double h = duration_s / steps;
+  for (int i = 0; i < steps; ++i) {
+    body.start_s = h * i;
+    state = step(state, h, body);
+  }
+  return state;
+}
+
+const auto rk4 = [](const State<double>& s, double h, const Driven<double>& body) {
+  return pinnquad::detail::rk4_step(s, h, body);
+};
+/// Each part's error ratio on halving the step, so that no part hides behind another.
+std::array<double, 4> halving_ratios(const State<double>& coarse, const State<double>& fine,
+                                     const State<double>& exact) {
+  using pinnquad::test::components;
+  return {distance(coarse.position_m, exact.position_m) / distance(fine.position_m, exact.position_m),
+          distance(coarse.velocity_m_s, exact.velocity_m_s) / distance(fine.velocity_m_s, exact.velocity_m_s),
+          distance(components(coarse.attitude), components(exact.attitude)) /
+              distance(components(fine.attitude), components(exact.attitude)),
+          distance(coarse.body_rates_rad_s, exact.body_rates_rad_s) /
+              distance(fine.body_rates_rad_s, exact.body_rates_rad_s)};
+}
+
+}  // namespace
+
+TEST_CASE("RK4 is of fourth order: half the step, a sixteenth of the error") {
+  RandomStates random(60);
+  for (int draw = 0; draw < 10; ++draw) {
+    const State<double> start = random.state<double>();
+    const State<double> exact = fly(start, 0.5, 1600, {}, rk4);
+    const auto ratios = halving_ratios(fly(start, 0.5, 50, {}, rk4), fly(start, 0.5, 100, {}, rk4), exact);
+    for (const double ratio : ratios) {
+      // 16 in the limit; the next order shows at these steps
+      CHECK(ratio > 13.0);
+      CHECK(ratio < 19.5);
+    }
+  }
+}
 
 TEST_CASE("RK4 integrates a cubic in time without error") {
   const auto cubic = [](const State<double>& state, double t) {
@@ -30,19 +101,44 @@ TEST_CASE("RK4 integrates a cubic in time without error") {
 
 TEST_CASE_TEMPLATE("a step leaves a unit quaternion, and a step of zero changes nothing", Scalar, float, double) {
   RandomStates random(62);
-  const auto spinning = [](const State<Scalar>& state, Scalar) {
-    return StateDerivative<Scalar>{state.velocity_m_s, Vector3<Scalar>(1, 2, 3),
-                                   pinnquad::attitude_rate(state.attitude, state.body_rates_rad_s),
-                                   Vector3<Scalar>(3, 2, 1)};
-  };
+  const Driven<Scalar> body;
   for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
     const State<Scalar> start = random.state<Scalar>();
-    const State<Scalar> a = pinnquad::detail::rk4_step(start, Scalar(0.01), spinning);
+    const State<Scalar> a = pinnquad::detail::rk4_step(start, Scalar(0.01), body);
     CHECK(std::fabs(static_cast<double>(pinnquad::squared_norm(a.attitude)) - 1.0) <=
           pinnquad::test::rounding<Scalar>(4));
-    const State<Scalar> same = pinnquad::detail::rk4_step(start, Scalar(0), spinning);
+    const State<Scalar> same = pinnquad::detail::rk4_step(start, Scalar(0), body);
     CHECK(same.position_m == start.position_m);
     CHECK(same.velocity_m_s == start.velocity_m_s);
     CHECK(same.body_rates_rad_s == start.body_rates_rad_s);
+  }
+}
+
+TEST_CASE_TEMPLATE("torque-free tumbling keeps angular momentum in the world and kinetic energy", Scalar, float,
+                   double) {
+  // RK4 at 1 ms: truncation (8 rad/s * 1 ms)^4 of each turn is below 1e-9; in float the rounding of 2000 steps adds up
+  const double tolerance = sizeof(Scalar) == 4 ? pinnquad::test::rounding<float>(200) : 1e-9;
+  RandomStates random(63);
+  for (int draw = 0; draw < 10; ++draw) {
+    Driven<Scalar> body;
+    body.free = true;
+    const Vector3<Scalar> inertia = pinnquad::to_vector(body.airframe.inertia_kg_m2);
+    const auto momentum = [&](const State<Scalar>& s) {
+      return pinnquad::body_to_world<Scalar>(s.attitude, inertia.cwiseProduct(s.body_rates_rad_s));
+    };
+    const auto energy = [&](const State<Scalar>& s) {
+      return static_cast<double>(s.body_rates_rad_s.dot(inertia.cwiseProduct(s.body_rates_rad_s)));
+    };
+    const State<Scalar> start = random.state<Scalar>();
+    State<Scalar> state = start;
+    for (int i = 0; i < 2000; ++i) state = pinnquad::detail::rk4_step(state, Scalar(0.001), body);
+    CHECK(distance(state.body_rates_rad_s, start.body_rates_rad_s) > 0.1);  // it does tumble
+    CHECK(pinnquad::test::relative_distance(momentum(state), momentum(start)) <= tolerance);
+    CHECK(std::fabs(energy(state) / energy(start) - 1.0) <= tolerance);
+    // linear momentum: straight on
+    CHECK(distance(state.velocity_m_s, start.velocity_m_s) <= 10.0 * tolerance);
+    const Vector3<Scalar> expected = start.position_m + start.velocity_m_s * Scalar(2);
+    // each of 2000 additions may lose half an ulp of a coordinate below 128 m
+    CHECK(distance(state.position_m, expected) <= pinnquad::test::rounding<Scalar>(2000.0 * 64.0) + 10.0 * tolerance);
   }
 }

@@ -71,6 +71,28 @@ TEST_CASE("a rotor in the middle has no roll and pitch sign") {
   CHECK(pinnquad::allocation_signs(airframe, 2)[2] == -1.0);
 }
 
+TEST_CASE_TEMPLATE("what each rotor does to the body", Scalar, float, double) {
+  const Rotors<Scalar> rotors(pinnquad::PaperQuadrotor::value<Scalar>());
+  const auto torque = [&](std::size_t rotor) {
+    Commands<Scalar> u{};
+    u[rotor] = Scalar(1);
+    return rotors.wrench(u, Scalar(1)).torque_N_m;
+  };
+  // front right lifts: rolls left, pitches up, and its counter-clockwise rotor yaws the nose right
+  CHECK(torque(0)[0] < Scalar(0));
+  CHECK(torque(0)[1] > Scalar(0));
+  CHECK(torque(0)[2] > Scalar(0));
+  CHECK(torque(1)[0] > Scalar(0));  // rear left
+  CHECK(torque(1)[1] < Scalar(0));
+  CHECK(torque(1)[2] > Scalar(0));
+  CHECK(torque(2)[0] > Scalar(0));  // front left
+  CHECK(torque(2)[1] > Scalar(0));
+  CHECK(torque(2)[2] < Scalar(0));
+  CHECK(torque(3)[0] < Scalar(0));  // rear right
+  CHECK(torque(3)[1] < Scalar(0));
+  CHECK(torque(3)[2] < Scalar(0));
+}
+
 TEST_CASE_TEMPLATE("wrench against position x force, rotor by rotor", Scalar, float, double) {
   RandomStates random(30);
   for (int draw = 0; draw < draws; ++draw) {
@@ -114,6 +136,18 @@ TEST_CASE("a matrix whose diagonal is zero needs its rows exchanged") {
   AllocationMatrix<double> inverse{};
   REQUIRE(pinnquad::invert_allocation(matrix, inverse) == Status::ok);
   CHECK(distance_to_identity(matrix, inverse) <= pinnquad::test::rounding<double>(4));
+}
+
+TEST_CASE_TEMPLATE("commands invert wrench, at any density", Scalar, float, double) {
+  RandomStates random(32);
+  for (int draw = 0; draw < draws; ++draw) {
+    const Rotors<Scalar> rotors(lopsided<Scalar>(random));
+    REQUIRE(rotors.status() == Status::ok);
+    const Scalar density_ratio = random.scalar<Scalar>(0.5, 1.1);
+    const Commands<Scalar> u = random.commands<Scalar>(-0.5, 1.5);  // neither direction clips
+    CHECK(pinnquad::test::distance(rotors.commands(rotors.wrench(u, density_ratio), density_ratio), u) <=
+          pinnquad::test::inverse_tolerance<Scalar>);
+  }
 }
 
 TEST_CASE_TEMPLATE("commands ignore the lateral force of a wrench", Scalar, float, double) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -66,6 +67,13 @@ std::vector<double> features_of(const Sample& s) {
 }
 
 }  // namespace
+
+TEST_CASE("the same seed gives the same bits, another seed another flight") {
+  const RecordedFlight first = flown(3, 400), again = flown(3, 400), other = flown(4, 400);
+  REQUIRE(first.report.rows == 400);
+  CHECK(content_hash(first.flight) == content_hash(again.flight));
+  CHECK(content_hash(first.flight) != content_hash(other.flight));
+}
 
 TEST_CASE("rows come at exact multiples of the sample period, from a hover") {
   const RecordedFlight recorded = flown(1, 100);
@@ -185,6 +193,28 @@ TEST_CASE("a report's figures are those of the rows") {
   CHECK(steepest_rad > 0.1);
 }
 
+TEST_CASE("bounds over seeds: speed, tilt, altitude, saturation" * pinnquad::test::long_flight()) {
+  const PilotStyle style;
+  for (std::uint64_t seed = 11; seed < 14; ++seed) {
+    CAPTURE(seed);
+    const RecordedFlight recorded = flown(seed, 2000);
+    const FlightReport& report = recorded.report;
+    CHECK(report.end == FlightEnd::completed);
+    CHECK(report.rows == 2000);
+    CHECK(report.max_speed_m_s < 1.05 * style.max_speed_m_s);
+    CHECK(report.max_speed_m_s > 0.85 * style.max_speed_m_s);
+    CHECK(report.min_altitude_m > style.lowest_m);
+    CHECK(report.max_altitude_m < style.highest_m);
+    CHECK(report.max_tilt_rad < 0.95);  // 54 degrees, 49 of them asked for: no gimbal lock in the Euler angles
+    CHECK(report.max_tilt_rad > 0.8);
+    CHECK(report.saturated_share < 0.03);
+    CHECK(report.saturated_share > 0);
+    for (const Sample& sample : recorded.flight) {
+      for (const double u : sample.commands) CHECK((u >= 0 && u <= 1));
+    }
+  }
+}
+
 TEST_CASE("a full flight: signed command sums follow angular accelerations, and the blocks of the split are alike" *
           pinnquad::test::long_flight()) {
   const Vehicle quadrotor = vehicle();
@@ -244,6 +274,41 @@ TEST_CASE("effects compose: ground effect near the ground changes the flight") {
   CHECK(recorded.report.end == FlightEnd::completed);
   CHECK(recorded.flight.back().commands[0] !=
         doctest::Approx(inverse_of(vehicle(), recorded.flight.back())[0]).epsilon(1e-3));
+}
+
+TEST_CASE("what ends a flight early is reported with time and state, and the rows are kept") {
+  const Vehicle quadrotor = vehicle();
+  FlightPlan plan;
+  plan.samples = 1000;
+  SUBCASE("the ground") {
+    SteadyPilot down;
+    down.set_point.velocity_m_s[2] = 5;
+    const RecordedFlight recorded = fly(quadrotor, down, plan);
+    CHECK(recorded.report.end == FlightEnd::ground);
+    CHECK(recorded.report.rows == recorded.flight.size());
+    CHECK(recorded.report.last.time_s == doctest::Approx(36 / 5.0).epsilon(0.1));
+    CHECK(recorded.flight.back().altitude_m > 0);
+  }
+  SUBCASE("a pilot who asks for NaN after 2 s") {
+    const auto broken = [](const State<double>& /*state*/, double time_s) {
+      SetPoint<double> set_point;
+      if (time_s > 2) set_point.velocity_m_s[0] = std::numeric_limits<double>::quiet_NaN();
+      return set_point;
+    };
+    const RecordedFlight recorded = fly(quadrotor, broken, plan);
+    CHECK(recorded.report.end == FlightEnd::bad_status);
+    CHECK(recorded.report.status == Status::not_finite);
+    CHECK(recorded.report.rows == 40);
+    CHECK(recorded.report.last.time_s == doctest::Approx(2).epsilon(0.01));
+  }
+  SUBCASE("an airframe that can't fly") {
+    Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
+    airframe.mass_kg = 0;
+    const RecordedFlight recorded = fly(Vehicle(airframe, paper_site<double>(), {}, {}), SteadyPilot{}, plan);
+    CHECK(recorded.report.end == FlightEnd::bad_status);
+    CHECK(recorded.report.status == Status::invalid_airframe);
+    CHECK(recorded.flight.empty());
+  }
 }
 
 TEST_CASE("an observer is told each row, with the true state") {
