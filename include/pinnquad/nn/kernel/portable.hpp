@@ -49,7 +49,8 @@ struct NoBias {
   PINNQUAD_ALWAYS_INLINE constexpr NoBias operator+(int) const noexcept { return {}; }
 };
 
-#if defined(__ARM_FEATURE_FMA) && defined(__thumb2__) && defined(__GNUC__) && !defined(__clang__) && !defined(__ARMEB__)
+#if defined(__ARM_FEATURE_FMA) && __ARM_ARCH_PROFILE == 'M' && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__ARMEB__)
 /// True where a load takes two weights, which no compiler does by itself: four of ten instructions would be loads.
 template <class Scalar>
 inline constexpr bool loads_pairs = std::is_same_v<Scalar, float>;
