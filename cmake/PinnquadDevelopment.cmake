@@ -22,9 +22,9 @@ target_compile_options(pinnquad_flags INTERFACE
   -ffp-contract=off)
 
 # gcc 12's straight-line vectoriser makes vfmaddsub of separate products and sums, whatever -ffp-contract says.
-# Its garbage it otherwise collects from 4 MiB on, again and again: an eighth of the time of a heavy translation unit,
-# which needs no more memory without. Who installs the Python package may have less memory.
-set(collection --param=ggc-min-heapsize=1000000)
+# Its garbage it otherwise collects from 4 MiB on, again and again: an eighth of the time of a heavy translation unit.
+# From 1 GB on it does: the heaviest unit then takes 1.6 GB in place of 2.4. Who installs the Python package may have less memory.
+set(collection --param=ggc-min-heapsize=1000000 --param=ggc-min-expand=10)
 if(PINNQUAD_BUILD_PYTHON AND NOT PINNQUAD_BUILD_TOOLS)
   set(collection --param=ggc-min-heapsize=400000 --param=ggc-min-expand=30)
 endif()
