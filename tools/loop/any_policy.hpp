@@ -36,8 +36,8 @@ class AnyPolicy {
   pinnquad::FallbackCount count() const noexcept { return held_->count(); }
   /// A bias that it learns stands at its bound.
   bool at_bound() const noexcept { return held_->at_bound(); }
-  /// Of the policy alone, since it was made: by one call of `measured_every`, for a clock takes as long as a tick of
-  /// some.
+  /// Time of the policy alone, since it was made: by one call of `measured_every`, for a clock takes as long as a tick
+  /// of some.
   double busy_s() const noexcept { return measured_every * std::chrono::duration<double>(held_->busy).count(); }
 
  private:

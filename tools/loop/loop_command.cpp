@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -160,27 +161,28 @@ void print_errors(const std::vector<programs::LoopSpread>& spreads, std::size_t 
   }
 }
 
+/// The figures of a spread: name, and share of the flights with less error.
+constexpr std::array<std::pair<const char*, double>, 4> spread_figures = {
+    {{"5 %", 0.05}, {"median", 0.5}, {"95 %", 0.95}, {"worst", 1}}};
+
 /// How the errors of many seeds are spread.
 void print_spreads(const std::vector<programs::LoopSpread>& spreads, std::size_t conditions) {
-  std::printf("  %-18s %-16s %8s %8s %8s %8s %12s\n", "", "", "5 %", "median", "95 %", "worst", "lost");
+  std::printf("  %-18s %-16s", "", "");
+  for (const auto& [name, share] : spread_figures) std::printf(" %8s", name);
+  std::printf(" %12s\n", "lost");
   for (const std::size_t begin : programs::best_first(spreads, conditions)) {
     for (std::size_t c = 0; c < conditions; ++c) {
       const programs::LoopSpread& each = spreads[begin + c];
       std::printf("  %-18s %-16s", each.controller.c_str(), each.condition.c_str());
-      for (const double share : {0.05, 0.5, 0.95, 1.0}) std::printf(" %8.2f", programs::quantile(each.rmse_cm, share));
+      for (const auto& [name, share] : spread_figures) std::printf(" %8.2f", programs::quantile(each.rmse_cm, share));
       std::printf(" %5zu of %zu\n", each.lost, each.flights());
     }
   }
 }
 
 nlohmann::json spread_json(const programs::LoopSpread& spread) {
-  nlohmann::json rmse_cm = {{"5 %", nullptr}, {"median", nullptr}, {"95 %", nullptr}, {"worst", nullptr}};
-  if (!spread.rmse_cm.empty()) {
-    rmse_cm = {{"5 %", programs::quantile(spread.rmse_cm, 0.05)},
-               {"median", programs::quantile(spread.rmse_cm, 0.5)},
-               {"95 %", programs::quantile(spread.rmse_cm, 0.95)},
-               {"worst", programs::quantile(spread.rmse_cm, 1)}};
-  }
+  nlohmann::json rmse_cm;  // NaN, where all are lost, is written as null
+  for (const auto& [name, share] : spread_figures) rmse_cm[name] = programs::quantile(spread.rmse_cm, share);
   return {{"controller", spread.controller},
           {"condition", spread.condition},
           {"flights", spread.flights()},

@@ -25,7 +25,7 @@ class LoopJournal {
   /// Throws OutputError, one line.
   LoopJournal(const std::string& folder, const nlohmann::json& plan);
 
-  /// Of a flight, or null.
+  /// The row of a flight, or null.
   const nlohmann::json* row(const LoopFlight& flight) const;
   const std::map<std::string, nlohmann::json>& tuned() const { return tuned_; }  ///< by controller
   /// Thread-safe. Throws OutputError.

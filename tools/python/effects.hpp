@@ -2,6 +2,8 @@
 // Effects of Python (tools/python/pinnquad/effects.py) as values.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -15,6 +17,10 @@ inline constexpr std::array<const char*, 4> ground_effects = {"none", "cheeseman
 /// Numbers of a row of pinnquad.effects.Motion, in its order: position, velocity and velocity through the air (NED),
 /// attitude, body rates, rotor speeds, time.
 inline constexpr std::size_t motion_numbers = 21;
+void write_motion(double* row, const pinnquad::Vector3<double>& position_m,
+                  const pinnquad::Vector3<double>& velocity_m_s, const pinnquad::Vector3<double>& through_air_m_s,
+                  const pinnquad::Quaternion<double>& attitude, const pinnquad::Vector3<double>& body_rates_rad_s,
+                  const std::array<double, pinnquad::rotor_count>& rotor_speeds_rev_s, double time_s);
 
 /// Wind of a callable, borrowed from an Effects that lives longer, added to that of other effects. Called with the GIL
 /// or without. An exception of the callable is kept for throw_failure(), and the step is refused.
@@ -50,7 +56,7 @@ using FlownQuadrotor = decltype(pinnquad::quadrotor_with(
     std::declval<FlownEffects>(), std::declval<pinnquad::Airframe<double>>(), std::declval<pinnquad::Site<double>>()));
 
 inline bool calls_python(const FlownEffects& effects) { return std::get<0>(effects).on || std::get<1>(effects).on; }
-/// Those that no callable of Python makes.
+/// The effects that no callable of Python makes.
 inline pinnquad::SwitchedEffects of_the_library(const FlownEffects& effects) {
   return std::apply([](const auto&, const auto&, const auto&... others) { return std::tuple(others...); }, effects);
 }

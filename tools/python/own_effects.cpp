@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Callables of Python as effects: wind, and a force and a torque.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -38,6 +39,20 @@ py::array_t<double> row_of(const double* numbers, std::size_t count) {
 
 }  // namespace
 
+void write_motion(double* row, const Vector3<double>& position_m, const Vector3<double>& velocity_m_s,
+                  const Vector3<double>& through_air_m_s, const Quaternion<double>& attitude,
+                  const Vector3<double>& body_rates_rad_s, const std::array<double, rotor_count>& rotor_speeds_rev_s,
+                  double time_s) {
+  const auto add = [&row](const Vector3<double>& vector) { row = std::copy_n(vector.data(), 3, row); };
+  add(position_m);
+  add(velocity_m_s);
+  add(through_air_m_s);
+  for (const double part : {attitude.w, attitude.x, attitude.y, attitude.z}) *row++ = part;
+  add(body_rates_rad_s);
+  row = std::copy(rotor_speeds_rev_s.begin(), rotor_speeds_rev_s.end(), row);
+  *row = time_s;
+}
+
 bool failed() noexcept { return failure != nullptr; }
 
 void throw_failure() {
@@ -63,22 +78,16 @@ PINNQUAD_NOINLINE Wrench<double> OwnWrench::wrench(const RotorCondition<double>&
   result.force_N = result.torque_N_m = Vector3<double>(no_number, no_number, no_number);
   guarded([&] {
     std::array<double, motion_numbers> row;
-    double* next = row.data();
-    const auto add = [&next](const auto& numbers, int count) {
-      for (int i = 0; i < count; ++i) *next++ = numbers[i];
-    };
     const Quaternion<double>& q = condition.attitude;
-    add(place_m, 3);
-    add(body_to_world(q, condition.ground_velocity_m_s), 3);
-    add(body_to_world(q, condition.air_relative_velocity_m_s), 3);
-    add(std::array<double, 4>{q.w, q.x, q.y, q.z}.data(), 4);
-    add(condition.body_rates_rad_s, 3);
+    std::array<double, rotor_count> speeds_rev_s;
     const double density = condition.air_density_kg_m3 / standard_air_density_kg_m3<double>;
     for (std::size_t i = 0; i < rotor_count; ++i) {  // thrust over that of full speed in this air
       const double most_N = airframe.rotors[i].thrust_scale * airframe.max_rotor_thrust_N() * density;
-      *next++ = airframe.max_rotor_speed_rev_s * std::sqrt(std::max(0.0, condition.rotor_thrust_N[i] / most_N));
+      speeds_rev_s[i] = airframe.max_rotor_speed_rev_s * std::sqrt(std::max(0.0, condition.rotor_thrust_N[i] / most_N));
     }
-    *next = condition.time_s;
+    write_motion(row.data(), place_m, body_to_world(q, condition.ground_velocity_m_s),
+                 body_to_world(q, condition.air_relative_velocity_m_s), q, condition.body_rates_rad_s, speeds_rev_s,
+                 condition.time_s);
     const auto [forces, torques] = wrenches_of(called, row_of(row.data(), row.size()));
     result.force_N = world_to_body(q, forces[0]);
     result.torque_N_m = torques[0];

@@ -204,16 +204,11 @@ class Vehicles {
     const py::handle called = std::get<Switched<OwnWrench, Usually::off>>(flown_).effect.called;
     if (!called) return {};
     py::array_t<double> motions({static_cast<py::ssize_t>(size()), static_cast<py::ssize_t>(motion_numbers)});
-    double* next = motions.mutable_data();
-    const auto add = [&next](const auto& numbers, int count) {
-      for (int i = 0; i < count; ++i) *next++ = numbers[i];
-    };
-    const FlownQuadrotor any =
-        quadrotor_with(stepped_, airframes_[0].value, vehicle_.site());  // the air is that of all
+    double* row = motions.mutable_data();
+    const FlownQuadrotor any = stepped_vehicle(0);  // the air is that of all
     const Vectors wind = own_wind(0);
     for (std::size_t i = 0; i < size(); ++i) {
       const OneState& state = states_[i];
-      const Quaternion<double>& q = state.body.attitude;
       const Airframe<double>& airframe = airframe_of_one(i);
       ThrustFractions<double> thrusts{};
       for (std::size_t k = 0; k < rotor_count; ++k) {
@@ -222,15 +217,13 @@ class Vehicles {
       const Surroundings<double> air = any.surroundings(state.body, state.time_s, {state.charge_used_C, thrusts});
       Vector3<double> through_air_m_s = state.body.velocity_m_s - air.wind_m_s;
       if (!wind.empty()) through_air_m_s -= wind[i];
-      add(state.body.position_m, 3);
-      add(state.body.velocity_m_s, 3);
-      add(through_air_m_s, 3);
-      add(std::array<double, 4>{q.w, q.x, q.y, q.z}.data(), 4);
-      add(state.body.body_rates_rad_s, 3);
-      for (const double thrust : thrusts) {
-        *next++ = airframe.max_rotor_speed_rev_s * std::sqrt(std::max(0.0, thrust * air.thrust_scale));
+      std::array<double, rotor_count> speeds_rev_s;
+      for (std::size_t k = 0; k < rotor_count; ++k) {
+        speeds_rev_s[k] = airframe.max_rotor_speed_rev_s * std::sqrt(std::max(0.0, thrusts[k] * air.thrust_scale));
       }
-      *next++ = state.time_s;
+      write_motion(row, state.body.position_m, state.body.velocity_m_s, through_air_m_s, state.body.attitude,
+                   state.body.body_rates_rad_s, speeds_rev_s, state.time_s);
+      row += motion_numbers;
     }
     const auto [forces, torques] = wrenches_of(called, motions);
     return pushes_of(forces, torques, physics_step_s_ / 2);
@@ -319,6 +312,9 @@ class Vehicles {
   FlownQuadrotor with(const Airframe<double>& airframe) const {
     return quadrotor_with(flown_, airframe, vehicle_.site());
   }
+  FlownQuadrotor stepped_vehicle(std::size_t index) const {
+    return quadrotor_with(stepped_, airframe_of_one(index), vehicle_.site());
+  }
 
   static void require_flying(const FlownQuadrotor& vehicle, const NamedAirframe& airframe, std::size_t index) {
     const Status status = vehicle.status();
@@ -372,9 +368,10 @@ class Vehicles {
 
   /// A vehicle whose step is refused stays as it was before that step.
   void run(const double* u, double steps, std::uint8_t* said, SignalWatch& watch) {
+    const FlownQuadrotor first = stepped_vehicle(0);
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const Commands<double> commands = {u[4 * i], u[4 * i + 1], u[4 * i + 2], u[4 * i + 3]};
-      const FlownQuadrotor vehicle = quadrotor_with(stepped_, airframe_of_one(i), vehicle_.site());
+      const FlownQuadrotor vehicle = airframes_.size() == 1 ? first : stepped_vehicle(i);
       const auto step = vehicle.time_step(physics_step_s_);
       Status status = Status::ok;
       for (double done = 0; done < steps && status == Status::ok; ++done) {

@@ -49,9 +49,8 @@ inline std::string slopes_doubt(const std::vector<std::string>& odd) {
   if (odd.empty()) return "";
   return listed(odd) +
          ": trained on quiet or noisy flights, on a log with rotor lag or latency in it, or for another airframe; "
-         "where "
-         "the angular acceleration is not noisy, train --slopes pinned takes the airframe's slopes in hover; below 0.5 "
-         "in thrust a position loop sinks under a load (docs/certificate.md)";
+         "where the angular acceleration is not noisy, train --slopes pinned takes the airframe's slopes in hover; "
+         "below 0.5 in thrust a position loop sinks under a load (docs/certificate.md)";
 }
 
 inline bool any_smoothed(const pinnquad::SlopesOfSums& slopes) {

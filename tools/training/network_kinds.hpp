@@ -35,7 +35,7 @@ struct NetworkRows {
 };
 template <class Context>
 std::shared_ptr<const NetworkRows<Context>> network_rows(const FitTask& task) {
-  return task.shared->once<NetworkRows<Context>>(pinnquad::type_name<typename Context::Features>(), [&task] {
+  return task.shared->once<NetworkRows<Context>>(pinnquad::type_name<Context>(), [&task] {
     const auto context = pinnquad::make_context<Context>(task.training, task.given_airframe());
     const auto data = [&context](const auto& rows) { return pinnquad::standardised<float>(context, rows); };
     return std::make_shared<const NetworkRows<Context>>(

@@ -21,7 +21,7 @@ constexpr BiasSettings<Scalar> unknown_vehicle_bias() noexcept {
 /// Settings of an OnboardInverse.
 template <class Scalar>
 struct OnboardSettings {
-  /// Of the regression of each sum.
+  /// Settings of each sum's regression.
   struct Regression {
     Scalar forget_s = Scalar(20), forget_drag_s = Scalar(30);
     Scalar repeats = Scalar(3);  ///< rows that say the same, as two of them share a period
@@ -51,7 +51,7 @@ struct OnboardSettings {
     Scalar rise_s = Scalar(0.3);
   };
 
-  /// Of the proof of each sum: thrust, roll, pitch, yaw.
+  /// Settings of each sum's proof: thrust, roll, pitch, yaw.
   struct Proof {
     Scalar least_rows = Scalar(60);
     Scalar most_contradiction = Scalar(9);  ///< mean square of the judged rows over that of its own

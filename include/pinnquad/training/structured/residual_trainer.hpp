@@ -71,7 +71,7 @@ class ResidualTrainer {
   virtual void epoch(const Progress& progress, std::mt19937_64& engine) = 0;
   /// Mean absolute error on the rows that it is not trained on, in the units of the outputs.
   virtual double validate() = 0;
-  /// Of these rows, row-major, standardised.
+  /// Its outputs on the same rows, row-major, standardised.
   virtual std::vector<float> predictions() = 0;
   /// In the layout of Network::parameters.
   virtual std::vector<float> parameters() const = 0;
