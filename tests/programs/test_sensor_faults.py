@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Faults of sensors and vehicles that every single row hides, planted into recorded flights: import tells each, in the
 flight that has it and in no other. docs/import.md has the smallest that are found."""
+import json
 import lzma
 import re
 import shutil
@@ -9,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from conftest import table
-from test_log_faults import FORCES, MAPPING, MOTORS, RATES, each, logged, scaled, told, written
+from test_log_faults import FORCES, MAPPING, MOTORS, RATES, each, logged, scaled, written
 
 EXTRA = '[[extra]]\nname = "battery_voltage"\nunit = "V"\ncolumn = "volts"\n'
 
@@ -65,6 +66,11 @@ FAULTS = {
 }
 
 
+def told(done):
+    """Each warning; as JSON, because the text collapses those of one kind."""
+    return done.lines if done.code else json.loads(done.out)["warnings"]
+
+
 @pytest.fixture(scope="module")
 def flights(pinnquad, recorded, tmp_path_factory):
     """flights(log): the rows of its flights by name; importing them says nothing of the kind."""
@@ -83,7 +89,7 @@ def flights(pinnquad, recorded, tmp_path_factory):
                     shutil.copyfileobj(packed, file)
         else:
             source = recorded("flight_logs/nanobench_subset_50hz.csv")
-        done = pinnquad("import --lag 0 --rate 50", source, "--mapping", log, "--out", folder / log)
+        done = pinnquad("import --json --lag 0 --rate 50", source, "--mapping", log, "--out", folder / log)
         assert not [line for line in told(done) for _, pattern in FAULTS.values() if re.search(pattern, line)], done
         known[log] = {}
         for flight in sorted(folder.glob(f"{log}/*.csv")):
@@ -95,14 +101,14 @@ def flights(pinnquad, recorded, tmp_path_factory):
 
 
 def imported(pinnquad, rows_of, plants, code=0):
-    """What import says of these flights, a fault planted into each."""
+    """What import reports of these flights, a fault planted into each."""
     Path("log.toml").write_text(MAPPING + EXTRA)
     Path("logs").mkdir()
     for name, rows in rows_of.items():
         rows = [dict(row) for row in rows]
         plants.get(name, lambda rows: None)(rows)
         written(f"logs/{name}.csv", rows)
-    return pinnquad("import logs --mapping log.toml --lag 0 --out dataset", code=code)
+    return pinnquad("import logs --json --mapping log.toml --lag 0 --out dataset", code=code)
 
 
 @pytest.mark.parametrize("log, first", [("nanobench", 2), ("px4", 0)])
