@@ -53,12 +53,12 @@ TEST_CASE("a set of a dataset's rows reads the same rows after more flights were
 }
 
 TEST_CASE("the period is the median step; recordings whose periods differ by more than a hundredth have none") {
-  const auto recorded = [](double period_s, unsigned seed) {
-    Flight flight = random_flight(9, seed);
+  const auto recorded = [](double period_s, unsigned seed, double begin_s = 0, std::size_t count = 9) {
+    Flight flight = random_flight(count, seed);
     Flight timed;
     for (std::size_t row = 0; row < flight.size(); ++row) {
       pinnquad::Sample sample = flight[row];
-      sample.time_s = period_s * static_cast<double>(row) + (row > 5 ? 1.0 : 0.0);  // one gap
+      sample.time_s = begin_s + period_s * static_cast<double>(row) + (row > 5 ? 1.0 : 0.0);  // one gap
       timed.push_back(sample);
     }
     return timed;
@@ -72,4 +72,11 @@ TEST_CASE("the period is the median step; recordings whose periods differ by mor
   CHECK(pinnquad::sample_period_s(rows) == 0.01);
   rows.add(other, {0, 9});
   CHECK(pinnquad::sample_period_s(rows) == 0);
+  for (const double period_s : {0.05, 0.004, 0.001}) {  // seconds since 1970, in a double 0.24 us apart
+    CAPTURE(period_s);
+    const Flight unix_time = recorded(period_s, 4, 1.7e9, 2000);
+    RowSet of_unix_time;
+    of_unix_time.add(unix_time, {0, 2000});
+    CHECK(pinnquad::sample_period_s(of_unix_time) == period_s);
+  }
 }
