@@ -9,7 +9,7 @@
 # Seen: sort of first + [3000, 0, 2000, 1000] us -> [0, 1000, 3000, 2000]; median 1000 (right: 1500);
 #   floor(1700000000.999) -> 1700000001.
 # Why it matters: stamps of a log at 1 kHz are closer than that. Rows change places, and derivatives get the wrong sign.
-# pinnquad: its pages compare with JavaScript's operators; stamps are in seconds of the flight.
+# pinnquad: its pages compare with JavaScript's operators.
 set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf -- "$dir"' EXIT
