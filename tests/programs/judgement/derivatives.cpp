@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is counted of derivatives and of steps, on rows that are made up. The derivatives themselves:
+// Counts of derivatives and of steps below 0, on rows that are made up. The derivatives themselves:
 // tests/exported/run_time_kinds.cpp.
 #include <doctest/doctest.h>
 
