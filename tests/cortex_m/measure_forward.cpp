@@ -36,15 +36,8 @@ std::uint32_t instructions_of(Function function, const float* x) {
 
 void print_counts(const char* name, const float* x) {
   float y[outputs];
-  board::print("instructions ");
-  board::print(name);
-  board::print(" ");
-  board::print_number(instructions_of(pinnquad_forward, x));
-  board::print("\nstack ");
-  board::print(name);
-  board::print(" ");
-  board::print_number(board::stack_bytes([&] { pinnquad_forward(x, y); }));
-  board::print("\n");
+  board::print_line("instructions", name, instructions_of(pinnquad_forward, x));
+  board::print_line("stack", name, board::stack_bytes([&] { pinnquad_forward(x, y); }));
 }
 #endif
 

@@ -17,14 +17,6 @@ void fill(std::uint32_t seed, float (&raw)[16]) {
   }
 }
 
-void print_status(const char* name, unsigned char status) {
-  board::print("status ");
-  board::print(name);
-  board::print(" ");
-  board::print_number(status);
-  board::print("\n");
-}
-
 void print_all(const char* name, const float* values, int count) {
   board::print(name);
   for (int i = 0; i < count; ++i) board::print_bits(values[i]);
@@ -40,15 +32,9 @@ void print_counts(const char* name, const float* raw) {
   float commands[4];
   Function volatile measured = pinnquad_predict;
   Function volatile empty = nothing;
-  board::print("instructions ");
-  board::print(name);
-  board::print(" ");
-  board::print_number(board::instructions([&] { measured(raw, commands); }, [&] { empty(raw, commands); }));
-  board::print("\nstack ");
-  board::print(name);
-  board::print(" ");
-  board::print_number(board::stack_bytes([&] { measured(raw, commands); }));
-  board::print("\n");
+  board::print_line("instructions", name,
+                    board::instructions([&] { measured(raw, commands); }, [&] { empty(raw, commands); }));
+  board::print_line("stack", name, board::stack_bytes([&] { measured(raw, commands); }));
 }
 #endif
 
@@ -61,20 +47,20 @@ extern "C" int board_main() {
     pinnquad_features(raw, x);
     print_all("features", x, 16);
     for (float& v : commands) v = -1.0F;
-    print_status("ordinary", pinnquad_predict(raw, commands));
+    board::print_line("status", "ordinary", pinnquad_predict(raw, commands));
     print_all("commands", commands, 4);
   }
-  print_status("self_test", pinnquad_self_test());
+  board::print_line("status", "self_test", pinnquad_self_test());
   fill(1, raw);
 #if defined(__ARM_ARCH_7EM__)
   print_counts("ordinary", raw);
 #endif
   raw[4] = __builtin_nanf("");
-  print_status("not_finite", pinnquad_predict(raw, commands));
+  board::print_line("status", "not_finite", pinnquad_predict(raw, commands));
 #if defined(__ARM_ARCH_7EM__)
   print_counts("not_finite", raw);
 #endif
   raw[4] = 1e6F;
-  print_status("outside_envelope", pinnquad_predict(raw, commands));
+  board::print_line("status", "outside_envelope", pinnquad_predict(raw, commands));
   return 0;
 }

@@ -89,21 +89,6 @@ TEST_CASE("rows of an independent simulator are read as they stand") {
   CHECK(flight[1].commands == std::array<double, 4>{0.98590267, 1, 0.9482035, 0.95769918});
 }
 
-TEST_CASE("the order of columns does not matter, strangers are ignored") {
-  const TemporaryFolder folder;
-  const Flight flight = random_flight(12, 5);
-  std::vector<std::string> names = {"stranger"};
-  for (const auto name : pinnquad::sample_field_names) names.insert(names.begin(), std::string(name));
-  std::vector<std::vector<double>> rows;
-  for (const auto& sample : flight) {
-    const auto values = pinnquad::to_values(sample);
-    rows.emplace_back(values.rbegin(), values.rend());
-    rows.back().push_back(std::numeric_limits<double>::quiet_NaN());
-  }
-  pinnquad::write_csv(folder.path("mixed.csv"), names, rows);
-  CHECK(same_bits(read_flight_csv(folder.path("mixed.csv")), flight));
-}
-
 TEST_CASE("each column is needed, once") {
   const TemporaryFolder folder;
   for (const auto view : pinnquad::sample_field_names) {
@@ -115,21 +100,6 @@ TEST_CASE("each column is needed, once") {
     CHECK(found.substr(0, found.find(" (")) ==
           "flight.csv:1:22: expected one column named " + name + ", found a second one");
   }
-}
-
-TEST_CASE("a bad cell is told by line, column and name") {
-  const TemporaryFolder folder;
-  const std::string good = header + "\n" + row_1 + "\n";
-  CHECK(complaint(folder, good + row_2 + "\n") == "accepted");
-  CHECK(complaint(folder, good + replaced(row_2, "0.42356798", "abc") + "\n") ==
-        "flight.csv:3:5: expected a finite number in column wdot_x, found \"abc\"");
-  CHECK(complaint(folder, good + replaced(row_2, "0.95769918", "NaN") + "\n") ==
-        "flight.csv:3:21: expected a finite number in column u4, found \"NaN\"");
-  CHECK(complaint(folder, good + replaced(row_2, "15.880524", "") + "\n") ==
-        "flight.csv:3:17: expected a finite number in column altitude, found an empty cell");
-  CHECK(complaint(folder, good + replaced(row_2, ",0.95769918", "") + "\n") ==
-        "flight.csv:3:21: expected 21 fields as in the header, found 20");
-  CHECK(complaint(folder, good + row_2 + ",1\n") == "flight.csv:3:22: expected 21 fields as in the header, found 22");
 }
 
 TEST_CASE("time must increase from row to row") {

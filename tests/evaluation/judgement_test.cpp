@@ -19,6 +19,8 @@ namespace {
 using Linear = Network<double, InputSize<16>, Dense<4>>;
 using Model = TrainedModel<Linear, Context<PaperFeatures, PaperQuadrotor>>;
 
+constexpr double rounding = 1e-9;  // of sums over some hundred rows of order 1, and of the regression's moments
+
 /// Nothing standardised; an envelope of +-`half_width` about 0.
 Model linear_model(double half_width) {
   Model model;
@@ -34,6 +36,13 @@ std::vector<Commands<double>> flown(const RowSet& rows) {
   std::vector<Commands<double>> commands;
   for (std::size_t row = 0; row < rows.size(); ++row) commands.push_back(rows[row].commands);
   return commands;
+}
+
+/// Rows whose commands are the model's, whether or not a motor could do it.
+Flight obedient_flight(const Model& model) {
+  Flight flight = test::random_flight_rows(300, 5);
+  for (std::size_t row = 0; row < flight.size(); ++row) flight[row].commands = model.predict(flight[row]);
+  return flight;
 }
 
 }  // namespace
@@ -85,6 +94,38 @@ TEST_CASE("the flown commands themselves have no error, and the signs of the flo
     CHECK(wrong.pairs.all[axis] == doctest::Approx(1 - judged.pairs.all[axis]));
   }
   CHECK_THROWS_AS(judge(airframe, rows, {}), std::invalid_argument);
+}
+
+TEST_CASE("the verdict on a model: the regression is fitted to the training rows, both are judged by the test rows") {
+  const Model model = linear_model(1e3);
+  Flight flight = obedient_flight(model);
+  const RowSet training(flight, {0, 200}), test(flight, {200, 300});
+  const Verdict linear = verdict_on(model, training, test);
+  CHECK(linear.test_r_squared == doctest::Approx(1).epsilon(rounding));
+  CHECK(linear.linear_regression_r_squared == doctest::Approx(1).epsilon(rounding));
+  CHECK(linear.worst_motor_r_squared == doctest::Approx(1).epsilon(rounding));
+
+  Model constant = model;  // the means of the test rows: R^2 is 0
+  constant.network.parameters.fill(0);
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t row = 200; row < 300; ++row) constant.output.mean[k] += flight[row].commands[k] / 100;
+  }
+  const Verdict flat = verdict_on(constant, training, test);
+  CHECK(flat.test_r_squared == doctest::Approx(0).scale(1).epsilon(rounding));
+  CHECK(flat.linear_regression_r_squared == doctest::Approx(1).epsilon(rounding));
+  CHECK_FALSE(flat.beats_linear_regression());
+
+  // training rows that say the opposite: the regression follows them, the model does not
+  for (std::size_t row = 0; row < 200; ++row) {
+    for (double& u : flight[row].commands) u = -u;
+  }
+  const Verdict opposite = verdict_on(model, training, test);
+  CHECK(opposite.test_r_squared == doctest::Approx(1).epsilon(rounding));
+  CHECK(opposite.linear_regression_r_squared < 0);
+  CHECK(opposite.beats_linear_regression());
+
+  CHECK_THROWS_AS(verdict_on(model, RowSet(), test), std::invalid_argument);
+  CHECK_THROWS_AS(verdict_on(model, training, RowSet()), std::invalid_argument);
 }
 
 TEST_CASE("a model on a split: test rows judge, validation rows give their error, the verdict is beside regression") {

@@ -109,18 +109,3 @@ TEST_CASE("without anything to learn from the mean is predicted") {
   CHECK_THROWS_AS(fit_linear_regression(X{}, Y{}), std::invalid_argument);
   CHECK_THROWS_AS(fit_linear_regression(X(2), Y(3)), std::invalid_argument);
 }
-
-TEST_CASE("a verdict: the mean and linear regression are the bars; NaN passes none") {
-  const double nan = std::nan("");
-  using pinnquad::Verdict;
-  CHECK_FALSE(Verdict{0.9, 0.8}.worse_than_mean());
-  CHECK(Verdict{0.9, 0.8}.beats_linear_regression());
-  CHECK_FALSE(Verdict{0.0, 0.8}.worse_than_mean());
-  CHECK_FALSE(Verdict{0.8, 0.8}.beats_linear_regression());
-  CHECK(Verdict{-1e-9, -1}.worse_than_mean());
-  CHECK(Verdict{-1e-9, -1}.beats_linear_regression());
-  CHECK(Verdict{nan, 0.5}.worse_than_mean());
-  CHECK_FALSE(Verdict{nan, 0.5}.beats_linear_regression());
-  CHECK_FALSE(Verdict{nan, nan}.beats_linear_regression());
-  CHECK(Verdict{0.1, nan}.beats_linear_regression());
-}

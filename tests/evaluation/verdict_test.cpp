@@ -27,7 +27,8 @@ TEST_CASE("a model is for flight if it is no worse than the mean of the commands
   CHECK_FALSE(verdict_on(errors(0.9, 0.8, 0.7, 0.6), 0).worse_than_mean());
   CHECK_FALSE(verdict_on(errors(0.9, 0.8, 0.7, 0.6), 0).has_poor_motor());
   CHECK_FALSE(verdict_on(errors(0, 0.8, 0.7, 0.6), 0).has_poor_motor());
-  for (const auto& poor : {errors(-1, -1, -1, -1), errors(0.9, not_a_number, 0.9, 0.9)}) {
+  CHECK_FALSE(verdict_on(errors(0, 0, 0, 0), 0.8).worse_than_mean());
+  for (const auto& poor : {errors(-1e-9, -1e-9, -1e-9, -1e-9), errors(0.9, not_a_number, 0.9, 0.9)}) {
     CHECK(verdict_on(poor, 0).worse_than_mean());
   }
   for (const auto& poor : {errors(0.9, 0.9, 0.9, -2.5), errors(-2.5, 0.9, 0.9, 0.9)}) {

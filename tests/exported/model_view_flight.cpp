@@ -103,39 +103,6 @@ TEST_CASE("bad inputs are refused by the block's envelope, commands untouched") 
   }
 }
 
-TEST_CASE("a wrong weight under a right checksum fails the self test") {
-  using Layout = ModelBlockLayout<SmallModel>;
-  for (const std::size_t weight : {0u, 77u, 131u, 150u, 171u}) {
-    BlockBytes block(model_block<SmallModel>());
-    const std::size_t at = Layout::parameters(6) + weight;
-    block.set_scalar(at, block.scalar<float>(at) + 0.05f);
-    block.seal();
-    CHECK(self_test(InverseDynamics<ModelView<SmallModel>>(view_of<SmallModel>(block))) == Status::self_test_failed);
-    ModelView<SmallModel>::Packed packed;
-    CHECK(self_test(InverseDynamics<ModelView<SmallModel>>(packed_view_of<SmallModel>(block, packed))) ==
-          Status::self_test_failed);
-  }
-}
-
-TEST_CASE("finite weights that overflow are told from sound ones") {
-  using Layout = ModelBlockLayout<SmallModel>;
-  BlockBytes block(model_block<SmallModel>());
-  for (std::size_t i = 0; i < Layout::parameter_count; ++i) block.set_scalar(Layout::parameters(6) + i, 3e38f);
-  block.seal();
-  const InverseDynamics<ModelView<SmallModel>> viewed(view_of<SmallModel>(block));
-  Commands<float> commands{9, 9, 9, 9};
-  CHECK(viewed.predict({}, commands) == Status::output_not_finite);
-  CHECK(commands[0] == 9.0f);
-  CHECK(self_test(viewed) == Status::self_test_failed);
-}
-
-TEST_CASE("a view of no block refuses to fly") {
-  const InverseDynamics<ModelView<SmallModel>> viewed{ModelView<SmallModel>{}};
-  Commands<float> commands{};
-  CHECK(viewed.predict({}, commands) == Status::outside_envelope);
-  CHECK(self_test(viewed) == Status::self_test_failed);
-}
-
 TEST_CASE("a view is opened anew while it is a copy that flies") {
   const BlockBytes first(model_block<SmallModel>());
   BlockBytes second(model_block<SmallModel>());

@@ -87,53 +87,12 @@ void always_answers(const char* name) {
   }
 }
 
-struct Jumps {
-  long unanswered = 0;
-  double fastest_m_s = 0;
-  FlightFigures figures;
-};
-
-/// A figure-eight at 8 m/s, jerk sent too.
-template <class Stack>
-Jumps flown(bool by_analytic, double jump_m, bool silent) {
-  const std::vector<Fault> faults = jumps_with_a_weak_motor(by_analytic, jump_m, silent);
-  FaultyFlight<Stack> flight;
-  REQUIRE(flight.boot());
-  Jumps result;
-  result.figures = flight.fly(FastEight{}, 16, faults, [&](const CoreRecord& tick) {
-    if (tick.reaction > static_cast<std::uint8_t>(Reaction::holds_position)) ++result.unanswered;
-    const auto along = static_cast<double>(std::hypot(tick.velocity_m_s[0], tick.velocity_m_s[1]));
-    result.fastest_m_s = std::max(result.fastest_m_s, along);
-  });
-  return result;
-}
-
 }  // namespace
 
 TEST_CASE("fresh, finite inputs always get an answer within the output limits") {
   always_answers<DemoQuadModel>("the paper's quadrotor");
   always_answers<CrazyflieModel>("Crazyflie");
   always_answers<DemoQuadModel, pinnquad::Px4Sih>("PX4's simulated quadrotor");
-}
-
-TEST_CASE("jumping and silent set points at 8 m/s with a weak motor: no tick without an answer") {
-  for (const bool by_analytic : {false, true}) {
-    for (const double jump_m : {0.0, 5.0}) {
-      for (const bool silent : {false, true}) {
-        CAPTURE(by_analytic);
-        CAPTURE(jump_m);
-        CAPTURE(silent);
-        const Jumps jumps = flown<Px4Stack>(by_analytic, jump_m, silent);
-        CHECK(jumps.unanswered == 0);
-        CHECK(jumps.fastest_m_s > 7);
-        CHECK_FALSE(jumps.figures.crashed);
-        CHECK(jumps.figures.takeovers == 0);
-        std::printf("jumps of %.0f m, %s, %s: error up to %.2f m, RMSE %.2f m\n", jump_m,
-                    silent ? "silence" : "no silence", by_analytic ? "analytic inverse" : "network",
-                    jumps.figures.max_error_m, jumps.figures.rmse_m);
-      }
-    }
-  }
 }
 
 TEST_CASE("a set point whose yaw no sender means is refused as other absurd numbers are") {

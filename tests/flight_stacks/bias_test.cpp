@@ -179,28 +179,3 @@ TEST_CASE("where the network declines, its bias moves with the analytic inverse'
   CHECK(declined.bias_sums[0] > 0.3f);
   CHECK(declined.bias_sums[0] == doctest::Approx(static_cast<double>(declined.analytic_bias_sums[0])).epsilon(0.1));
 }
-
-/// At 3 m/s along the ground, 1 m above its place; from 2 s on at rest there, as on the ground.
-TEST_CASE("a core that flies level above its place keeps its thrust; at rest it lands") {
-  CrazyflieStack stack;
-  const Block block = sound_block<CrazyflieModel>();
-  REQUIRE(stack.offer(block.data(), block.size()) == Status::ok);
-  const auto lift_at = [&stack](double from_s, double to_s, double north_m_s) {
-    for (int ms = static_cast<int>(1000 * from_s); ms < static_cast<int>(1000 * to_s);
-         ms += CrazyflieStack::period_ms) {
-      const auto now_us = static_cast<std::uint64_t>(5'000'000 + 1000 * ms);
-      pinnquad::TrajectoryPoint<double> point;
-      point.position_m = {0, 0, -9};
-      point.velocity_m_s = {north_m_s, 0, 0};
-      stack.rates(now_us, {0, 0, 0});
-      stack.attitude(now_us, {1, 0, 0, 0});
-      stack.local(now_us, {0, 0, -10}, {north_m_s, 0, 0});
-      stack.set_point(now_us, point);
-      stack.situation({ms > 0, false});
-      static_cast<void>(stack.run(now_us));
-    }
-    return stack.record().lift;
-  };
-  CHECK(lift_at(0, 2, 3) == 1);
-  CHECK(lift_at(2, 4, 0) < 0.2f);
-}

@@ -34,8 +34,7 @@ enum class FaultKind {
   velocity_nan,
   velocity_frozen,  ///< it and the position repeat themselves under new time stamps
   local_late,       ///< time stamps of position and velocity `value` seconds old
-  battery_stops,
-  flown_by_hand,  ///< the pilot has it, or it is disarmed: nothing is asked of the module
+  flown_by_hand,    ///< the pilot has it, or it is disarmed: nothing is asked of the module
 };
 
 struct Fault {
@@ -70,14 +69,15 @@ inline constexpr std::array<Fault, 19> fault_script = {{
     {28.0, 0.300, FaultKind::attitude_stops, 0, "attitude stops for 300 ms", Reaction::gives_up},
 }};
 
-/// A motor makes 85 % of its thrust; every 1.4 s the set points jump for 0.7 s, or fall silent for 0.4 s.
-inline std::vector<Fault> jumps_with_a_weak_motor(bool by_analytic, double jump_m, bool silent) {
-  std::vector<Fault> faults = {{4, 100, FaultKind::bent_rotor, 0.85, "a weak motor", Reaction::flies}};
-  if (by_analytic) faults.push_back({0.5, 100, FaultKind::model_too_narrow, 0, "no network", Reaction::flies});
+/// By the analytic inverse: a motor makes 85 % of its thrust; every 1.4 s the set points jump by 2 m for 0.7 s and fall
+/// silent for 0.4 s.
+inline std::vector<Fault> jumps_with_a_weak_motor() {
+  std::vector<Fault> faults = {{4, 100, FaultKind::bent_rotor, 0.85, "a weak motor", Reaction::flies},
+                               {0.5, 100, FaultKind::model_too_narrow, 0, "no network", Reaction::flies}};
   for (int i = 0; i < 8; ++i) {
     const double at_s = 5 + 1.4 * i;
-    if (jump_m > 0) faults.push_back({at_s, 0.7, FaultKind::set_point_jumps, jump_m, "a jump", Reaction::flies});
-    if (silent) faults.push_back({at_s, 0.4, FaultKind::set_point_stops, 0, "silence", Reaction::flies});
+    faults.push_back({at_s, 0.7, FaultKind::set_point_jumps, 2, "a jump", Reaction::flies});
+    faults.push_back({at_s, 0.4, FaultKind::set_point_stops, 0, "silence", Reaction::flies});
   }
   return faults;
 }

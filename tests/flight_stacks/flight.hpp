@@ -49,7 +49,7 @@ class FaultyFlight {
   using Vehicle =
       pinnquad::Quadrotor<double, pinnquad::StandardAtmosphere, pinnquad::ConstantWind, pinnquad::QuadraticDrag>;
 
-  static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20, battery_period_ms = 200;
+  static constexpr long attitude_period_ms = 4, local_period_ms = 10, set_point_period_ms = 20;
 
   explicit FaultyFlight(const CoreSettings& settings = {})
       : stack_(settings),
@@ -238,7 +238,6 @@ class FaultyFlight {
       asked.position_m[0] += value_of(FaultKind::set_point_jumps, 0);
       stack_.set_point(stamp_us, asked);
     }
-    if (due(battery_period_ms)) stack_.battery(stamp_us, faulty(FaultKind::battery_stops) ? 0 : 15);
   }
 
   template <class Faults>

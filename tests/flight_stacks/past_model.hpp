@@ -70,7 +70,12 @@ struct PastNumbersOf {
   static constexpr Scaler<float, Features::size> input{};
   static constexpr Scaler<float, 4> output{};
 
-  static constexpr FeatureVector envelope_lower = of_all<inputs>(-200), envelope_upper = of_all<inputs>(200);
+  static constexpr double most_V = 16;
+  static constexpr FeatureVector envelope_lower = of_all<inputs>(-200), envelope_upper = [] {
+    FeatureVector upper = of_all<inputs>(200);
+    upper[voltage] = static_cast<float>(most_V);
+    return upper;
+  }();
 
   static constexpr std::array<FeatureVector, 2> golden_features = {of_all<inputs>(0.5f), of_all<inputs>(-2.0f)};
   static constexpr std::array<std::array<float, 4>, 2> golden_commands = [] {

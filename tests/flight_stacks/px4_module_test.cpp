@@ -315,26 +315,6 @@ TEST_CASE("the sample that the motors answer is the gyro's") {
   CHECK(std::isnan(world.last.control[4]));
 }
 
-TEST_CASE("a GPS reset of 3 m and a heading reset are no steps") {
-  Px4World world;
-  world.sends_set_points = false;  // it holds its place
-  world.start_and_fly();
-  const actuator_motors_s before = world.last;
-  world.local.x += 3, world.local.y -= 1;
-  world.local.delta_xy[0] = 3, world.local.delta_xy[1] = -1;
-  ++world.local.xy_reset_counter;
-  world.local.z += 0.5f;
-  world.local.delta_z = 0.5f;
-  ++world.local.z_reset_counter;
-  world.run(20);
-  for (int i = 0; i < 4; ++i) CHECK(world.last.control[i] == doctest::Approx(double(before.control[i])).epsilon(0.01));
-  world.local.x += 0.5f;  // the same without a counter is a step
-  world.run(20);
-  float furthest = 0;
-  for (int i = 0; i < 4; ++i) furthest = std::max(furthest, std::abs(world.last.control[i] - before.control[i]));
-  CHECK(furthest > 0.02f);
-}
-
 TEST_CASE("each of EKF2's five reset counters alone moves what it says by its own delta, and nothing else") {
   Px4World world;
   world.start_and_fly();
@@ -375,28 +355,6 @@ TEST_CASE("each of EKF2's five reset counters alone moves what it says by its ow
       CHECK(moved[i] == (is_its ? deltas[i] : 0));
     }
   }
-}
-
-TEST_CASE("a heading reset alone is no step: attitude and held yaw turn together") {
-  Px4World world;
-  world.sends_set_points = false;  // it holds its place and yaw
-  world.start_and_fly();
-  const actuator_motors_s before = world.last;
-  const auto furthest = [&] {
-    float most = 0;
-    for (int i = 0; i < 4; ++i) most = std::max(most, std::abs(world.last.control[i] - before.control[i]));
-    return most;
-  };
-  const auto turn = [&](uint8_t counted) {  // attitude and position say it within a few milliseconds
-    world.yaw += 0.4f;
-    world.local.delta_heading = 0.4f;
-    world.local.heading_reset_counter = static_cast<uint8_t>(world.local.heading_reset_counter + counted);
-    world.run(40);
-  };
-  turn(1);
-  CHECK(furthest() < 0.02f);
-  turn(0);  // without the counter it is a step of the yaw
-  CHECK(furthest() > 0.02f);
 }
 
 TEST_CASE("without set points it holds the place where it was selected, not where it was started") {

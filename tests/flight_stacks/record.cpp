@@ -138,7 +138,7 @@ int main(int count, char** arguments) {
                                                  : record_learning<OnboardCrazyflieStack>(arguments[3]);
   }
   if (std::strcmp(arguments[1], "jumps") == 0) {
-    return record<Px4Stack>(arguments[3], FastEight{}, jumps_with_a_weak_motor(true, 2, true));
+    return record<Px4Stack>(arguments[3], FastEight{}, jumps_with_a_weak_motor());
   }
   return std::strcmp(arguments[1], "px4") == 0
              ? record<Px4Stack>(arguments[2], arguments[3], 4, 9, 1.5)

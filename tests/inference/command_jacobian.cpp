@@ -96,7 +96,7 @@ Counts check_guard(const GuardType& guard = GuardType{}) {
   const Inverse free;
   Counts counts{};
   for (const auto& golden : DemoQuadModel::golden_features) {
-    for (const float stretch : {1.0f, 40.0f}) {
+    for (const float stretch : {1.0f, 40.0f, std::nanf("")}) {
       auto x = golden;
       for (float& v : x) v *= stretch;
       float commands[4], plain[4], jacobian[4 * size], untouched[4 * size];
@@ -129,7 +129,7 @@ TEST_CASE("under every guard: its Status, its commands, and the derivatives of t
   const auto check = [&](const Counts& counts, Status least, bool some_ok) {
     CHECK(of(counts, least) > 0);
     CHECK((of(counts, Status::ok) > 0) == some_ok);
-    CHECK(of(counts, Status::outside_envelope) == golden);
+    CHECK(of(counts, Status::outside_envelope) == 2 * golden);
     CHECK(of(counts, Status::ok) + of(counts, least) == (least == Status::ok ? 2 : 1) * golden);
   };
   check(check_guard<TrainingGuard>(), Status::ok, true);
@@ -161,19 +161,6 @@ TEST_CASE("numbers that are none: refused, and nothing is written") {
     CHECK(inverse.predict_features(x.data(), plain) == Status::ok);
     CHECK(predict_with_jacobian(inverse, x.data(), commands, jacobian) == Status::output_not_finite);
   }
-  for (const float v : commands) CHECK(v == -7);
-  for (const float v : jacobian) CHECK(v == -7);
-}
-
-TEST_CASE("the derivative of what is refused is refused") {
-  const Inverse inverse;
-  auto x = DemoQuadModel::golden_features[0];
-  float commands[4] = {-7, -7, -7, -7}, jacobian[4 * size];
-  for (float& v : jacobian) v = -7;
-  x[2] = 1e4f;
-  CHECK(predict_with_jacobian(inverse, x.data(), commands, jacobian) == Status::outside_envelope);
-  x[2] = std::nanf("");
-  CHECK(predict_with_jacobian(inverse, x.data(), commands, jacobian) == Status::outside_envelope);
   for (const float v : commands) CHECK(v == -7);
   for (const float v : jacobian) CHECK(v == -7);
 }

@@ -45,6 +45,12 @@ struct FarApart : PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, Cyclica
   }
 };
 
+/// Of two samples the correlation is 1 or -1: no slope to compare.
+template <class Loss>
+constexpr bool flat_on_a_pair = false;
+template <class Axis>
+constexpr bool flat_on_a_pair<PearsonCorrelation<Axis>> = true;
+
 template <class Loss, class ContextType>
 void check_gradient(const Loss& loss, ContextType context) {
   static_assert(pinnquad::is_loss<Loss>);
@@ -53,6 +59,7 @@ void check_gradient(const Loss& loss, ContextType context) {
   context.progress = {13, 20};
   std::mt19937_64 engine(71);
   for (const int size : {1, 2, 3, 5, 40, 63, 64}) {
+    if (size == 2 && flat_on_a_pair<Loss>) continue;
     for (const double weight : {1.0, -0.25}) {
       CAPTURE(size);
       CAPTURE(weight);
@@ -89,7 +96,7 @@ TEST_CASE_TEMPLATE("gradient of every loss", Loss, Mse, LocalMonotonicity<Roll>,
                    LocalMonotonicity<Yaw>, LocalMonotonicity<Roll, TanhStep, Literal>,
                    LocalMonotonicity<Pitch, TanhStep, Match>, PaperLoss<Constant, TanhStep, Match>,
                    PaperLoss<Constant, TanhStep, Literal>, PaperLoss<CyclicalAnnealing>, PaperLoss<Constant>, FarApart,
-                   PhysicsInformed<Mse>, QuarticFirstOutput) {
+                   PhysicsInformed<Mse>, PearsonCorrelation<Roll>, PearsonCorrelation<Yaw>, QuarticFirstOutput) {
   SUBCASE("commands") {
     check_gradient(Loss{}, flight_context<Context<PaperFeatures, PaperQuadrotor, CommandOutputs>>());
   }

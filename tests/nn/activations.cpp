@@ -22,7 +22,7 @@ template <class Spec>
 extern const Row table[8];
 // Gelu: v (1 + erf(v / sqrt 2)) / 2. Silu: v / (1 + exp(-v)). Softplus: log(1 + exp(v)). Sine: sin(v).
 // GeluTanh: v (1 + tanh(sqrt(2 / pi) (v + 0.044715 v^3))) / 2. Mish: v tanh(log(1 + exp(v))). HardSwish:
-// v min(max(v + 3, 0), 6) / 6. Softsign: v / (1 + |v|). These by Python's decimal.
+// v min(max(v + 3, 0), 6) / 6. Softsign: v / (1 + |v|). These, and Elu: exp(v) - 1 below 0, by Python's decimal.
 template <>
 const Row table<Gelu>[8] = {{-12, -2.1317785344932148e-32, -2.5578956616748956e-31},
                             {-5, -1.4332578593959696e-6, -7.1469460017922946e-6},
@@ -68,6 +68,15 @@ const Row table<Softsign>[8] = {{-12, -0.92307692307692313, 0.005917159763313609
                                 {1, 0.5, 0.25},
                                 {3, 0.75, 0.0625},
                                 {20, 0.95238095238095233, 0.0022675736961451248}};
+template <>
+const Row table<Elu>[8] = {{-2.5, -0.9179150013761012, 0.0820849986238988},
+                           {-1, -0.63212055882855768, 0.36787944117144232},
+                           {-0.25, -0.22119921692859513, 0.77880078307140487},
+                           {-0.0009765625, -9.7608581802433777e-4, 0.99902391418197566},
+                           {0, 0, 1},
+                           {1e-30, 1e-30, 1},
+                           {3, 3, 1},
+                           {20, 20, 1}};
 template <>
 const Row table<Silu>[8] = {{-12, -7.3730095226576614e-5, -6.7585467613783386e-5},
                             {-5, -0.033464254621424278, -0.026547432429665919},
@@ -176,7 +185,7 @@ void check_pack() {
 }  // namespace
 
 TEST_CASE_TEMPLATE("smooth activations and their slopes against 40 digits", Spec, Gelu, Silu, Softplus, Sine, GeluTanh,
-                   Mish, HardSwish, Softsign) {
+                   Mish, HardSwish, Softsign, Elu) {
   SUBCASE("float") { check_table<Spec, float>(); }
   SUBCASE("double") { check_table<Spec, double>(); }
 }
@@ -226,6 +235,7 @@ TEST_CASE_TEMPLATE("NaN goes through, in value and slope; nothing overflows", Sc
   check(Sine{});
   check(Tanh{});
   check(Elu{});
+  CHECK(std::isnan(Bound<LeakyRelu, Scalar>::activate(nan)));
   check(GeluTanh{});
   check(Mish{});
   check(HardSwish{});
@@ -245,6 +255,7 @@ TEST_CASE_TEMPLATE("NaN goes through, in value and slope; nothing overflows", Sc
   approaches_relu(GeluTanh{});
   approaches_relu(Mish{});
   approaches_relu(HardSwish{});
+  CHECK(Bound<Elu, Scalar>::activate(-infinity) == Scalar(-1));
   CHECK(Bound<Softplus, Scalar>::activate(-infinity) == Scalar(0));
   CHECK(Bound<Softplus, Scalar>::activate(infinity) == infinity);
   CHECK(std::isnan(Bound<Sine, Scalar>::activate(infinity)));

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
@@ -120,4 +121,28 @@ TEST_CASE("a rotor that gives way to more thrust gives way most at command 0: no
   const double rise = (u[0] + u[1] + u[2] + u[3]) / step_m_s2;
   CHECK(RigidBodyBase::least_thrust_slope(airframe) <= rise + 1e-9);
   CHECK(RigidBodyBase::least_thrust_slope(airframe) == doctest::Approx(rise).epsilon(1e-4));
+}
+
+TEST_CASE("of curved thrust the least thrust slope is below each between commands 0 and 1, and near one of them") {
+  Airframe<double> airframe = crooked();
+  for (auto& rotor : airframe.rotors) rotor.x_m += 0.03;
+  const double least = RigidBodyBase::least_thrust_slope(airframe);
+  const auto body = RigidBodyBase::prepare(airframe);
+  double nearest = 1e300;
+  int inside = 0;
+  for (double force = -0.5; force > -40; force -= 0.5) {
+    double x[features] = {}, less[features] = {}, u[rotor_count], u_of_less[rotor_count];
+    x[RigidBodyBase::force_z] = force;
+    less[RigidBodyBase::force_z] = force + 1e-4;
+    RigidBodyBase::commands(static_cast<const double*>(x), body, static_cast<double*>(u));
+    RigidBodyBase::commands(static_cast<const double*>(less), body, static_cast<double*>(u_of_less));
+    if (*std::max_element(u, u + rotor_count) > 1) continue;
+    double rise = 0;
+    for (std::size_t i = 0; i < rotor_count; ++i) rise += (u[i] - u_of_less[i]) / 1e-4;
+    CHECK(rise >= least - 1e-9);
+    nearest = std::min(nearest, rise - least);
+    ++inside;
+  }
+  CHECK(inside > 10);
+  CHECK(nearest < 0.1 * least);
 }

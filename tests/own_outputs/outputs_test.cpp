@@ -8,7 +8,6 @@
 #include <direct.hpp>
 #include <memory>
 #include <residual.hpp>
-#include <ridge.hpp>
 #include <structured.hpp>
 #include <wrench.hpp>
 
@@ -216,24 +215,6 @@ TEST_CASE("a block of one meaning is none of another: six accelerations, a wrenc
   CHECK(ModelView<ResidualModel>::open(bytes.data(), bytes.size(), view) == Status::block_incompatible);
 }
 
-TEST_CASE_TEMPLATE("a model that is not one network", Model, RidgeModel, StructuredModel) {
-  const test::BlockBytes bytes(model_block<Model>());
-  ModelView<Model> view;
-  REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), view) == Status::ok);
-  ModelView<Model> packed_view;
-  typename ModelView<Model>::Packed packed;
-  REQUIRE(ModelView<Model>::open(bytes.data(), bytes.size(), packed_view, packed) == Status::ok);
-  CHECK(self_test(InverseDynamics<Model>{}) == Status::ok);
-  CHECK(self_test(InverseDynamics<ModelView<Model>>(view)) == Status::ok);
-  CHECK(self_test(InverseDynamics<ModelView<Model>>(packed_view)) == Status::ok);
-  check_jacobian<Model>(Model{});
-  check_jacobian<Model>(view);
-  check_jacobian<Model>(packed_view);
-  check_batch(Model{});
-  check_batch(packed_view);
-  MESSAGE(std::string(Model::name), ": ", 100 * flown_error_m(Model{}), " cm");
-}
-
 TEST_CASE("a structured model brings its certificate, and its block none that its numbers do not keep") {
   static_assert(has_certificate<StructuredModel> && !has_certificate<DirectModel>);
   constexpr Certificate certificate = certificate_of<StructuredModel>();
@@ -260,19 +241,6 @@ TEST_CASE("a structured model brings its certificate, and its block none that it
   CHECK(opened_with(first + 2, 0.0F) == Status::block_corrupt);
   CHECK(opened_with(first + 3, -1.0F) == Status::ok);  // of another feature
   CHECK(opened_with(bounds, 1e3F) == Status::block_corrupt);
-}
-
-TEST_CASE("an affine map: its header has all that its commands need") {
-  const InverseDynamics<RidgeModel> ridge;
-  for (const auto& x : RidgeModel::golden_features) {
-    Commands<float> u{};
-    REQUIRE(ridge.predict_features(x.data(), u) == Status::ok);
-    for (std::size_t i = 0; i < 4; ++i) {
-      double expected = double(RidgeModel::parameters[64 + i]);
-      for (std::size_t k = 0; k < 16; ++k) expected += double(RidgeModel::parameters[16 * i + k]) * double(x[k]);
-      CHECK(std::abs(double(u[i]) - expected) <= double(rounding));
-    }
-  }
 }
 
 namespace {

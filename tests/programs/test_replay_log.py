@@ -186,7 +186,7 @@ def differs(pinnquad):
     return check
 
 
-@pytest.mark.parametrize("stack, path", [("px4", "eight"), ("px4", "random_places"), ("crazyflie", "random_places")])
+@pytest.mark.parametrize("stack, path", [("px4", "eight"), ("crazyflie", "random_places")])
 def test_cores(pinnquad, core, stack, path):
     folder = core(stack, path)
     said = json.loads(pinnquad("replay", folder, *models(folder), "--json", "--out", "replayed.csv").out)

@@ -63,7 +63,7 @@ class ReferenceTable {
   std::vector<std::vector<double>> rows_;
 };
 
-/// Every tenth row of the random states of each ground effect model, as they are there: they ship with the tests.
+/// Every twentieth row of the random states of each ground effect model, as they are there: they ship with the tests.
 inline ReferenceTable shipped_rows(const std::string& name) {
   return ReferenceTable(name, PINNQUAD_TESTS_DIR "/reference/rows/");
 }

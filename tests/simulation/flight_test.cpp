@@ -276,41 +276,6 @@ TEST_CASE("effects compose: ground effect near the ground changes the flight") {
         doctest::Approx(inverse_of(vehicle(), recorded.flight.back())[0]).epsilon(1e-3));
 }
 
-TEST_CASE("what ends a flight early is reported with time and state, and the rows are kept") {
-  const Vehicle quadrotor = vehicle();
-  FlightPlan plan;
-  plan.samples = 1000;
-  SUBCASE("the ground") {
-    SteadyPilot down;
-    down.set_point.velocity_m_s[2] = 5;
-    const RecordedFlight recorded = fly(quadrotor, down, plan);
-    CHECK(recorded.report.end == FlightEnd::ground);
-    CHECK(recorded.report.rows == recorded.flight.size());
-    CHECK(recorded.report.last.time_s == doctest::Approx(36 / 5.0).epsilon(0.1));
-    CHECK(recorded.flight.back().altitude_m > 0);
-  }
-  SUBCASE("a pilot who asks for NaN after 2 s") {
-    const auto broken = [](const State<double>& /*state*/, double time_s) {
-      SetPoint<double> set_point;
-      if (time_s > 2) set_point.velocity_m_s[0] = std::numeric_limits<double>::quiet_NaN();
-      return set_point;
-    };
-    const RecordedFlight recorded = fly(quadrotor, broken, plan);
-    CHECK(recorded.report.end == FlightEnd::bad_status);
-    CHECK(recorded.report.status == Status::not_finite);
-    CHECK(recorded.report.rows == 40);
-    CHECK(recorded.report.last.time_s == doctest::Approx(2).epsilon(0.01));
-  }
-  SUBCASE("an airframe that can't fly") {
-    Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
-    airframe.mass_kg = 0;
-    const RecordedFlight recorded = fly(Vehicle(airframe, paper_site<double>(), {}, {}), SteadyPilot{}, plan);
-    CHECK(recorded.report.end == FlightEnd::bad_status);
-    CHECK(recorded.report.status == Status::invalid_airframe);
-    CHECK(recorded.flight.empty());
-  }
-}
-
 TEST_CASE("an observer is told each row, with the true state") {
   FlightPlan plan;
   plan.samples = 7;

@@ -123,19 +123,6 @@ TEST_CASE("D3: bounds, and a wind that shows") {
   CHECK(vehicle.surroundings({}, 1.0).wind_m_s.tail<2>().norm() == 0);
 }
 
-TEST_CASE("a ground effect of one's choice: the flight's own gives the same bits, another one another flight") {
-  const Airframe<double> airframe = airframe_value<PaperQuadrotor, double>();
-  FlightPlan plan = NearGroundFlight::plan();
-  plan.samples = 300;
-  const auto hash_of = [&](const auto& vehicle) {
-    return content_hash(fly(vehicle, NearGroundFlight::pilot(vehicle, std::mt19937_64(5)), plan).flight);
-  };
-  const auto own = hash_of(flight_vehicle<NearGroundFlight>(airframe));
-  CHECK(own == hash_of(flight_vehicle<NearGroundFlight>(airframe, NearGroundFlight::ground_effect)));
-  CHECK(own != hash_of(flight_vehicle<NearGroundFlight>(airframe, GroundEffectModel::none)));
-  CHECK(own != hash_of(flight_vehicle<NearGroundFlight>(airframe, GroundEffectModel::cheeseman_bennett)));
-}
-
 TEST_CASE("styles follow the airframe: the heavy one flies all three within bounds" * pinnquad::test::long_flight()) {
   const Airframe<double> heavy = airframe_value<ReferenceQuadrotor15, double>();
   const auto vehicle = flight_vehicle<NearGroundFlight>(heavy);

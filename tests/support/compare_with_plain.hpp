@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The library's dynamics in the words of the plain formula, so that both, and the simulator's rows, can be compared.
+// The library's dynamics in the words of the simulator's rows, so that they can be compared.
 #pragma once
 
 #include <array>

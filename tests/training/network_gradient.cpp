@@ -173,30 +173,6 @@ TEST_CASE_TEMPLATE(
   check_network<Net, Packs4>();
 }
 
-TEST_CASE("what a larger batch left behind does not reach a smaller one, not even NaN") {
-  using Net = Network<double, InputSize<3>, Dense<5>, Relu, Dense<2>>;
-  auto gradient = std::make_unique<NetworkGradient<Net, 8, Packs4>>();
-  std::mt19937_64 engine(92);
-  Net net;
-  fill_uniform(net.parameters, engine);
-  gradient->load(net.parameters);
-  const auto run = [&](double value, int samples) {
-    const std::vector<double> x(static_cast<std::size_t>(3 * samples), value);
-    gradient->put(x.data(), samples);
-    gradient->forward(samples);
-    for (int i = 0; i < samples; ++i) {
-      for (int k = 0; k < 2; ++k) gradient->output_delta(k, i) = value;
-    }
-    gradient->backward(samples);
-    Net::Parameters result{};
-    gradient->store_gradient(result);
-    return result;
-  };
-  const auto clean = run(0.5, 1);
-  run(std::numeric_limits<double>::quiet_NaN(), 7);
-  CHECK(run(0.5, 1) == clean);
-}
-
 namespace {
 
 /// One batch forward and back: the gradient of a weighted sum of all outputs.

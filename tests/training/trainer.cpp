@@ -37,7 +37,6 @@ struct TimeOrderedBatches {
 
 template <class Scalar>
 using Small = Mlp<Scalar, InputSize<16>, Hidden<2, 9>, OutputSize<4>, Relu>;
-using PaperNetwork = Mlp<double, InputSize<16>, Hidden<10, 25>, OutputSize<4>, Relu>;
 using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
 using SpeedContext = Context<PaperFeatures, PaperQuadrotor, RotorSpeedOutputs>;
 
@@ -122,29 +121,6 @@ TEST_CASE("gradient of the whole: network, loss, context, whole and partial batc
   SUBCASE("mse") { check_whole<Mse, PaperContext>(); }
   SUBCASE("physics-informed") { check_whole<PaperLoss<CyclicalAnnealing>, PaperContext>(); }
   SUBCASE("physics-informed, rotor speeds") { check_whole<PaperLoss<Constant>, SpeedContext>(); }
-}
-
-TEST_CASE("gradient of the paper's network, a part of its parameters") {
-  const plain::Network sizes{{16, 25, 25, 25, 25, 25, 25, 25, 25, 25, 25, 4}, plain::Activation::relu};
-  std::mt19937_64 engine(123);
-  auto net = std::make_unique<PaperNetwork>(initialised<PaperNetwork>(engine));
-  for (double& p : net->parameters) p *= 1.4;  // Xavier halves the variance at each ReLU: the signal would be gone
-  const auto data = off_the_kinks(*net, sizes, 5);
-  const std::vector<int> rows = {0, 1, 2, 3, 4};
-  const auto context = flight_context<PaperContext>();
-  const PaperLoss<Constant> loss{};
-  auto trainer =
-      std::make_unique<Trainer<PaperNetwork, PaperLoss<Constant>, Adam, PaperContext>>(*net, loss, Adam{}, context);
-  trainer->differentiate(data, rows.data(), 5);
-  const auto gradient = trainer->parameter_gradient();
-  // every 13th: reaches each layer, weights and biases
-  std::vector<double> analytic, numerical;
-  for (std::size_t i = 0; i < net->parameters.size(); i += 13) {
-    const auto evaluate = [&] { return plain_loss(loss, context, sizes, net->parameters, data, rows); };
-    analytic.push_back(gradient[i]);
-    numerical.push_back(central_differences(evaluate, &net->parameters[i], 1)[0]);
-  }
-  CHECK(gradient_error(analytic.data(), numerical.data(), numerical.size()) <= gradient_tolerance);
 }
 
 TEST_CASE_TEMPLATE("the same seed gives the same bits, another seed others", Scalar, float, double) {

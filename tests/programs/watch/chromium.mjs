@@ -5,7 +5,6 @@ import { spawn } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { inflateSync } from 'node:zlib';
 
 export class Chromium {
   #next = 0;
@@ -82,6 +81,23 @@ export class Chromium {
     return result.value;
   }
 
+  /** Width, height and bytes (RGBA) of a PNG in base 64, decoded by the page. */
+  async pixels(png) {
+    const { width, height, bytes } = await this.evaluate(`(async () => {
+      const image = new Image();
+      image.src = 'data:image/png;base64,${png}';
+      await image.decode();
+      const canvas = new OffscreenCanvas(image.width, image.height).getContext('2d');
+      canvas.drawImage(image, 0, 0);
+      const { width, height, data } = canvas.getImageData(0, 0, image.width, image.height);
+      const reader = new FileReader();
+      reader.readAsDataURL(new Blob([data]));
+      await new Promise((read) => (reader.onload = read));
+      return { width, height, bytes: reader.result.split(',')[1] };
+    })()`);
+    return { width, height, channels: 4, pixels: Buffer.from(bytes, 'base64') };
+  }
+
   async close() {
     const late = setTimeout(() => this.process.kill('SIGKILL'), 5000);
     if (this.process.exitCode === null)
@@ -116,46 +132,4 @@ export class Chromium {
     }
     this.#waiting.clear();
   }
-}
-
-/** Width, height and bytes (RGB or RGBA) of a PNG as Chromium writes it: 8 bit, not interlaced. */
-export function readPng(file) {
-  const chunks = [];
-  let width, height, channels;
-  for (let at = 8; at < file.length;) {
-    const size = file.readUInt32BE(at);
-    const kind = file.toString('latin1', at + 4, at + 8);
-    const body = file.subarray(at + 8, at + 8 + size);
-    if (kind === 'IHDR') {
-      [width, height] = [body.readUInt32BE(0), body.readUInt32BE(4)];
-      channels = { 2: 3, 6: 4 }[body[9]];
-      if (body[8] !== 8 || !channels || body[12] !== 0) throw new Error('a PNG of another kind than expected');
-    }
-    if (kind === 'IDAT') chunks.push(body);
-    at += size + 12;
-  }
-  const raw = inflateSync(Buffer.concat(chunks));
-  const stride = width * channels;
-  const pixels = Buffer.alloc(height * stride);
-  for (let y = 0; y < height; ++y) {
-    const filter = raw[y * (stride + 1)];
-    for (let x = 0; x < stride; ++x) {
-      const left = x >= channels ? pixels[y * stride + x - channels] : 0;
-      const above = y > 0 ? pixels[(y - 1) * stride + x] : 0;
-      const corner = x >= channels && y > 0 ? pixels[(y - 1) * stride + x - channels] : 0;
-      pixels[y * stride + x] = raw[y * (stride + 1) + 1 + x] + predict(filter, left, above, corner);
-    }
-  }
-  return { width, height, channels, pixels };
-}
-
-/** The PNG filters (ISO/IEC 15948, clause 9). */
-function predict(filter, left, above, corner) {
-  if (filter === 0) return 0;
-  if (filter === 1) return left;
-  if (filter === 2) return above;
-  if (filter === 3) return (left + above) >> 1;
-  const guess = left + above - corner;
-  const [a, b, c] = [Math.abs(guess - left), Math.abs(guess - above), Math.abs(guess - corner)];
-  return a <= b && a <= c ? left : b <= c ? above : corner;
 }

@@ -5,7 +5,7 @@ import { writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { Chromium, readPng } from './chromium.mjs';
+import { Chromium } from './chromium.mjs';
 
 const [program, page, folder, ...rest] = process.argv.slice(2);
 export const given = rest;
@@ -134,9 +134,9 @@ export const slide = async (time) => {
   await drawn();
 };
 export async function screenshot(name) {
-  const file = Buffer.from((await chromium.send('Page.captureScreenshot', { format: 'png' })).data, 'base64');
-  writeFileSync(join(folder, name), file);
-  return readPng(file);
+  const png = (await chromium.send('Page.captureScreenshot', { format: 'png' })).data;
+  writeFileSync(join(folder, name), Buffer.from(png, 'base64'));
+  return chromium.pixels(png);
 }
 export const cameraPlace = () => evaluate('replay.camera.camera.position.toArray()');
 export const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
