@@ -85,7 +85,7 @@ def test_model_of_a_users_own(pinnquad, own_here):
     ("model.block --column battery_voltage=15 --battery 4x5000", "--column battery_voltage"),
     ("model.block --column battery_voltage", "=NUMBER in V"),
     ("model.block --column battery_voltage=fast", "'battery_voltage=fast'"), ("model.block --column battery_voltage=nan", "=NUMBER"),
-    ("model.block --column battery_voltage=15 battery_voltage=16", "twice"), ("model.block --column pack=15", "'pack'"),
+    ("model.block --column battery_voltage=15 --column battery_voltage=16", "twice"), ("model.block --column pack=15", "'pack'"),
     (f"{MODELS}/demo_quadrotor.block --column pack=15", "none"), ("flight.csv", "block"), ("none.block", "none"),
     (f"{MODELS}/demo_quadrotor.hpp --airframe turned.toml", "stand or turn otherwise"),
     (f"{MODELS}/demo_quadrotor.hpp --airframe zeppelin", "'zeppelin'"),
@@ -229,9 +229,10 @@ def test_many_seeds(pinnquad):
     assert summary["flights"] == 5 and summary["lost"] == 0, summary
     assert summary["rmse_cm"]["median"] == errors[2] and summary["rmse_cm"]["worst"] == errors[-1], (summary, errors)
     assert re.search(rf"^  adaptive +drawn .* {errors[2]:.2f} .* {errors[-1]:.2f} +0 of 5$", said.out, re.M), said.out
-    heavy = float(next(row["rmse_cm"] for row in csv.DictReader(Path("some/rows.csv").open())))
-    pinnquad(f"{words} some --seeds 1 --airframe reference_1.5kg")
-    assert float(next(csv.DictReader(Path("some/rows.csv").open()))["rmse_cm"]) != heavy, "another plan flies anew"
+    kept = Path("some/loop.journal").read_bytes(), Path("some/rows.csv").read_bytes()
+    for other, more in ("airframe, mass_kg", "--airframe reference_1.5kg"), ("battery", "--battery 4x5000"):
+        pinnquad.refused(f"{words} some --seeds 1 {more}", at="some/loop.journal", keyword=f"another plan ({other}): give --out")
+    assert kept == (Path("some/loop.journal").read_bytes(), Path("some/rows.csv").read_bytes()), "what was flown stays"
 
 
 @pytest.mark.parametrize("words, keyword", [
