@@ -11,7 +11,7 @@ import pytest
 from conftest import SOURCE, Program, replaced
 
 MODELS = SOURCE / "examples/models"
-OWN = "loop model.block --column battery_voltage=15.2"
+OWN = "loop --column battery_voltage=15.2 model.block"  # options of several values leave the model alone
 
 
 def flown_by(pinnquad, words, code=0):
@@ -155,7 +155,7 @@ def test_waypoints_refused(pinnquad, rows, head, at, keyword):
 
 def errors_of(pinnquad, *words, model="structured_quadrotor"):
     """By condition and controller, cm."""
-    flown = json.loads(pinnquad(f"loop {MODELS}/{model}.block --json", *words).out)
+    flown = json.loads(pinnquad("loop --json", *words, f"{MODELS}/{model}.block").out)
     errors = {}
     for row in flown["rows"]:
         assert not row["crashed"], row
@@ -179,7 +179,7 @@ def test_the_bias_carries_what_the_model_does_not_know(pinnquad):
 
 def test_the_table_of_controllers(pinnquad):
     """Their default, with the conditions as columns; the figures are those of --json."""
-    words = ("--conditions=calm,payload_half", "--trajectory=circle")
+    words = ("--trajectory=circle", "--conditions", "calm,payload_half")
     said = pinnquad(f"loop {MODELS}/structured_quadrotor.block", *words)
     errors, _ = errors_of(pinnquad, *words)
     for controller, calm in errors["calm"].items():
