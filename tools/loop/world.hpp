@@ -22,8 +22,8 @@ class LoopWorld {
   using Engine = std::mt19937_64;
 
  public:
-  /// `still`: the vehicle's effects but for the wind. Steps are `how`'s. `voltage_V`: where a model reads the battery's,
-  /// or null.
+  /// `still`: the vehicle's effects but for the wind. Steps are `how`'s. `voltage_V`: where a model reads the
+  /// battery's, or null.
   LoopWorld(const pinnquad::Airframe<double>& told, const pinnquad::SwitchedEffects& still,
             const pinnquad::Site<double>& site, const LoopCondition& condition, const LoopSensors& sensors,
             const pinnquad::TrackingPlan<double>& how, std::uint64_t seed, double* voltage_V)
