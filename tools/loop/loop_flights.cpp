@@ -60,13 +60,13 @@ std::size_t LoopJournal::read(const nlohmann::json& plan) {
 
 void LoopJournal::refuse(const nlohmann::json& found, const nlohmann::json& plan) const {
   std::string others;
-  nlohmann::json both = plan;
-  if (found.is_object()) both.update(found);
+  nlohmann::json both = found.is_object() ? found : nlohmann::json::object();
+  both.update(plan);
   for (const auto& [name, value] : both.items()) {
-    if (value != plan.value(name, nlohmann::json())) add_to_list(others, name);
+    if (!found.contains(name) || !plan.contains(name) || found[name] != plan[name]) add_to_list(others, name);
   }
-  throw pinnquad::OutputError(path_, "flights of another plan" + (others.empty() ? "" : " (" + others + ")") +
-                                         ": give --out another folder, or delete this file");
+  throw pinnquad::OutputError(
+      path_, "flights of another plan (" + others + "): give --out another folder, or delete this file");
 }
 
 void LoopJournal::file(const nlohmann::json& value) {
