@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "pinnquad/control/leaning.hpp"
 #include "pinnquad/dynamics/airframe.hpp"
 #include "support/hover.hpp"
 
@@ -133,4 +134,29 @@ TEST_CASE("body axes of what is not finite: a Status, and the axes are left alon
     CHECK(body_axes(lift, Heading<double>{0, bad}, axes) == Status::not_finite);
   }
   CHECK(axes == before);
+}
+
+namespace {
+/// Knows of an acceleration across the thrust, by `slope` more with the speed towards north.
+struct Across {
+  double slope;
+  bool varies;
+
+  Vector3<double> across_m_s2(const State<double>& state) const noexcept {
+    return {0.3 + slope * state.velocity_m_s[0], -0.2, 0};
+  }
+  bool across_varies() const noexcept { return varies; }
+};
+}  // namespace
+
+TEST_CASE("a policy that says at run time that nothing varies leans to the same bits, without looking ahead") {
+  const TrajectoryPoint<double> point = agile_figure_eight().sample(1.3);
+  State<double> state;
+  state.velocity_m_s = point.velocity_m_s;
+  const auto of = [&](const Across& policy) { return leaning(policy, state, point, gravity); };
+  const TrajectoryPoint<double> plain = of({0, false}), looks = of({0, true});
+  CHECK(plain.acceleration_m_s2 == Vector3<double>(point.acceleration_m_s2 - Vector3<double>(0.3, -0.2, 0)));
+  CHECK((plain.acceleration_m_s2 == looks.acceleration_m_s2 && plain.jerk_m_s3 == looks.jerk_m_s3));
+  CHECK((plain.snap_m_s4 == looks.snap_m_s4 && plain.jerk_m_s3 == point.jerk_m_s3));
+  CHECK(of({0.1, true}).jerk_m_s3 != point.jerk_m_s3);
 }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <memory>
@@ -55,15 +56,23 @@ struct FlightFeatures {
   static void extract(const FlightInputs<Scalar>& in, Scalar* x) noexcept {
     for (int i = 0; i < size; ++i) x[i] = Scalar(0);
     if (!in.complete) return;
-    std::vector<pinnquad::RunTimeFeatures::Inputs<Scalar>> taps = in.taps;
-    static_cast<pinnquad::MotionInputsWithAltitude<Scalar>&>(taps.front()) = in;
     Scalar own[Most];
-    in.features->extract(taps.data(), static_cast<Scalar*>(own));
-    for (int i = 0; i < in.features->size(); ++i) x[place(*in.features, i)] = own[i];
+    pinnquad::RunTimeFeatures::Inputs<Scalar> present = in.taps.front();
+    static_cast<pinnquad::MotionInputsWithAltitude<Scalar>&>(present) = in;
+    in.features->extract_tap(present, 0, static_cast<Scalar*>(own));
+    for (int tap = 1; tap < in.features->window().taps; ++tap) {
+      in.features->extract_tap(in.taps[std::size_t(tap)], tap, static_cast<Scalar*>(own));
+    }
+    const int first = in.features->angular_acceleration(0);
+    for (int i = 0; i < in.features->size(); ++i) x[place(first, i)] = own[i];
   }
   /// Where a model's feature stands.
   static int place(const pinnquad::RunTimeFeatures& features, int feature) noexcept {
-    const int first = features.angular_acceleration(0);
+    return place(features.angular_acceleration(0), feature);
+  }
+
+ private:
+  static int place(int first, int feature) noexcept {
     if (first < 0 || feature < first) return feature + 3;
     return feature < first + 3 ? feature - first : feature;
   }
@@ -118,7 +127,8 @@ class RunTimeView {
     const auto size = static_cast<std::size_t>(model.features().size());
     envelope_lower = {};
     for (std::size_t i = 0; i < size; ++i) {
-      const std::size_t at = place(i);
+      const auto at = static_cast<std::size_t>(Features::place(model.features(), static_cast<int>(i)));
+      place_[i] = static_cast<std::uint16_t>(at);
       input.mean[at] = model.scales().input_mean[i];
       input.standard_deviation[at] = model.scales().input_deviation[i];
       envelope_lower[at] = model.scales().lower[i];
@@ -129,7 +139,7 @@ class RunTimeView {
     }
     for (int vector = 0; vector < model.golden_count(); ++vector) {
       FeatureVector x{};
-      for (std::size_t i = 0; i < size; ++i) x[place(i)] = model.golden_features(vector)[i];
+      for (std::size_t i = 0; i < size; ++i) x[place_[i]] = model.golden_features(vector)[i];
       golden_features.push_back(x);
       golden_commands.emplace_back();
       std::copy_n(model.golden_commands(vector), pinnquad::rotor_count, golden_commands.back().begin());
@@ -150,27 +160,25 @@ class RunTimeView {
       for (int i = 0; i < pinnquad::rotor_count; ++i) commands[i] = std::numeric_limits<Scalar>::quiet_NaN();
       return;
     }
-    FeatureVector restored, x, scaled;
-    input.restore(standardised, restored.data());  // X again, to rounding: a schema may ask for it
+    FeatureVector x, scaled;
     for (std::size_t i = 0; i < static_cast<std::size_t>(model_->features().size()); ++i) {
-      x[i] = restored[place(i)];
-      scaled[i] = standardised[place(i)];
+      const std::size_t at = place_[i];
+      scaled[i] = standardised[at];
+      x[i] =
+          standardised[at] * input.standard_deviation[at] + input.mean[at];  // X again, to rounding: a schema may ask
     }
     model_->saturate_columns(scaled.data());
     model_->answer(x.data(), scaled.data(), commands, work_.data());
   }
 
  private:
-  std::size_t place(std::size_t feature) const noexcept {
-    return static_cast<std::size_t>(Features::place(model_->features(), static_cast<int>(feature)));
-  }
-
   static std::map<const void*, RunTimeView>& known() {
     static std::map<const void*, RunTimeView> all;
     return all;
   }
 
   const pinnquad::RunTimeModel<Scalar>* model_ = nullptr;
+  std::array<std::uint16_t, static_cast<std::size_t>(Features::size)> place_{};  ///< of each feature of the model
   mutable std::vector<Scalar> work_;
 };
 

@@ -33,6 +33,8 @@ class AnyPolicy {
   }
   void integrate(const Motion& feedback) noexcept { held_->integrate(feedback); }
   pinnquad::Vector3<double> across_m_s2(const State& state) const noexcept { return held_->across_m_s2(state); }
+  /// Whether that depends on the state.
+  bool across_varies() const noexcept { return held_->varies; }
   pinnquad::FallbackCount count() const noexcept { return held_->count(); }
   /// A bias that it learns stands at its bound.
   bool at_bound() const noexcept { return held_->at_bound(); }
@@ -46,6 +48,7 @@ class AnyPolicy {
   template <class Policy>
   using AtBound = decltype(std::declval<const Policy&>().at_bound());
   struct Any {
+    explicit Any(bool across_varies) : varies(across_varies) {}
     virtual ~Any() = default;
     virtual pinnquad::Status answer(const State&, const Motion&, std::uint64_t, Commands&) noexcept = 0;
     virtual void learn(std::uint64_t, bool, const State&, const Commands&) noexcept = 0;
@@ -53,12 +56,13 @@ class AnyPolicy {
     virtual pinnquad::Vector3<double> across_m_s2(const State&) const noexcept = 0;
     virtual pinnquad::FallbackCount count() const noexcept = 0;
     virtual bool at_bound() const noexcept = 0;
+    const bool varies;
     Clock::duration busy{0};
     unsigned answers = 0, lessons = 0;
   };
   template <class Policy>
   struct Held final : Any {
-    explicit Held(Policy p) : policy(std::move(p)) {}
+    explicit Held(Policy p) : Any(pinnquad::across_varies<Policy, double>), policy(std::move(p)) {}
     pinnquad::Status answer(const State& state, const Motion& wanted, std::uint64_t time_us,
                             Commands& commands) noexcept override {
       return policy(state, wanted, time_us, commands);

@@ -153,7 +153,7 @@ nlohmann::json ControlledLoop::fly(const LoopFlight& flight, const LoopGains& ga
   const double period_s = how.physics_step_s * how.steps_per_control;
   const Site<double> site = told_.site();
   std::vector<double> columns = setting_.columns;
-  LoopWorld world(setting_.airframe, flown_, site, condition, setting_.sensors, period_s, half_s, seed,
+  LoopWorld world(setting_.airframe, flown_, site, condition, setting_.sensors, how, seed,
                   setting_.battery ? voltage_among(setting_.model, columns) : nullptr);
   const FlightGains<double> feedback = flight_gains(gains);
   FlightLimits<double> limits =

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "command_line/listed.hpp"
 #include "command_line/parallel.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/text_file.hpp"
@@ -42,18 +43,30 @@ void LoopJournal::add(const nlohmann::json& value) {
   write(value);
 }
 
-/// Length of the lines that are whole, of the same plan; 0: none.
+/// Length of the lines that are whole; 0: none.
 std::size_t LoopJournal::read(const nlohmann::json& plan) {
   std::ifstream in(path_);
   std::string line;
   std::size_t length = 0;
   while (std::getline(in, line) && !in.eof()) {
     const nlohmann::json value = nlohmann::json::parse(line, nullptr, false);
-    if (value.is_discarded() || (length == 0 && value != plan)) break;
+    if (length == 0 && value != plan) refuse(value, plan);
+    if (value.is_discarded()) break;
     if (length > 0) file(value);
     length += line.size() + 1;
   }
   return length;
+}
+
+void LoopJournal::refuse(const nlohmann::json& found, const nlohmann::json& plan) const {
+  std::string others;
+  nlohmann::json both = found.is_object() ? found : nlohmann::json::object();
+  both.update(plan);
+  for (const auto& [name, value] : both.items()) {
+    if (!found.contains(name) || !plan.contains(name) || found[name] != plan[name]) add_to_list(others, name);
+  }
+  throw pinnquad::OutputError(
+      path_, "flights of another plan (" + others + "): give --out another folder, or delete this file");
 }
 
 void LoopJournal::file(const nlohmann::json& value) {

@@ -19,10 +19,10 @@
 namespace programs {
 
 /// FOLDER/loop.journal, one JSON value a line: the plan, then what is done. A last line that was not written whole is
-/// dropped; the journal of another plan too. The folder is held as long as this lives.
+/// dropped. The folder is held as long as this lives.
 class LoopJournal {
  public:
-  /// Throws OutputError, one line.
+  /// Throws OutputError, one line, of a journal of another plan too.
   LoopJournal(const std::string& folder, const nlohmann::json& plan);
 
   /// The row of a flight, or null.
@@ -33,6 +33,7 @@ class LoopJournal {
 
  private:
   std::size_t read(const nlohmann::json& plan);
+  [[noreturn]] void refuse(const nlohmann::json& found, const nlohmann::json& plan) const;
   void file(const nlohmann::json& value);
   void write(const nlohmann::json& value);
 

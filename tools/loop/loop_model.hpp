@@ -32,7 +32,8 @@ struct LoopModel {
 
 inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
   add_model(line, options.model);
-  line.add_option("--column", options.columns, "value of an input column (default: middle of its training range)")
+  line.add_option("--column", options.columns, "of each input column once (default: middle of its training range)")
+      ->allow_extra_args(false)  // a model that follows is no column
       ->type_name("NAME=VALUE");
   line.add_option("--airframe", options.airframe, "fly this vehicle, of the same motor order: see airframe list")
       ->type_name("NAME|FILE.toml");
@@ -95,7 +96,11 @@ inline CLI::Option* add_names(CLI::App& line, const char* option, std::vector<st
                               const std::vector<std::string>& names, const std::string& text) {
   CLI::IsMember known(names);
   known.description("");  // the help says them elsewhere
-  return line.add_option(option, value, text)->delimiter(',')->type_name("NAME,...")->check(known);
+  return line.add_option(option, value, text)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...")
+      ->check(known);
 }
 
 /// Each name once; `usual` where none is given.

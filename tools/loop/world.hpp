@@ -22,11 +22,12 @@ class LoopWorld {
   using Engine = std::mt19937_64;
 
  public:
-  /// `still`: the vehicle's effects but for the wind. `voltage_V`: where a model reads the battery's, or null.
+  /// `still`: the vehicle's effects but for the wind. Steps are `how`'s. `voltage_V`: where a model reads the
+  /// battery's, or null.
   LoopWorld(const pinnquad::Airframe<double>& told, const pinnquad::SwitchedEffects& still,
             const pinnquad::Site<double>& site, const LoopCondition& condition, const LoopSensors& sensors,
-            double control_period_s, double half_s, std::uint64_t seed, double* voltage_V)
-      : LoopWorld(Draw(told, still, condition, seed), site, condition, sensors, control_period_s, half_s, voltage_V) {}
+            const pinnquad::TrackingPlan<double>& how, std::uint64_t seed, double* voltage_V)
+      : LoopWorld(Draw(told, still, condition, seed), site, condition, sensors, how, voltage_V) {}
 
   /// Factors of mass, inertia, all thrust and the weakest rotor's, and the wind, m/s towards north and east.
   struct Drawn {
@@ -34,12 +35,12 @@ class LoopWorld {
   };
   const Drawn& drawn() const noexcept { return drawn_; }
 
-  pinnquad::Status step(pinnquad::VehicleState<double>& state, const Commands& commands, double step_s) noexcept {
+  pinnquad::Status step(pinnquad::VehicleState<double>& state, const Commands& commands, double /*step_s*/) noexcept {
     const bool changed = !at_half_ || state.time_s >= half_s_;
     const pinnquad::SwitchedQuadrotor& vehicle = changed ? after_ : before_;
     pinnquad::ThrustFractions<double> thrusts = vehicle.rotors().fractions(pinnquad::clipped(commands));
     for (std::size_t i = 0; i < thrusts.size(); ++i) thrusts[i] *= changed ? strength_[i] : 1;
-    return vehicle.step(state, vehicle.rotors().commands_of(thrusts), step_s);
+    return vehicle.step(state, vehicle.rotors().commands_of(thrusts), changed ? step_after_ : step_before_);
   }
 
   pinnquad::State<double> sense(const pinnquad::VehicleState<double>& state) noexcept {
@@ -102,19 +103,22 @@ class LoopWorld {
   };
 
   LoopWorld(const Draw& draw, const pinnquad::Site<double>& site, const LoopCondition& condition,
-            const LoopSensors& sensors, double control_period_s, double half_s, double* voltage_V)
+            const LoopSensors& sensors, const pinnquad::TrackingPlan<double>& how, double* voltage_V)
       : before_(quadrotor_with(draw.effects, draw.told, site)),
         after_(quadrotor_with(draw.effects, draw.flown, site)),
+        step_before_(before_.time_step(how.physics_step_s)),
+        step_after_(after_.time_step(how.physics_step_s)),
         drawn_(draw.drawn),
         strength_(draw.strength),
         at_half_(condition.at_half),
-        half_s_(half_s),
+        half_s_(0.5 * how.duration_s),
         sensors_(sensors),
         engine_(draw.engine),
         voltage_V_(voltage_V),
-        late_(static_cast<std::size_t>(std::lround(sensors.delay_s / control_period_s))) {}
+        late_(static_cast<std::size_t>(std::lround(sensors.delay_s / (how.physics_step_s * how.steps_per_control)))) {}
 
   pinnquad::SwitchedQuadrotor before_, after_;
+  pinnquad::SwitchedQuadrotor::TimeStep step_before_, step_after_;
   Drawn drawn_;
   Commands strength_;
   bool at_half_;

@@ -100,15 +100,13 @@ programs::Command loop_command(CLI::App& program) {
             "compare these controllers, of those below (default: pid,formula,indi,structured,adaptive)");
   add_names(*line, "--conditions", options->conditions, programs::names_of(programs::loop_conditions),
             "under these conditions, of those below (default: calm,wind_8,gusts,payload,weak_rotor,battery)");
-  const auto list = [&](const char* name, std::vector<std::string>& value, const std::vector<std::string>& known,
-                        const char* text) {
-    line->add_option(name, value, text)->delimiter(',')->type_name("NAME,...")->check(CLI::IsMember(known));
-  };
-  list("--trajectories", options->trajectories, {campaign_trajectories.begin(), campaign_trajectories.end()},
-       "on these trajectories (default: eight,circle,random); step: a place 50 m away");
-  list("--gains", options->gains, {campaign_gains.begin(), campaign_gains.end()},
-       "equal: moderate gains, the same for all; tuned: those that a search finds for each, on other trajectories and "
-       "seeds (default: both)");
+  add_names(*line, "--trajectories", options->trajectories,
+            {campaign_trajectories.begin(), campaign_trajectories.end()},
+            "on these trajectories (default: eight,circle,random); step: a place 50 m away");
+  add_names(
+      *line, "--gains", options->gains, {campaign_gains.begin(), campaign_gains.end()},
+      "equal: moderate gains, the same for all; tuned: those that a search finds for each, on other trajectories and "
+      "seeds (default: both)");
   line->add_option(
           "--vehicle", options->vehicle,
           "nominal: as the controllers know it; harder: with rotor drag, inflow, flapping, wake, a battery that "

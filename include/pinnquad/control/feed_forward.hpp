@@ -12,7 +12,7 @@
 //       the controller's feedback of this tick
 //   Vector3<S> across_m_s2(const State<S>&) const
 //       an acceleration across the thrust, which no rotor makes: NED, m/s^2; it is taken from what is asked for.
-//       `static constexpr bool across_varies = false`: it is the same in every state
+//       `static constexpr bool across_varies` or `bool across_varies() const`: false if it is the same in every state
 //   Status observed(const State<S>&, const Accelerations<S>& flown, std::uint64_t time_us, Commands<S>&)
 //       the answer to a motion that was flown, without guard and integral
 //   FallbackCount count() const

@@ -14,6 +14,15 @@ namespace pinnquad {
 
 namespace detail {
 
+template <class Policy>
+using AcrossVariesCall = decltype(std::declval<const Policy&>().across_varies());
+/// False for a policy behind one type of many whose across_varies() says that it is the same in every state.
+template <class Policy>
+bool varies_at_run_time([[maybe_unused]] const Policy& policy) noexcept {
+  if constexpr (is_detected<AcrossVariesCall, Policy>) return policy.across_varies();
+  return true;
+}
+
 /// Across the thrust, a time after the point, on the trajectory: velocity of the point, attitude and body rates of one
 /// that leans.
 template <class Scalar, class Policy>
@@ -49,6 +58,7 @@ TrajectoryPoint<Scalar> leaning(const Policy& policy, const State<Scalar>& state
   if constexpr (knows_across<Policy, Scalar>) {
     leans.acceleration_m_s2 -= across_of(policy, state);
     if constexpr (across_varies<Policy, Scalar>) {
+      if (!detail::varies_at_run_time(policy)) return leans;
       constexpr Scalar h = Scalar(0.02);
       FlatMotion<Scalar> flat;
       if (flat_motion(leans, gravity_m_s2, flat) != Status::ok) return leans;

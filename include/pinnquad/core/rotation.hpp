@@ -76,12 +76,15 @@ Quaternion<Scalar> normalized(const Quaternion<Scalar>& q) noexcept {
   return {q.w * scale, q.x * scale, q.y * scale, q.z * scale};
 }
 
-/// Body vector in the world frame, unit quaternion: v + 2 w (n x v) + 2 n x (n x v).
+/// Body vector in the world frame, unit quaternion: v + 2 w (n x v) + 2 n x (n x v). In scalars: Eigen would split a
+/// vector of three into two and one, for which the next reader waits.
 template <class Scalar>
 Vector3<Scalar> body_to_world(const Quaternion<Scalar>& q, const Vector3<Scalar>& v) noexcept {
-  const Vector3<Scalar> n(q.x, q.y, q.z);
-  const Vector3<Scalar> t = cross<Scalar>(n, v) * Scalar(2);
-  return v + t * q.w + cross<Scalar>(n, t);
+  const Scalar two(2);
+  const Scalar x = (q.y * v[2] - q.z * v[1]) * two, y = (q.z * v[0] - q.x * v[2]) * two;
+  const Scalar z = (q.x * v[1] - q.y * v[0]) * two;
+  return Vector3<Scalar>(v[0] + x * q.w + (q.y * z - q.z * y), v[1] + y * q.w + (q.z * x - q.x * z),
+                         v[2] + z * q.w + (q.x * y - q.y * x));
 }
 
 /// World vector in the body frame, unit quaternion.

@@ -39,7 +39,9 @@ struct Wrench {
 /// Force and torque, each by itself.
 template <class Scalar>
 Wrench<Scalar> operator+(const Wrench<Scalar>& a, const Wrench<Scalar>& b) noexcept {
-  return {a.force_N + b.force_N, a.torque_N_m + b.torque_N_m};
+  const Vector3<Scalar>&f = a.force_N, &g = b.force_N, &t = a.torque_N_m, &u = b.torque_N_m;
+  return {Vector3<Scalar>(f[0] + g[0], f[1] + g[1], f[2] + g[2]),
+          Vector3<Scalar>(t[0] + u[0], t[1] + u[1], t[2] + u[2])};
 }
 
 /// Force and torque, each by itself.

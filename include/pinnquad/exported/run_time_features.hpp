@@ -126,13 +126,16 @@ class RunTimeFeatures {
   /// Fills x[0..size()), physical units.
   template <class Scalar>
   void extract(const Inputs<Scalar>* inputs, Scalar* x) const noexcept {
-    for (int tap = 0; tap < window_.taps; ++tap) {
-      Scalar named[NamedFeatures::size];
-      NamedFeatures::extract(static_cast<const MotionInputs<Scalar>&>(inputs[tap]), static_cast<Scalar*>(named));
-      for (int i = 0; i < size_; ++i) {
-        const int source = features_[i].source;
-        if (features_[i].tap == tap) x[i] = source < altitude ? named[source] : beside_motion(inputs[tap], source);
-      }
+    for (int tap = 0; tap < window_.taps; ++tap) extract_tap(inputs[tap], tap, x);
+  }
+  /// The features of one tap among them.
+  template <class Scalar>
+  void extract_tap(const Inputs<Scalar>& inputs, int tap, Scalar* x) const noexcept {
+    Scalar named[NamedFeatures::size];
+    NamedFeatures::extract(static_cast<const MotionInputs<Scalar>&>(inputs), static_cast<Scalar*>(named));
+    for (int i = 0; i < size_; ++i) {
+      const int source = features_[i].source;
+      if (features_[i].tap == tap) x[i] = source < altitude ? named[source] : beside_motion(inputs, source);
     }
   }
 

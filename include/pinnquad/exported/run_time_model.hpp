@@ -83,7 +83,7 @@ class RunTimeModel {
   }
   /// As the compiled model does: columns outside their range of the training rows are moved to its edge.
   void saturate_columns(Scalar* standardised) const noexcept {
-    for (int i = 0; i < features_.size(); ++i) {
+    for (int i = 0; features_.column_count() > 0 && i < features_.size(); ++i) {
       if (features_.is_column(i)) standardised[i] = detail::saturated(scales_, i, standardised[i]);
     }
   }

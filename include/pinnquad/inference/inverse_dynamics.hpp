@@ -260,10 +260,15 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
   /// `Value`: Scalar, or const Scalar of features that must stay.
   template <class Value, class ReportType>
   PINNQUAD_ALWAYS_INLINE Status ask_network(Value* x, Scalar* commands, ReportType& report) const noexcept {
-    if constexpr (reports<ReportType>) measure(x, report);
     if constexpr (Guard::refuses_outside_envelope) {
-      if (!inside_envelope(x)) return Status::outside_envelope;
+      if (!inside_envelope(x)) {
+        if constexpr (reports<ReportType>) measure(x, report);
+        return Status::outside_envelope;
+      }
     } else {
+      if constexpr (reports<ReportType>) {
+        if (!inside_envelope(x)) measure(x, report);
+      }
       if (!all_finite(x, Features::size)) return Status::not_finite;
     }
     if (!near_enough(x, report)) return Status::outside_distribution;
@@ -313,13 +318,14 @@ class InverseDynamics : private detail::Held<ModelType>, private detail::Held<Gu
     return true;
   }
 
-  void measure(const Scalar* x, Report& report) const noexcept {
+  /// Fills in how far features lie outside, of a report that is as made.
+  PINNQUAD_NOINLINE void measure(const Scalar* x, Report& report) const noexcept {
     const detail::Scales<Scalar> scales = detail::scales_of(model());
     Scalar worst(0);
     for (int i = 0; i < Features::size; ++i) {
+      if (is_finite(x[i]) && within(scales, x, i)) continue;
       const Scalar beyond = x[i] < scales.lower[i] ? scales.lower[i] - x[i] : x[i] - scales.upper[i];  // NaN stays NaN
-      Scalar excess = beyond / ((scales.upper[i] - scales.lower[i]) / Scalar(2));
-      if (is_finite(x[i]) && within(scales, x, i)) excess = Scalar(0);
+      const Scalar excess = beyond / ((scales.upper[i] - scales.lower[i]) / Scalar(2));
       report.excess[static_cast<std::size_t>(i)] = excess;
       // what is not finite outdoes every number, the first of them all
       if (is_finite(worst) && (!is_finite(excess) || excess > worst)) {
