@@ -26,6 +26,11 @@ bool is_plain(const std::vector<double>& gains);
 /// Blocks of `is_plain`: so many, unless they get shorter than what motions of one manoeuvre have in common.
 std::size_t block_count(double duration_s);
 
+/// The block in which such a share of the time has passed.
+inline std::size_t block_at(double share, std::size_t blocks) {
+  return std::min(static_cast<std::size_t>(share * static_cast<double>(blocks)), blocks - 1);
+}
+
 /// Weights of blocks with such energies: the wildest fifth weigh as much as the liveliest of the others.
 std::vector<double> block_weights(const std::vector<double>& energies);
 
@@ -87,63 +92,115 @@ bool can_be_of_axis(const MotionSums& sums, Eigen::Index axis, Eigen::Index colu
 /// with its own.
 std::optional<AxisMistake> find_axis_mistake(const MotionBlocks& sums, double follows, double better);
 
+constexpr double step_rounding_s = 1e-6;
+
+/// Calls `begin()` at each stretch of rows without a gap, then with each of its rows `add(changed, integrated, dt_s)`.
+/// `change(row)`: of a quantity from this row to the next; `rate(row)`: of it, per second, asked for once, row by row.
+template <class Time, class Change, class Rate, class Begin, class Add>
+void each_motion(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate, const Begin& begin,
+                 const Add& add) {
+  constexpr double longest_step_s = 0.5, largest = 1e4;  // beyond is no motion, whatever the unit
+  bool open = false;
+  Vector3<double> next = rows > 0 ? Vector3<double>(rate(0)) : Vector3<double>::Zero();
+  for (std::size_t row = 0; row + 1 < rows; ++row) {
+    const double dt_s = time_s(row + 1) - time_s(row);
+    const Vector3<double> rate_before = next;
+    next = rate(row + 1);
+    const Vector3<double> mean = (rate_before + next) / 2;
+    const bool usable = dt_s > 0 && dt_s <= longest_step_s && mean.squaredNorm() <= largest * largest;
+    const Vector3<double> changed = usable ? Vector3<double>(change(row)) : mean;
+    if (!usable || !(changed.squaredNorm() <= largest * largest)) {
+      open = false;
+      continue;
+    }
+    if (!open) begin();
+    open = true;
+    add(changed, Vector3<double>(mean * dt_s), dt_s);
+  }
+}
+
+/// Sums over steps of at least `step_s`, one after the other, of two series that are read once: each_motion().
+template <class Time, class Change, class Rate>
+MotionBlocks motion_sums(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate, double step_s) {
+  struct Place {
+    double time_s = 0;
+    Vector3<double> changed = Vector3<double>::Zero(), integral = Vector3<double>::Zero();
+  };
+  std::vector<Place> steps;  // the time of the begin, and what comes until the end
+  double before_s = 0;       // of the stretches that are over
+  Place first, last;         // since the stretch's begin
+  each_motion(
+      rows, time_s, change, rate,
+      [&] {
+        before_s += last.time_s;
+        first = last = {};
+      },
+      [&](const Vector3<double>& changed, const Vector3<double>& integrated, double dt_s) {
+        last.time_s += dt_s;
+        last.changed += changed;
+        last.integral += integrated;
+        if (last.time_s - first.time_s < step_s - step_rounding_s) return;
+        steps.push_back({before_s + first.time_s, last.changed - first.changed, last.integral - first.integral});
+        first = last;
+      });
+  const double duration_s = before_s + last.time_s;
+  std::vector<MotionSums> blocks(block_count(duration_s));
+  for (const Place& step : steps) {
+    blocks[block_at(step.time_s / duration_s, blocks.size())].add(step.changed, step.integral);
+  }
+  return MotionBlocks(std::move(blocks));
+}
+
 /// The two series row by row, as running sums, in stretches without a gap.
 class MotionPair {
  public:
-  /// `change(row)`: of the quantity from this row to the next; `rate(row)`: of it, per second.
+  /// See each_motion().
   template <class Time, class Change, class Rate>
   MotionPair(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate) {
-    constexpr double longest_step_s = 0.5, largest = 1e4;  // beyond is no motion, whatever the unit
-    bool open = false;
-    for (std::size_t row = 0; row + 1 < rows; ++row) {
-      const double dt_s = time_s(row + 1) - time_s(row);
-      const bool usable = dt_s > 0 && dt_s <= longest_step_s;
-      const Vector3<double> changed = usable ? Vector3<double>(change(row)) : Vector3<double>::Zero();
-      const Vector3<double> mean = usable ? Vector3<double>((rate(row) + rate(row + 1)) / 2) : changed;
-      if (!usable || !(changed.norm() <= largest) || !(mean.norm() <= largest)) {
-        open = false;
-        continue;
-      }
-      if (!open) {
-        stretches_.push_back({{0.0}, {Vector3<double>::Zero()}, {Vector3<double>::Zero()}});
-        if (row == 0) stretches_.back().reserve(rows);  // most flights are one stretch
-      }
-      open = true;
-      Stretch& stretch = stretches_.back();
-      stretch.changed.push_back(stretch.changed.back() + changed);
-      stretch.integral.push_back(stretch.integral.back() + mean * dt_s);
-      stretch.time_s.push_back(stretch.time_s.back() + dt_s);
-    }
+    time_s_.reserve(rows);
+    changed_.reserve(rows);
+    integral_.reserve(rows);
+    each_motion(
+        rows, time_s, change, rate,
+        [this] {
+          begins_.push_back(time_s_.size());
+          push_back(0, Vector3<double>::Zero(), Vector3<double>::Zero());
+        },
+        [this](const Vector3<double>& changed, const Vector3<double>& integrated, double dt_s) {
+          push_back(time_s_.back() + dt_s, changed_.back() + changed, integral_.back() + integrated);
+        });
   }
 
   /// Over steps of at least `step_s`, one after the other; the rate of `late_s` before.
   MotionBlocks sums(double step_s, double late_s = 0) const;
 
   /// The time by which the quantity comes after its rate, where the two agree far better with it than without, plainly:
-  /// a tenth of a second or more, to half a second.
+  /// a tenth of a second or more, to half a second. To ask of two that agree worse than `in_time`.
   std::optional<double> lateness_s(double step_s) const;
 
  private:
-  struct Stretch {
-    std::vector<double> time_s;  // from its begin
-    std::vector<Vector3<double>> changed, integral;
+  void push_back(double time_s, const Vector3<double>& changed, const Vector3<double>& integral) {
+    time_s_.push_back(time_s);
+    changed_.push_back(changed);
+    integral_.push_back(integral);
+  }
 
-    void reserve(std::size_t rows) {
-      time_s.reserve(rows);
-      changed.reserve(rows);
-      integral.reserve(rows);
-    }
+  /// Within the rows of a stretch. `row`: near that time; the answer's.
+  Vector3<double> integral_at(double at_s, std::size_t begin, std::size_t end, std::size_t& row) const {
+    row = std::min(row, end - 2);
+    while (row > begin && time_s_[row] > at_s) --row;
+    while (row + 2 < end && time_s_[row + 1] <= at_s) ++row;
+    const double share = (at_s - time_s_[row]) / (time_s_[row + 1] - time_s_[row]);
+    return integral_[row] + share * (integral_[row + 1] - integral_[row]);
+  }
 
-    /// `row`: near that time; the answer's.
-    Vector3<double> integral_at(double at_s, std::size_t& row) const {
-      row = std::min(row, time_s.size() - 2);
-      while (row > 0 && time_s[row] > at_s) --row;
-      while (row + 2 < time_s.size() && time_s[row + 1] <= at_s) ++row;
-      const double share = (at_s - time_s[row]) / (time_s[row + 1] - time_s[row]);
-      return integral[row] + share * (integral[row + 1] - integral[row]);
-    }
-  };
-  std::vector<Stretch> stretches_;
+  std::size_t end_of(std::size_t stretch) const {
+    return stretch + 1 < begins_.size() ? begins_[stretch + 1] : time_s_.size();
+  }
+
+  std::vector<std::size_t> begins_;  ///< of the stretches
+  std::vector<double> time_s_;       ///< since the stretch's begin
+  std::vector<Vector3<double>> changed_, integral_;
 };
 
 }  // namespace pinnquad::detail

@@ -159,46 +159,42 @@ PINNQUAD_BODY bool MotionBlocks::confirms(Eigen::Index axis) const {
 }
 
 PINNQUAD_BODY MotionBlocks MotionPair::sums(double step_s, double late_s) const {
-  constexpr double rounding = 1e-6;
   double duration_s = 0;
-  for (const Stretch& stretch : stretches_) duration_s += stretch.time_s.back();
+  for (std::size_t k = 0; k < begins_.size(); ++k) duration_s += time_s_[end_of(k) - 1];
   std::vector<MotionSums> blocks(block_count(duration_s));
   double before_s = 0;
-  for (const Stretch& stretch : stretches_) {
-    const std::size_t rows = stretch.time_s.size();
-    std::size_t row = 0, step = 1;          // of the integral that was read last; rows of the earlier step
+  for (std::size_t k = 0; k < begins_.size(); ++k) {
+    const std::size_t first_row = begins_[k], rows = end_of(k);
+    std::size_t row = first_row, step = 1;  // of the integral that was read last; rows of the earlier step
     std::optional<Vector3<double>> before;  // the integral at the end of the earlier step, which is this one's begin
     const auto takes_less = [&](std::size_t begin, std::size_t end) {
-      return stretch.time_s[end] - stretch.time_s[begin] < step_s - rounding;
+      return time_s_[end] - time_s_[begin] < step_s - step_rounding_s;
     };
-    for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
+    for (std::size_t begin = first_row, end = begin; begin < rows; begin = end) {
       end = std::min(begin + step, rows - 1);
       while (end > begin && !takes_less(begin, end - 1)) --end;
       while (end < rows && takes_less(begin, end)) ++end;
       if (end == rows) break;
       step = end - begin;
-      const double first_s = stretch.time_s[begin] - late_s, last_s = stretch.time_s[end] - late_s;
-      if (first_s < 0 || last_s > stretch.time_s.back()) continue;
-      const Vector3<double> first = before ? *before : stretch.integral_at(first_s, row);
+      const double first_s = time_s_[begin] - late_s, last_s = time_s_[end] - late_s;
+      if (first_s < 0 || last_s > time_s_[rows - 1]) continue;
+      const Vector3<double> first = before ? *before : integral_at(first_s, first_row, rows, row);
       row += step;
-      before = stretch.integral_at(last_s, row);
-      const Vector3<double> integral = *before - first;
-      const double share = (before_s + stretch.time_s[begin]) / duration_s;
-      const auto block = static_cast<std::size_t>(share * static_cast<double>(blocks.size()));
-      blocks[std::min(block, blocks.size() - 1)].add(stretch.changed[end] - stretch.changed[begin], integral);
+      before = integral_at(last_s, first_row, rows, row);
+      blocks[block_at((before_s + time_s_[begin]) / duration_s, blocks.size())].add(changed_[end] - changed_[begin],
+                                                                                    *before - first);
     }
-    before_s += stretch.time_s.back();
+    before_s += time_s_[rows - 1];
   }
   return MotionBlocks(std::move(blocks));
 }
 
 PINNQUAD_BODY std::optional<double> MotionPair::lateness_s(double step_s) const {
   constexpr double longest_s = 0.5, shortest_s = 0.1, grid_s = 0.02;
-  constexpr double enough = 0.6, misses = 0.03, left = 0.4;
+  constexpr double enough = 0.6, left = 0.4;
   const MotionBlocks as_it_stands = sums(step_s);
   const std::array<bool, 3> moving = as_it_stands.moving();
   const double now = as_it_stands.agreement(moving);
-  if (!(now < 1 - misses)) return std::nullopt;
   double late_s = 0, most = now;
   for (int k = -static_cast<int>(longest_s / grid_s); k <= static_cast<int>(longest_s / grid_s); ++k) {
     const MotionBlocks at = sums(step_s, grid_s * k);
