@@ -13,7 +13,6 @@
 #include "logs/integrated_attitude.hpp"
 #include "pinnquad/core/rotation.hpp"
 #include "pinnquad/io/file_error.hpp"
-#include "pinnquad/io/text_file.hpp"
 #include "pinnquad/logs/flight_log.hpp"
 
 namespace pinnquad::logs {
@@ -438,11 +437,6 @@ FlightLog parse_blackbox(std::string_view file, const std::string& name, const L
   const std::size_t begin = begins[selection.flight];
   const std::size_t end = selection.flight + 1 < begins.size() ? begins[selection.flight + 1] : file.size();
   return blackbox::Reader(file.substr(0, end), begin, name, selection).read();
-}
-
-FlightLog read_blackbox(const std::string& path, const LogSelection& selection) {
-  const std::string file = file_text(path);
-  return parse_blackbox(file, path, selection);
 }
 
 }  // namespace pinnquad::logs

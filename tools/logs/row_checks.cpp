@@ -133,8 +133,9 @@ RowMask grounded_rows(const Flight& flight, double period_s) {
     speed[row] = flight[row].velocity_m_s.norm();
   }
   std::vector<double> sorted = collective;
-  std::sort(sorted.begin(), sorted.end());
-  const double usual = sorted[static_cast<std::size_t>(high * static_cast<double>(rows - 1))];
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(high * static_cast<double>(rows - 1));
+  std::nth_element(sorted.begin(), at, sorted.end());
+  const double usual = *at;
   std::vector<double> ratios;
   for (std::size_t row = 0; row < rows; ++row) {
     if (collective[row] >= share_of_high * usual && usual > 0) ratios.push_back(upward[row] / collective[row]);

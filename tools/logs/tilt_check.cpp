@@ -36,21 +36,22 @@ detail::MotionBlocks tilt_sums(const Flight& flight, const detail::VelocityReadi
     square += v.squaredNorm();
   }
   const double drag_1_s = square > 0 ? std::max(0.0, product / square) : 0;
-  return detail::motion_sums(
-      flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-      [&](std::size_t row) {
-        const Sample &first = flight[row], &next = flight[row + 1];
-        Vector3<double> change = velocity_of(next, reading) - velocity_of(first, reading);
-        change[2] = has_altitude ? first.altitude_m - next.altitude_m : 0;
-        return change;
-      },
-      [&](std::size_t row) {
-        const Vector3<double> v = velocity_of(flight[row], reading);
-        Vector3<double> rate = acceleration_of_tilt(flight[row]) - mean_tilt - drag_1_s * (v - mean_velocity);
-        rate[2] = has_altitude ? v[2] : 0;
-        return rate;
-      },
-      detail::turning_step_s);
+  return detail::motion_steps(
+             flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+             [&](std::size_t row) {
+               const Sample &first = flight[row], &next = flight[row + 1];
+               Vector3<double> change = velocity_of(next, reading) - velocity_of(first, reading);
+               change[2] = has_altitude ? first.altitude_m - next.altitude_m : 0;
+               return change;
+             },
+             [&](std::size_t row) {
+               const Vector3<double> v = velocity_of(flight[row], reading);
+               Vector3<double> rate = acceleration_of_tilt(flight[row]) - mean_tilt - drag_1_s * (v - mean_velocity);
+               rate[2] = has_altitude ? v[2] : 0;
+               return rate;
+             },
+             detail::turning_step_s)
+      .sums();
 }
 
 }  // namespace

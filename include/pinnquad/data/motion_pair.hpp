@@ -26,11 +26,6 @@ bool is_plain(const std::vector<double>& gains);
 /// Blocks of `is_plain`: so many, unless they get shorter than what motions of one manoeuvre have in common.
 std::size_t block_count(double duration_s);
 
-/// The block in which such a share of the time has passed.
-inline std::size_t block_at(double share, std::size_t blocks) {
-  return std::min(static_cast<std::size_t>(share * static_cast<double>(blocks)), blocks - 1);
-}
-
 /// Weights of blocks with such energies: the wildest fifth weigh as much as the liveliest of the others.
 std::vector<double> block_weights(const std::vector<double>& energies);
 
@@ -92,8 +87,6 @@ bool can_be_of_axis(const MotionSums& sums, Eigen::Index axis, Eigen::Index colu
 /// with its own.
 std::optional<AxisMistake> find_axis_mistake(const MotionBlocks& sums, double follows, double better);
 
-constexpr double step_rounding_s = 1e-6;
-
 /// Calls `begin()` at each stretch of rows without a gap, then with each of its rows `add(changed, integrated, dt_s)`.
 /// `change(row)`: of a quantity from this row to the next; `rate(row)`: of it, per second, asked for once, row by row.
 template <class Time, class Change, class Rate, class Begin, class Add>
@@ -119,89 +112,70 @@ void each_motion(std::size_t rows, const Time& time_s, const Change& change, con
   }
 }
 
-/// Sums over steps of at least `step_s`, one after the other, of two series that are read once: each_motion().
+/// Steps of two series, one after the other. Times are those of all stretches without a gap in a row.
+struct MotionSteps {
+  struct Step {
+    double begin_s, end_s;
+    Vector3<double> changed, integral;
+    std::size_t stretch;
+  };
+  std::vector<Step> steps;
+  std::vector<double> stretch_ends_s;
+
+  MotionBlocks sums() const;
+
+  /// The time by which the quantity comes after its rate, where the two agree far better with it than without, plainly:
+  /// a tenth of a second or more, to half a second. To ask of two that agree worse than `in_time`. `integral`: of the
+  /// rate, at times.
+  std::optional<double> lateness_s(const std::vector<double>& time_s,
+                                   const std::vector<Vector3<double>>& integral) const;
+};
+
+/// Steps of at least `step_s`; see each_motion().
 template <class Time, class Change, class Rate>
-MotionBlocks motion_sums(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate, double step_s) {
+MotionSteps motion_steps(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate, double step_s) {
+  constexpr double rounding_s = 1e-6;
+  MotionSteps result;
   struct Place {
     double time_s = 0;
     Vector3<double> changed = Vector3<double>::Zero(), integral = Vector3<double>::Zero();
   };
-  std::vector<Place> steps;  // the time of the begin, and what comes until the end
-  double before_s = 0;       // of the stretches that are over
-  Place first, last;         // since the stretch's begin
+  double before_s = 0;  // of the stretches that are over
+  Place first, last;    // since the stretch's begin
   each_motion(
       rows, time_s, change, rate,
       [&] {
         before_s += last.time_s;
         first = last = {};
+        result.stretch_ends_s.push_back(before_s);
       },
       [&](const Vector3<double>& changed, const Vector3<double>& integrated, double dt_s) {
         last.time_s += dt_s;
         last.changed += changed;
         last.integral += integrated;
-        if (last.time_s - first.time_s < step_s - step_rounding_s) return;
-        steps.push_back({before_s + first.time_s, last.changed - first.changed, last.integral - first.integral});
+        result.stretch_ends_s.back() = before_s + last.time_s;
+        if (last.time_s - first.time_s < step_s - rounding_s) return;
+        result.steps.push_back({before_s + first.time_s, before_s + last.time_s, last.changed - first.changed,
+                                last.integral - first.integral, result.stretch_ends_s.size() - 1});
         first = last;
       });
-  const double duration_s = before_s + last.time_s;
-  std::vector<MotionSums> blocks(block_count(duration_s));
-  for (const Place& step : steps) {
-    blocks[block_at(step.time_s / duration_s, blocks.size())].add(step.changed, step.integral);
-  }
-  return MotionBlocks(std::move(blocks));
+  return result;
 }
 
-/// The two series row by row, as running sums, in stretches without a gap.
-class MotionPair {
- public:
-  /// See each_motion().
-  template <class Time, class Change, class Rate>
-  MotionPair(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate) {
-    time_s_.reserve(rows);
-    changed_.reserve(rows);
-    integral_.reserve(rows);
-    each_motion(
-        rows, time_s, change, rate,
-        [this] {
-          begins_.push_back(time_s_.size());
-          push_back(0, Vector3<double>::Zero(), Vector3<double>::Zero());
-        },
-        [this](const Vector3<double>& changed, const Vector3<double>& integrated, double dt_s) {
-          push_back(time_s_.back() + dt_s, changed_.back() + changed, integral_.back() + integrated);
-        });
-  }
-
-  /// Over steps of at least `step_s`, one after the other; the rate of `late_s` before.
-  MotionBlocks sums(double step_s, double late_s = 0) const;
-
-  /// The time by which the quantity comes after its rate, where the two agree far better with it than without, plainly:
-  /// a tenth of a second or more, to half a second. To ask of two that agree worse than `in_time`.
-  std::optional<double> lateness_s(double step_s) const;
-
- private:
-  void push_back(double time_s, const Vector3<double>& changed, const Vector3<double>& integral) {
-    time_s_.push_back(time_s);
-    changed_.push_back(changed);
-    integral_.push_back(integral);
-  }
-
-  /// Within the rows of a stretch. `row`: near that time; the answer's.
-  Vector3<double> integral_at(double at_s, std::size_t begin, std::size_t end, std::size_t& row) const {
-    row = std::min(row, end - 2);
-    while (row > begin && time_s_[row] > at_s) --row;
-    while (row + 2 < end && time_s_[row + 1] <= at_s) ++row;
-    const double share = (at_s - time_s_[row]) / (time_s_[row + 1] - time_s_[row]);
-    return integral_[row] + share * (integral_[row + 1] - integral_[row]);
-  }
-
-  std::size_t end_of(std::size_t stretch) const {
-    return stretch + 1 < begins_.size() ? begins_[stretch + 1] : time_s_.size();
-  }
-
-  std::vector<std::size_t> begins_;  ///< of the stretches
-  std::vector<double> time_s_;       ///< since the stretch's begin
-  std::vector<Vector3<double>> changed_, integral_;
-};
+/// MotionSteps::lateness_s() of two series.
+template <class Time, class Change, class Rate>
+std::optional<double> motion_lateness_s(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate,
+                                        double step_s) {
+  std::vector<double> at_s = {0.0};
+  std::vector<Vector3<double>> integral = {Vector3<double>::Zero()};
+  each_motion(
+      rows, time_s, change, rate, [] {},
+      [&](const Vector3<double>&, const Vector3<double>& integrated, double dt_s) {
+        at_s.push_back(at_s.back() + dt_s);
+        integral.push_back(integral.back() + integrated);
+      });
+  return motion_steps(rows, time_s, change, rate, step_s).lateness_s(at_s, integral);
+}
 
 }  // namespace pinnquad::detail
 

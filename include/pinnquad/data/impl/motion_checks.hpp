@@ -36,7 +36,7 @@ PINNQUAD_BODY Vector3<double> turn_vector(const Quaternion<double>& q) {
   return v * (sine > 1e-12 ? 2 * std::atan2(sine, shorter_way * q.w) / sine : 2.0);
 }
 
-/// `use` with what motion_sums() takes. `logged`: the attitudes of the columns as they stand.
+/// `use` with what motion_steps() takes. `logged`: the attitudes of the columns as they stand.
 template <class Use>
 auto read_turning(const Flight& flight, const std::vector<Quaternion<double>>& logged, const TurningReading& reading,
                   const Use& use) {
@@ -79,7 +79,7 @@ auto read_turning(const Flight& flight, const std::vector<Quaternion<double>>& l
 PINNQUAD_BODY MotionBlocks turning_sums(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
                                         const TurningReading& reading) {
   return read_turning(flight, attitude, reading, [&](const auto& time_s, const auto& change, const auto& rate) {
-    return motion_sums(flight.size(), time_s, change, rate, turning_step_s);
+    return motion_steps(flight.size(), time_s, change, rate, turning_step_s).sums();
   });
 }
 /// The sentence of a reading that is not the flight's: angles and rates share the blame for a factor of 57.
@@ -184,10 +184,10 @@ PINNQUAD_BODY std::optional<Implausible> find_turning_mistake(const Flight& flig
     }
   }
   if (!(as_it_stands < in_time)) return std::nullopt;
-  const auto pair = [&](const auto& time_s, const auto& change, const auto& rate) {
-    return MotionPair(flight.size(), time_s, change, rate);
+  const auto lateness = [&](const auto& time_s, const auto& change, const auto& rate) {
+    return motion_lateness_s(flight.size(), time_s, change, rate, turning_step_s);
   };
-  if (const auto late_s = read_turning(flight, attitude, {}, pair).lateness_s(turning_step_s)) {
+  if (const auto late_s = read_turning(flight, attitude, {}, lateness)) {
     const bool angles = *late_s > 0;
     return Implausible{0, angles ? angles_field : rates_field, "roll, pitch and yaw at the times of w_x, w_y and w_z",
                        (angles ? "roll, pitch and yaw " : "w_x, w_y and w_z ") + late_text(*late_s) +
@@ -266,10 +266,10 @@ PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& fli
     return best;
   }
   if (!(as_it_stands < in_time)) return std::nullopt;
-  const auto pair = [&](const auto& time_s, const auto& change, const auto& rate) {
-    return MotionPair(flight.size(), time_s, change, rate);
+  const auto lateness = [&](const auto& time_s, const auto& change, const auto& rate) {
+    return motion_lateness_s(flight.size(), time_s, change, rate, turning_step_s);
   };
-  if (const auto late_s = read_world_velocity(flight, attitude, {}, pair).lateness_s(turning_step_s)) {
+  if (const auto late_s = read_world_velocity(flight, attitude, {}, lateness)) {
     return Implausible{0, *late_s > 0 ? velocity_field : linear_field, expected,
                        (*late_s > 0 ? "velocities " : "accelerations ") + late_text(*late_s) + " against the other"};
   }
@@ -280,13 +280,15 @@ PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& fli
 PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& flight,
                                                                const std::vector<Quaternion<double>>& attitude) {
   constexpr double follows = 0.8;
-  const MotionBlocks sums = motion_sums(
-      flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-      [&](std::size_t row) { return Vector3<double>(flight[row + 1].altitude_m - flight[row].altitude_m, 0, 0); },
-      [&](std::size_t row) {
-        return Vector3<double>(-body_to_world(attitude[row], flight[row].velocity_m_s)[2], 0, 0);
-      },
-      turning_step_s);
+  const MotionBlocks sums =
+      motion_steps(
+          flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+          [&](std::size_t row) { return Vector3<double>(flight[row + 1].altitude_m - flight[row].altitude_m, 0, 0); },
+          [&](std::size_t row) {
+            return Vector3<double>(-body_to_world(attitude[row], flight[row].velocity_m_s)[2], 0, 0);
+          },
+          turning_step_s)
+          .sums();
   const auto mistake = find_axis_mistake(sums, follows, follows);
   if (!mistake) return std::nullopt;
   return Implausible{0, altitude_field, "a height that rises with the velocity v_bx to v_bz in column altitude",
@@ -300,9 +302,10 @@ PINNQUAD_BODY std::optional<Implausible> find_acceleration_mistake(const Flight&
                                                                    const std::vector<Quaternion<double>>& attitude) {
   constexpr double unexplained = 0.1, better = 0.25;
   const auto sums = [&](const auto& value, const auto& rate) {
-    return motion_sums(
-        flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-        [&](std::size_t row) { return Vector3<double>(value(row + 1) - value(row)); }, rate, acceleration_step_s);
+    return motion_steps(
+               flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+               [&](std::size_t row) { return Vector3<double>(value(row + 1) - value(row)); }, rate, acceleration_step_s)
+        .sums();
   };
   const MotionBlocks angular =
       sums([&](std::size_t row) -> const Vector3<double>& { return flight[row].body_rates_rad_s; },

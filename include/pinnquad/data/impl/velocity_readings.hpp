@@ -43,7 +43,7 @@ PINNQUAD_BODY Vector3<double> VelocityReading::in_world(const Vector3<double>& c
   return read;
 }
 
-/// `use` with what motion_sums() takes.
+/// `use` with what motion_steps() takes.
 template <class Use>
 auto read_world_velocity(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
                          const VelocityReading& reading, const Use& use) {
@@ -64,7 +64,7 @@ auto read_world_velocity(const Flight& flight, const std::vector<Quaternion<doub
 PINNQUAD_BODY MotionBlocks world_velocity_sums(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
                                                const VelocityReading& reading) {
   return read_world_velocity(flight, attitude, reading, [&](const auto& time_s, const auto& change, const auto& rate) {
-    return motion_sums(flight.size(), time_s, change, rate, turning_step_s);
+    return motion_steps(flight.size(), time_s, change, rate, turning_step_s).sums();
   });
 }
 
