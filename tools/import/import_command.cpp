@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -109,9 +110,12 @@ int run(const ImportOptions& options) {
     throw std::invalid_argument("expected --out DATASET, the folder to write: pinnquad import ... --out dataset");
   programs::require_time_range(options, true);
 #ifdef __GLIBC__
+  constexpr const char* callers = "MALLOC_MMAP_THRESHOLD_";
   constexpr int always = 1 << 28;  // columns come and go: their memory is kept, not given back and asked for anew
-  mallopt(M_MMAP_THRESHOLD, always);
-  mallopt(M_TRIM_THRESHOLD, always);
+  if (std::getenv(callers) == nullptr) {
+    mallopt(M_MMAP_THRESHOLD, always);
+    mallopt(M_TRIM_THRESHOLD, always);
+  }
 #endif
   logs::LogSettings settings = settings_of(options);
   logs::require_dataset_place(options.out);
