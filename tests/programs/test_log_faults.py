@@ -304,11 +304,12 @@ def test_import(pinnquad, logs, name):
         left_nothing(before)
 
 
+@pytest.mark.parametrize("interval_ms", [10, 20, 40, 50])
 @pytest.mark.parametrize("turn, words", [(to_world, "axes north, east, down of the world"),
                                          (to_enu, "another convention (ENU, or z up)")])
-def test_forces_in_the_worlds_axes(pinnquad, flown, turn, words):
-    """Rows 50 ms apart do not tell them."""
-    rows = logged(flown("d1 --airframe px4_sih --seed 11 --samples 3000 --interval 10"))
+def test_forces_in_the_worlds_axes(pinnquad, flown, turn, words, interval_ms):
+    """Rows far apart, and gaps where a command is at its limit, tell them by the world's velocity alone."""
+    rows = logged(flown(f"d1 --airframe px4_sih --seed 12 --samples {30000 // interval_ms} --interval {interval_ms}"))
     turned(FORCES, turn)(rows)
     written("log.csv", rows)
     Path("log.toml").write_text(MAPPING)
@@ -337,7 +338,8 @@ def test_one_log_is_cut_into_flights_that_can_be_held_out(pinnquad, logs):
     parts = json.loads(pinnquad(f"import logs {MAPPED} --cut 20 --out dataset --json").out)["flights"]
     assert sum(one["rows"] for one in parts) == sum(one["rows"] for one in whole)
     first = [one for one in parts if one["name"].startswith(whole[0]["name"])]
-    assert len(first) == 3  # of a minute
+    assert [one["name"] for one in first] == [f"{whole[0]['name']}_{part}" for part in (1, 2, 3)]  # of a minute
+    assert [one["file"] for one in first] == [one["name"] + ".csv" for one in first]
     assert max(one["rows"] for one in first) - min(one["rows"] for one in first) < 0.2 * first[0]["rows"]
     assert len({one["trajectory"] for one in first}) == len(first)  # each may be held out, and chosen by
     log = sorted(Path("logs").glob("*.csv"))[0]

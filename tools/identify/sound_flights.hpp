@@ -4,13 +4,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "logs/log_checks.hpp"
 #include "logs/row_checks.hpp"
+#include "pinnquad/data/plausibility.hpp"
 #include "pinnquad/data/row_set.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "pinnquad/logs/read_dataset.hpp"
@@ -23,20 +23,13 @@ inline std::size_t count(const pinnquad::logs::RowMask& mask) {
   return static_cast<std::size_t>(std::count(mask.begin(), mask.end(), true));
 }
 
-[[noreturn]] inline void refuse_flight(const std::string& file, const std::string& expected, const std::string& found) {
-  throw pinnquad::InputError(file, 0, 0, expected, found);
-}
-
 inline void require_motion(const std::string& file, const pinnquad::Flight& flight) {
-  constexpr std::array<const char*, 3> columns = {"w_x", "w_y", "w_z"};
-  std::vector<double> time_s, rate;
-  for (const pinnquad::Sample& sample : flight) time_s.push_back(sample.time_s);
-  for (int axis = 0; axis < 3; ++axis) {
-    rate.clear();
-    for (const pinnquad::Sample& sample : flight) rate.push_back(sample.body_rates_rad_s[axis]);
-    const std::string column = columns[static_cast<std::size_t>(axis)];
-    if (const auto finding = pinnquad::logs::check_frozen(column, time_s, rate)) {
-      refuse_flight(file, "a body rate that is measured in column " + column, *finding);
+  using pinnquad::detail::column_of, pinnquad::detail::rates_field;
+  const std::vector<double> time_s = column_of(flight, 0);
+  for (std::size_t field = rates_field; field < rates_field + 3; ++field) {
+    const std::string column(pinnquad::sample_field_names[field]);
+    if (const auto finding = pinnquad::logs::check_frozen(column, time_s, column_of(flight, field))) {
+      throw pinnquad::InputError(file, 0, 0, "a body rate that is measured in column " + column, *finding);
     }
   }
 }
@@ -52,8 +45,8 @@ inline void require_flight(const std::string& file, const pinnquad::Flight& flig
   }
   const double share = static_cast<double>(still) / static_cast<double>(flight.size());
   if (share <= most) return;
-  refuse_flight(file, "a vehicle that moves in the air in columns w_x to w_z and vdot_bx to vdot_bz",
-                "rest in " + pinnquad::logs::percent(share) + " of the rows");
+  throw pinnquad::InputError(file, 0, 0, "a vehicle that moves in the air in columns w_x to w_z and vdot_bx to vdot_bz",
+                             "rest in " + pinnquad::logs::percent(share) + " of the rows");
 }
 
 inline void require_free_commands(const std::string& file, const pinnquad::Flight& flight) {
@@ -64,10 +57,10 @@ inline void require_free_commands(const std::string& file, const pinnquad::Fligh
       held += sample.commands[motor] <= edge || sample.commands[motor] >= 1 - edge ? 1 : 0;
     }
     if (static_cast<double>(held) <= most * static_cast<double>(flight.size())) continue;
-    refuse_flight(file, "a motor that is free to move in column u" + std::to_string(motor + 1),
-                  "0 or 1 in " +
-                      pinnquad::logs::percent(static_cast<double>(held) / static_cast<double>(flight.size())) +
-                      " of the rows");
+    throw pinnquad::InputError(
+        file, 0, 0, "a motor that is free to move in column u" + std::to_string(motor + 1),
+        "0 or 1 in " + pinnquad::logs::percent(static_cast<double>(held) / static_cast<double>(flight.size())) +
+            " of the rows");
   }
 }
 
@@ -79,7 +72,8 @@ inline std::vector<pinnquad::Flight> sound_flights(const pinnquad::logs::Importe
   std::vector<pinnquad::Flight> flights;
   const double period_s = pinnquad::sample_period_s(pinnquad::all_rows(dataset.flights.flights()));
   if (!(period_s > 0)) {
-    detail::refuse_flight(dataset.sources.front(), "rows of one period in all flights", "several, or a single row");
+    throw pinnquad::InputError(dataset.sources.front(), 0, 0, "rows of one period in all flights",
+                               "several, or a single row");
   }
   for (std::size_t i = 0; i < dataset.flights.size(); ++i) {
     const pinnquad::Flight& flight = dataset.flights[i];
@@ -90,8 +84,8 @@ inline std::vector<pinnquad::Flight> sound_flights(const pinnquad::logs::Importe
     const pinnquad::logs::RowMask grounded = pinnquad::logs::grounded_rows(flight, period_s);
     const double share = static_cast<double>(detail::count(grounded)) / static_cast<double>(flight.size());
     if (share > most_grounded) {
-      detail::refuse_flight(
-          file, "a vehicle in the air in columns vdot_bz and u1 to u4",
+      throw pinnquad::InputError(
+          file, 0, 0, "a vehicle in the air in columns vdot_bz and u1 to u4",
           "something else than the rotors bears it in " + pinnquad::logs::percent(share) + " of the rows");
     }
     flights.push_back(pinnquad::logs::without(flight, grounded));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +17,10 @@
 #include "command_line/like_warnings.hpp"
 #include "command_line/progress_line.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace {
 
@@ -104,6 +109,14 @@ int run(const ImportOptions& options) {
   if (options.out.empty())
     throw std::invalid_argument("expected --out DATASET, the folder to write: pinnquad import ... --out dataset");
   programs::require_time_range(options, true);
+#ifdef __GLIBC__
+  constexpr const char* callers = "MALLOC_MMAP_THRESHOLD_";
+  constexpr int always = 1 << 28;  // columns come and go: their memory is kept, not given back and asked for anew
+  if (std::getenv(callers) == nullptr) {
+    mallopt(M_MMAP_THRESHOLD, always);
+    mallopt(M_TRIM_THRESHOLD, always);
+  }
+#endif
   logs::LogSettings settings = settings_of(options);
   logs::require_dataset_place(options.out);
   programs::JobLine progress;
@@ -145,7 +158,7 @@ Command import_command(CLI::App& program) {
       ->default_str("");
   add_time_range(*line, *options);
   add_number(*line, "--cut", options->cut_s, 1.0, 1e6,
-             "split flights into parts of about this many seconds, so that train can hold one out");
+             "split flights into parts of about this many seconds, NAME_1, NAME_2 ..., so that train can hold one out");
   line->add_flag("--hold", options->hold, "hold the last command between rows instead of interpolating");
   line->add_flag("--json", options->json, "rows per step, flights and warnings as JSON, and nothing else, on stdout");
   line->add_flag("--list", options->list, "list the ready mappings");

@@ -9,11 +9,10 @@
 
 #include "logs/blackbox_bytes.hpp"
 #include "logs/blackbox_header.hpp"
+#include "logs/csv_head.hpp"
 #include "logs/integrated_attitude.hpp"
 #include "pinnquad/core/rotation.hpp"
-#include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/file_error.hpp"
-#include "pinnquad/io/text_file.hpp"
 #include "pinnquad/logs/flight_log.hpp"
 
 namespace pinnquad::logs {
@@ -31,18 +30,6 @@ bool starts_with(std::string_view text, std::string_view begin) { return text.su
 /// In two's complement, whatever a damaged log adds up.
 std::int64_t sum(std::int64_t a, std::int64_t b) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
-}
-
-/// The two numbers of "158,2047"; none where one of them is no number, or there is one alone.
-std::vector<double> numbers_of(std::string_view text) {
-  std::vector<double> numbers;
-  for (std::size_t begin = 0, end = 0; end != std::string_view::npos; begin = end + 1) {
-    end = text.find(',', begin);
-    double value = 0;
-    if (!parse_number(text.substr(begin, end == std::string_view::npos ? end : end - begin), value)) return {};
-    numbers.push_back(value);
-  }
-  return numbers.size() > 1 ? numbers : std::vector<double>();
 }
 
 /// A column's unit as blackbox_decode has it, and the factor to it.
@@ -118,17 +105,7 @@ class Reader {
   }
 
   void say_header() {
-    for (const auto& [key, text] : header_.texts) {
-      double value = 0;
-      if (parse_number(text, value)) log_.parameters[key] = value;
-      log_.facts[key] = text;
-    }
-    for (const auto& [key, text] : header_.texts) {  // "158,2047": motorOutput[0], motorOutput[1]
-      const std::vector<double> numbers = numbers_of(text);
-      for (std::size_t i = 0; i < numbers.size(); ++i) {
-        log_.parameters[key + "[" + std::to_string(i) + "]"] = numbers[i];
-      }
-    }
+    for (const auto& [key, text] : header_.texts) keep_fact(log_, key, text);
     if (header_.most_motor <= header_.least_motor) return;
     log_.parameters["motorOutput[0]"] = static_cast<double>(header_.least_motor);
     log_.parameters["motorOutput[1]"] = static_cast<double>(header_.most_motor);
@@ -460,11 +437,6 @@ FlightLog parse_blackbox(std::string_view file, const std::string& name, const L
   const std::size_t begin = begins[selection.flight];
   const std::size_t end = selection.flight + 1 < begins.size() ? begins[selection.flight + 1] : file.size();
   return blackbox::Reader(file.substr(0, end), begin, name, selection).read();
-}
-
-FlightLog read_blackbox(const std::string& path, const LogSelection& selection) {
-  const std::string file = file_text(path);
-  return parse_blackbox(file, path, selection);
 }
 
 }  // namespace pinnquad::logs

@@ -29,6 +29,5 @@ std::vector<std::size_t> blackbox_flights(std::string_view file);
 ///
 /// Throws InputError, one line with the byte: no such flight, a head that makes no sense.
 FlightLog parse_blackbox(std::string_view file, const std::string& name, const LogSelection& selection = {});
-FlightLog read_blackbox(const std::string& path, const LogSelection& selection = {});
 
 }  // namespace pinnquad::logs

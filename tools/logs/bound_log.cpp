@@ -60,18 +60,13 @@ void to_our_frames(const Source& source, std::vector<std::vector<double>>& value
     case Quantity::attitude: turn_attitude(source, values); break;
     case Quantity::body_rates:
     case Quantity::angular_acceleration:
-    case Quantity::specific_force: turn_vector(flu, false, values); break;
+    case Quantity::specific_force:
+    case Quantity::torque_and_thrust: turn_vector(flu, false, values); break;
     case Quantity::acceleration:
     case Quantity::velocity:
       turn_vector(source.axes == Axes::body && flu, source.axes == Axes::world && enu, values);
       break;
     case Quantity::position: turn_vector(false, enu, values); break;
-    case Quantity::torque_and_thrust:
-      if (flu) {
-        for (double& v : values[1]) v = -v;
-        for (double& v : values[2]) v = -v;
-      }
-      break;
     case Quantity::altitude:
     case Quantity::motors:
     case Quantity::landed:
@@ -186,19 +181,33 @@ bool is_sparse(const std::vector<std::size_t>& filled, std::size_t rows) {
   return filled.size() < usual_run * runs;
 }
 
+/// The clock of an earlier signal of the same topic and clock column; null where there is none.
+std::shared_ptr<const CleanClock> shared_clock(const Signal& signal, const BoundLog& bound) {
+  for (const Signal& other : bound.signals) {
+    if (!other.present() || other.sparse) continue;
+    const bool same = other.topic == signal.topic && other.source->time_column == signal.source->time_column;
+    if (same && other.source->time_in_s == signal.source->time_in_s) return other.clock;
+  }
+  return nullptr;
+}
+
 /// The clock of the rows that the signal fills: of a sparse table its own.
-void set_clock(Signal& signal, const std::vector<double>& time_s) {
+template <class Times>
+void set_clock(Signal& signal, const Times& times, const BoundLog& bound) {
   std::vector<std::size_t> filled;
-  for (std::size_t row = 0; row < time_s.size(); ++row) {
+  const std::size_t rows = signal.values[0].size();
+  for (std::size_t row = 0; row < rows && signal.topic->places_are_lines; ++row) {
     const bool any = std::any_of(signal.values.begin(), signal.values.end(),
                                  [row](const std::vector<double>& column) { return std::isfinite(column[row]); });
     if (any) filled.push_back(row);
   }
-  signal.sparse = signal.topic->places_are_lines && is_sparse(filled, time_s.size());
+  signal.sparse = is_sparse(filled, rows);
   if (!signal.sparse) {
-    signal.clock = std::make_shared<const CleanClock>(clean_clock(time_s));
+    signal.clock = shared_clock(signal, bound);
+    if (!signal.clock) signal.clock = std::make_shared<const CleanClock>(clean_clock(times()));
     return;
   }
+  const std::vector<double> time_s = times();
   std::vector<double> own_s;
   for (const std::size_t row : filled) own_s.push_back(time_s[row]);
   CleanClock clock = clean_clock(own_s);
@@ -209,7 +218,7 @@ void set_clock(Signal& signal, const std::vector<double>& time_s) {
 /// The quantity as this source has it; not present() where the log lacks it. With `why`, the reason is thrown, one
 /// line.
 Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& source,
-                   const std::optional<NamedAirframe>& airframe, bool why) {
+                   const std::optional<NamedAirframe>& airframe, const BoundLog& bound, bool why) {
   Signal signal;
   const LogTopic* topic = topic_of(log, source.topic, source.instance);
   if (topic == nullptr) {
@@ -237,20 +246,20 @@ Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& s
   signal.told = topic_words(source.topic, source.instance);
   signal.values = scaled_values(log, mapping, source, columns, why);
   if (signal.values.empty()) return {};
-  const std::vector<double> time_s = times_of(*topic, source, mapping);
+  const auto times = [&] { return times_of(*topic, source, mapping); };
   if (apart) {
     const LogTopic* thrust = topic_of(log, source.thrust_topic, source.instance);
     const std::vector<const LogColumn*> along =
         thrust ? columns_in(*thrust, {source.columns.back()}, mapping.file, why) : std::vector<const LogColumn*>();
     if (along.empty()) return {};
     const std::vector<double> scaled = scaled_values(log, mapping, source, along, why).front();
-    signal.values.push_back(at_same_times(time_s, times_of(*thrust, source, mapping), scaled));
+    signal.values.push_back(at_same_times(times(), times_of(*thrust, source, mapping), scaled));
     signal.told += " and " + topic_words(source.thrust_topic, source.instance);
   }
   if (source.wrench) {
     for (double& value : signal.values[3]) value *= source.thrust_in_si / source.in_si;
   }
-  set_clock(signal, time_s);
+  set_clock(signal, times, bound);
   if (source.quantity == Quantity::attitude && !source.euler) {
     const bool said = !source.scale.parameter.empty() || std::abs(source.scale.value - 1) > 0;
     if (!said && counts_to_32767(signal.values)) {
@@ -308,10 +317,10 @@ Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& s
 
 /// Of the sources that a log has the first that is fast enough, or else the fastest.
 Signal best_signal(const FlightLog& log, const Mapping& mapping, const std::vector<const Source*>& sources,
-                   const std::optional<NamedAirframe>& airframe) {
+                   const std::optional<NamedAirframe>& airframe, const BoundLog& bound) {
   Signal best;
   for (const Source* source : sources) {
-    Signal signal = bind_source(log, mapping, *source, airframe, false);
+    Signal signal = bind_source(log, mapping, *source, airframe, bound, false);
     if (!signal.present() || signal.clock->size() == 0) continue;
     const auto rate = [](const Signal& of) { return of.period_s() > 0 ? 1 / of.period_s() : 0.0; };
     if (best.present() && !(rate(signal) > rate(best) * 1.2)) continue;
@@ -344,15 +353,6 @@ void let_go(FlightLog& log, const Mapping& mapping, const Source& source) {
                                    [&column](const NamedColumn& one) { return one.name == column.name; });
       if (its && readers(mapping, name, column.name) == 1) column.values = std::vector<double>();
     }
-  }
-}
-
-/// Gives a signal the clock of an earlier one of the same topic and clock column.
-void share_clock(Signal& signal, const BoundLog& bound) {
-  for (const Signal& other : bound.signals) {
-    if (!other.present() || &other == &signal || other.sparse || signal.sparse) continue;
-    const bool same = other.topic == signal.topic && other.source->time_column == signal.source->time_column;
-    if (same && other.source->time_in_s == signal.source->time_in_s) signal.clock = other.clock;
   }
 }
 
@@ -456,16 +456,15 @@ BoundLog bind_log(FlightLog& log, const Mapping& mapping, const std::optional<Na
   };
   const auto bind = [&](Signal& signal, const std::vector<const Source*>& sources, bool needed) {
     if (sources.empty()) return;
-    signal = best_signal(log, mapping, sources, airframe);
+    signal = best_signal(log, mapping, sources, airframe, bound);
     if (signal.present()) {
-      share_clock(signal, bound);
       let_go(log, mapping, *signal.source);
       return;
     }
     const bool optional =
         std::any_of(sources.begin(), sources.end(), [](const Source* source) { return source->optional; });
     if (optional && !needed) return;
-    static_cast<void>(bind_source(log, mapping, *sources.front(), airframe, true));
+    static_cast<void>(bind_source(log, mapping, *sources.front(), airframe, bound, true));
     throw InputError(mapping.file, sources.front()->place.line, sources.front()->place.column,
                      "a topic with rows in " + log.source, "none");
   };

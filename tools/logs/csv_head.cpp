@@ -18,8 +18,6 @@ namespace {
 constexpr std::size_t most_records_above = 2000;  // Blackbox Explorer writes 150 to 300 keys
 constexpr std::size_t fewest_columns = 4;         // of a table under rows of another width
 
-bool is_blank(std::string_view text) { return text.find_first_not_of(" \t\r") == std::string_view::npos; }
-
 /// A record with its cells by the separator that has most of them.
 struct Record {
   std::size_t line = 0;
@@ -190,6 +188,19 @@ class Head {
 };
 
 }  // namespace
+
+bool is_blank(std::string_view text) { return text.find_first_not_of(" \t\r") == std::string_view::npos; }
+
+void keep_fact(FlightLog& log, const std::string& key, const std::string& value) {
+  log.facts[key] = value;
+  std::vector<std::string_view> parts;
+  split_cells(value, ',', parts);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    double number = 0;
+    if (!parse_number(parts[i], number)) continue;
+    log.parameters[parts.size() == 1 ? key : key + "[" + std::to_string(i) + "]"] = number;
+  }
+}
 
 CsvHead csv_head(const std::string& path) { return Head(path).read(); }
 

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "pinnquad/logs/flight_log.hpp"
+
 namespace pinnquad::logs {
 
 struct CsvHead {
@@ -32,5 +34,11 @@ bool has_decimal_comma(std::string_view cell);
 /// Decimal digits with a point, or a comma where `separator` is none; an empty cell and "nan" are NaN, "inf" is
 /// infinite. False for text.
 bool cell_number(std::string_view cell, double& value, char separator = ',');
+
+/// True for blanks alone.
+bool is_blank(std::string_view text);
+
+/// Keeps a value of a log's head: a number is a parameter, numbers between commas are several: "motorOutput[0]".
+void keep_fact(FlightLog& log, const std::string& key, const std::string& value);
 
 }  // namespace pinnquad::logs

@@ -111,8 +111,6 @@ class Table {
     return file.get();
   }
 
-  static bool is_blank(std::string_view text) { return text.find_first_not_of(" \t\r") == std::string_view::npos; }
-
   void report() {
     if (bytes_ > 0) selection_.report(static_cast<double>(records_.bytes()) / static_cast<double>(bytes_));
   }
@@ -172,10 +170,6 @@ void set_clock(LogTopic& topic, const Table& table, const LogSelection& selectio
   for (std::size_t i = 0; i < topic.size(); ++i) topic.time_s[i] = clock->values[i] / selection.clock_ticks_per_s;
 }
 
-}  // namespace
-
-namespace {
-
 /// `cut_line`: null where a last row that is cut short is refused; else its line, 0 for none.
 LogTopic read_table(const std::string& path, const LogSelection& selection, CsvHead& head, std::size_t* cut_line) {
   Table table(path, selection, cut_line != nullptr);
@@ -192,18 +186,6 @@ LogTopic read_table(const std::string& path, const LogSelection& selection, CsvH
   return topic;
 }
 
-/// A value above the table: a number is a parameter, numbers between commas are several: "motorOutput[0]".
-void keep(FlightLog& log, const std::string& key, const std::string& value) {
-  log.facts[key] = value;
-  std::vector<std::string_view> parts;
-  split_cells(value, ',', parts);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    double number = 0;
-    if (!parse_number(parts[i], number)) continue;
-    log.parameters[parts.size() == 1 ? key : key + "[" + std::to_string(i) + "]"] = number;
-  }
-}
-
 }  // namespace
 
 LogTopic read_csv_topic(const std::string& path, const LogSelection& selection) {
@@ -218,7 +200,7 @@ FlightLog read_csv_log(const std::string& path, const LogSelection& selection) {
   std::size_t cut_line = 0;
   log.topics.push_back(read_table(path, selection, head, &cut_line));
   if (log.topics[0].place.empty()) throw InputError(path, head.line + 1, 0, "a row of data", "none");
-  for (const auto& [key, value] : head.facts) keep(log, key, value);
+  for (const auto& [key, value] : head.facts) keep_fact(log, key, value);
   if (cut_line > 0) {
     log.warnings.push_back(printable(std::filesystem::path(path).stem().string()) + ": line " +
                            std::to_string(cut_line) + " ends in the middle, and so does the file: left out");

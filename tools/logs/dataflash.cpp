@@ -14,7 +14,6 @@
 #include "logs/ulog_types.hpp"
 #include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/io/file_error.hpp"
-#include "pinnquad/io/text_file.hpp"
 #include "pinnquad/logs/flight_log.hpp"
 
 namespace pinnquad::logs {
@@ -343,11 +342,6 @@ bool is_dataflash_log(std::string_view begin) { return begin.substr(0, dataflash
 
 FlightLog parse_dataflash(std::string_view file, const std::string& name, const LogSelection& selection) {
   return dataflash::Reader(file, name, selection).read();
-}
-
-FlightLog read_dataflash(const std::string& path, const LogSelection& selection) {
-  const std::string file = file_text(path);
-  return parse_dataflash(file, path, selection);
 }
 
 }  // namespace pinnquad::logs

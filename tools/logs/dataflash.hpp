@@ -21,6 +21,5 @@ bool is_dataflash_log(std::string_view begin);
 ///
 /// Throws InputError, one line, for what is no DataFlash log.
 FlightLog parse_dataflash(std::string_view file, const std::string& name, const LogSelection& selection = {});
-FlightLog read_dataflash(const std::string& path, const LogSelection& selection = {});
 
 }  // namespace pinnquad::logs

@@ -453,7 +453,7 @@ class Import {
       const auto misread = check_attitude(rows.period_s, convention_of(*bound.of(Quantity::attitude).source),
                                           {&q[0], &q[1], &q[2], &q[3]}, {&w[0], &w[1], &w[2]}, {&f[0], &f[1], &f[2]});
       warn(name, misread);
-      if (misread) causes_[name] = *misread;
+      if (misread) misread_[name] = *misread;
     }
   }
 
@@ -588,21 +588,28 @@ class Import {
     std::size_t longest = 0;
     for (Passage& passage : passages_) {
       use(passage.mapping);
+      const auto misread = misread_.find(passage.name);
+      std::vector<Flight> flights = cut_flights(std::move(passage.segments));
+      for (const Flight& flight : flights) longest = std::max(longest, flight.size());
+      flights.erase(std::remove_if(flights.begin(), flights.end(),
+                                   [](const Flight& flight) { return flight.size() < fewest_flight_rows; }),
+                    flights.end());
+      const bool is_cut = settings_.cut_s && flights.size() > 1;
       int part = 0;
-      for (Flight& flight : cut_flights(std::move(passage.segments))) {
-        longest = std::max(longest, flight.size());
-        if (flight.size() < fewest_flight_rows) continue;
-        flight.name = free_name(dataset_.flights, passage.name, ++part);
+      for (Flight& flight : flights) {
+        ++part;
+        flight.name = is_cut ? free_name(dataset_.flights, passage.name + "_" + std::to_string(part))
+                             : free_name(dataset_.flights, passage.name, part);
         flight.trajectory = settings_.cut_s && passage.trajectory == passage.name ? flight.name : passage.trajectory;
-        const bool misread = causes_.find(flight.name) != causes_.end();
-        if (!misread) {
+        std::string cause = misread == misread_.end() ? "" : misread->second;
+        if (cause.empty()) {
           for (const SensorFinding& finding :
                check_sensors(flight, !dataset_.lacks("velocity"), !dataset_.lacks("altitude"))) {
             warn(flight.name + ": " + finding.words);
-            if (finding.may_be_heading) causes_.emplace(flight.name, finding.words);
+            if (finding.may_be_heading && cause.empty()) cause = finding.words;
           }
         }
-        require_plausible_flight(flight, passage);
+        require_plausible_flight(flight, passage, cause);
         const std::string unchecked = motion_not_checked(flight);
         if (!unchecked.empty()) add(dataset_.notes, flight.name + ": not checked: too little motion: " + unchecked);
         dataset_.flights.add(std::move(flight));
@@ -634,16 +641,15 @@ class Import {
 
   /// With its cause: an attitude in another order makes rates that do not turn it, and accelerations that fit no
   /// velocity.
-  void require_plausible_flight(const Flight& flight, const Passage& passage) const {
+  void require_plausible_flight(const Flight& flight, const Passage& passage, const std::string& cause) const {
     auto found = find_implausible(flight);
     if (!found) found = find_standing_column(flight, {!dataset_.lacks("velocity"), !dataset_.lacks("altitude")});
     if (!found) found = find_wrong_gravity(flight);
     if (!found) found = find_turning_of_other_size(flight);
     if (!found && passage.force_of_velocity) found = find_velocity_off_tilt(flight, !dataset_.lacks("altitude"));
     if (!found) return;
-    const auto cause = causes_.find(flight.name);
     throw InputError(passage.source, 0, 0, found->expected,
-                     (cause == causes_.end() ? "" : cause->second + "; ") + found->found + " at " +
+                     (cause.empty() ? "" : cause + "; ") + found->found + " at " +
                          number_text(flight[found->row].time_s) + " s of flight " + flight.name);
   }
 
@@ -659,7 +665,7 @@ class Import {
   std::optional<double> period_s_, stated_curve_;
   double first_period_s_ = 0;  ///< own rows of the first log
   std::vector<Passage> passages_;
-  std::map<std::string, std::string> causes_;  ///< of a flight that will be refused, by its name
+  std::map<std::string, std::string> misread_;  ///< by a passage's name: how its attitude is not as it was read
   std::vector<bool> has_velocity_, has_altitude_;
 };
 

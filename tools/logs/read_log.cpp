@@ -42,8 +42,8 @@ FlightLog read_log(const std::string& path, const LogSelection& selection) {
     case LogKind::ulog: return read_ulog(path, selection);
     case LogKind::ulog2csv_folder: return read_ulog2csv_folder(path, selection);
     case LogKind::usd: return read_usd_log(path);
-    case LogKind::blackbox: return read_blackbox(path, selection);
-    case LogKind::dataflash: return read_dataflash(path, selection);
+    case LogKind::blackbox: return parse_blackbox(file_text(path), path, selection);
+    case LogKind::dataflash: return parse_dataflash(file_text(path), path, selection);
     case LogKind::csv: break;
   }
   return read_csv_log(path, selection);

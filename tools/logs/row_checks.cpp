@@ -79,26 +79,32 @@ void append(Flight& to, const Flight& from, std::size_t row) {
 
 }  // namespace
 
+Flight first_rows(const Flight& flight, std::size_t count) {
+  Flight first = emptied(flight);
+  count = std::min(count, flight.size());
+  first.reserve(count);
+  for (std::size_t row = 0; row < count; ++row) append(first, flight, row);
+  return first;
+}
+
 RowMask saturated_rows(const Flight& flight, double lowest, double highest) {
   constexpr double close = 1e-3;
   constexpr std::size_t held_rows = 5;
   RowMask mask(flight.size(), false);
   for (std::size_t rotor = 0; rotor < rotor_count && !flight.empty(); ++rotor) {
-    double least = flight[0].commands[rotor], most = least;
-    for (const Sample& sample : flight) {
-      least = std::min(least, sample.commands[rotor]);
-      most = std::max(most, sample.commands[rotor]);
-    }
+    const std::vector<double> commands = detail::column_of(flight, detail::first_command_field + rotor);
+    const auto [least_at, most_at] = std::minmax_element(commands.begin(), commands.end());
+    const double least = *least_at, most = *most_at;
     std::size_t at_least = 0, at_most = 0, longest_least = 0, longest_most = 0;
-    for (const Sample& sample : flight) {
-      at_least = sample.commands[rotor] <= least ? at_least + 1 : 0;
-      at_most = sample.commands[rotor] >= most ? at_most + 1 : 0;
+    for (const double u : commands) {
+      at_least = u <= least ? at_least + 1 : 0;
+      at_most = u >= most ? at_most + 1 : 0;
       longest_least = std::max(longest_least, at_least);
       longest_most = std::max(longest_most, at_most);
     }
     const bool moves = most > least;
     for (std::size_t row = 0; row < flight.size(); ++row) {
-      const double u = flight[row].commands[rotor];
+      const double u = commands[row];
       if (u <= lowest + close || u >= highest - close || (moves && longest_least >= held_rows && u <= least) ||
           (moves && longest_most >= held_rows && u >= most)) {
         mask[row] = true;
@@ -127,8 +133,9 @@ RowMask grounded_rows(const Flight& flight, double period_s) {
     speed[row] = flight[row].velocity_m_s.norm();
   }
   std::vector<double> sorted = collective;
-  std::sort(sorted.begin(), sorted.end());
-  const double usual = sorted[static_cast<std::size_t>(high * static_cast<double>(rows - 1))];
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(high * static_cast<double>(rows - 1));
+  std::nth_element(sorted.begin(), at, sorted.end());
+  const double usual = *at;
   std::vector<double> ratios;
   for (std::size_t row = 0; row < rows; ++row) {
     if (collective[row] >= share_of_high * usual && usual > 0) ratios.push_back(upward[row] / collective[row]);

@@ -16,6 +16,9 @@ using RowMask = std::vector<bool>;
 /// A command at `lowest` or `highest`, to a thousandth, or at its own extreme where that was held for five rows
 /// somewhere (a limit of the mapping or the mixer below 1): the motor may have been asked for more than the log shows.
 /// To be asked of commands as they were logged: a mean over rows is hardly ever at the limit.
+/// As many of a flight's rows, from its first on.
+Flight first_rows(const Flight& flight, std::size_t count);
+
 RowMask saturated_rows(const Flight& flight, double lowest = 0, double highest = 1);
 
 /// Rows where something else than the rotors bears the vehicle: the specific force along z is what the commands make in

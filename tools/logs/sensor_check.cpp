@@ -40,12 +40,32 @@ StepsOfFlight steps_of(const Flight& flight, double period_s, double step_s) {
   return steps;
 }
 
+/// A flight's rows in axes of the world, turned once for all checks.
+struct InWorld {
+  std::vector<Quaternion<double>> attitude;
+  std::vector<Vector3<double>> velocity, force;
+
+  explicit InWorld(const Flight& flight) : attitude(detail::attitudes_of(flight)) {
+    velocity.reserve(flight.size());
+    force.reserve(flight.size());
+    for (std::size_t row = 0; row < flight.size(); ++row) {
+      velocity.push_back(body_to_world<double>(attitude[row], flight[row].velocity_m_s));
+      force.push_back(body_to_world<double>(attitude[row], specific_force_m_s2(flight[row])));
+    }
+  }
+
+  /// Rotation vector from one row to another.
+  Vector3<double> turn(std::size_t first, std::size_t last) const {
+    return detail::turn_vector(conjugate(attitude[first]) * attitude[last]);
+  }
+};
+
 /// Mean over the rows of a step, its ends by half.
 template <class Of>
-Vector3<double> mean_of(const Flight& flight, std::size_t begin, std::size_t size, const Of& of) {
+Vector3<double> mean_of(std::size_t begin, std::size_t size, const Of& of) {
   Vector3<double> sum = Vector3<double>::Zero();
   for (std::size_t row = begin; row <= begin + size; ++row) {
-    sum += (row == begin || row == begin + size ? 0.5 : 1.0) * Vector3<double>(of(flight[row]));
+    sum += (row == begin || row == begin + size ? 0.5 : 1.0) * of(row);
   }
   return sum / static_cast<double>(size);
 }
@@ -94,20 +114,20 @@ void check_rotation(const BlockSolution& found, std::size_t count, const std::st
   }
 }
 
-void check_rates(const Flight& flight, double period_s, std::vector<SensorFinding>& findings) {
+void check_rates(const Flight& flight, const InWorld& world, double period_s, std::vector<SensorFinding>& findings) {
   constexpr double step_s = 0.2, most_late_s = 0.02;
   constexpr std::array<double, 3> most_rad_s = {0.04, 0.04, 0.012};
   constexpr std::size_t bias = 3, late = 6, unknowns = 7;
   const StepsOfFlight steps = steps_of(flight, period_s, step_s);
-  const auto rates = [](const Sample& sample) { return sample.body_rates_rad_s; };
+  const auto rates = [&](std::size_t row) -> const Vector3<double>& { return flight[row].body_rates_rad_s; };
   const std::size_t end_rows = std::max<std::size_t>(1, steps.size / 8);  // their mean has less noise
   const auto found = solved<unknowns>(steps, [&](BlockRegression& regression, std::size_t block, std::size_t row) {
     const std::size_t last = row + steps.size;
-    const Vector3<double> turned = detail::turn_vector(conjugate(attitude(flight[row])) * attitude(flight[last]));
-    const Vector3<double> integral = mean_of(flight, row, steps.size, rates) * steps.duration_s;
+    const Vector3<double> turned = world.turn(row, last);
+    const Vector3<double> integral = mean_of(row, steps.size, rates) * steps.duration_s;
     Vector3<double> change = Vector3<double>::Zero();
     for (std::size_t i = 0; i < end_rows; ++i) {
-      change += (rates(flight[last - i]) - rates(flight[row + i])) / static_cast<double>(end_rows);
+      change += (rates(last - i) - rates(row + i)) / static_cast<double>(end_rows);
     }
     add_step<unknowns>(regression, block, turned, integral, [&](std::size_t axis, std::array<double, unknowns>& x) {
       x[bias + axis] = -steps.duration_s;
@@ -136,21 +156,17 @@ void check_rates(const Flight& flight, double period_s, std::vector<SensorFindin
                  " against the attitude: the gyro is mounted askew, or one of the two is in other axes", findings);
 }
 
-void check_force(const Flight& flight, double period_s, std::vector<SensorFinding>& findings) {
+void check_force(const Flight& flight, const InWorld& world, double period_s, std::vector<SensorFinding>& findings) {
   constexpr double step_s = 0.4;
   constexpr std::size_t unknowns = 3;
   const StepsOfFlight steps = steps_of(flight, period_s, step_s);
-  const auto in_world = [](const Sample& sample, const Vector3<double>& v) {
-    return body_to_world<double>(attitude(sample), v);
-  };
   const auto found = solved<unknowns>(steps, [&](BlockRegression& regression, std::size_t block, std::size_t row) {
-    const Sample &first = flight[row], &last = flight[row + steps.size];
     const Vector3<double> gravity(0, 0, standard_gravity_m_s2<double>);
     const Vector3<double> expected =
-        (in_world(last, last.velocity_m_s) - in_world(first, first.velocity_m_s)) / steps.duration_s - gravity;
-    const Vector3<double> measured = mean_of(
-        flight, row, steps.size, [&](const Sample& sample) { return in_world(sample, specific_force_m_s2(sample)); });
-    const Quaternion<double> middle = attitude(flight[row + steps.size / 2]);
+        (world.velocity[row + steps.size] - world.velocity[row]) / steps.duration_s - gravity;
+    const Vector3<double> measured =
+        mean_of(row, steps.size, [&](std::size_t at) -> const Vector3<double>& { return world.force[at]; });
+    const Quaternion<double>& middle = world.attitude[row + steps.size / 2];
     add_step<unknowns>(regression, block, world_to_body<double>(middle, expected),
                        world_to_body<double>(middle, measured), [](std::size_t, const auto&) {});
   });
@@ -177,39 +193,31 @@ Estimate clock_rate(const StepsOfFlight& steps, const ChangeAndIntegral& of) {
 }
 
 /// A gyro's scale may be off, and an accelerometer's: a clock shows in two or more alike.
-void check_clock_rate(const Flight& flight, double period_s, bool has_velocity, bool has_altitude,
+void check_clock_rate(const Flight& flight, const InWorld& world, double period_s, bool has_velocity, bool has_altitude,
                       std::vector<SensorFinding>& findings) {
   constexpr double step_s = 0.2, least_off = 0.006, told = 0.006, alike = 0.002;
   const StepsOfFlight steps = steps_of(flight, period_s, step_s);
-  const auto in_world = [&](std::size_t row, const Vector3<double>& v) {
-    return body_to_world<double>(attitude(flight[row]), v);
+  const auto integral = [&](std::size_t first, std::size_t last, const auto& of) {
+    return Vector3<double>(mean_of(first, last - first, of) * steps.duration_s);
   };
+  using Step = std::array<Vector3<double>, 2>;  // change and integral
   std::vector<std::pair<const char*, Estimate>> rates;
   rates.emplace_back("attitude and body rates", clock_rate<3>(steps, [&](std::size_t first, std::size_t last) {
-                       const auto of = [](const Sample& sample) { return sample.body_rates_rad_s; };
-                       return std::array<Vector3<double>, 2>{
-                           detail::turn_vector(conjugate(attitude(flight[first])) * attitude(flight[last])),
-                           mean_of(flight, first, last - first, of) * steps.duration_s};
+                       return Step{world.turn(first, last), integral(first, last, [&](std::size_t row) {
+                                     return flight[row].body_rates_rad_s;
+                                   })};
                      }));
-  const auto velocity = [&](std::size_t row) { return in_world(row, flight[row].velocity_m_s); };
   if (has_velocity) {
     rates.emplace_back("velocity and specific force", clock_rate<3>(steps, [&](std::size_t first, std::size_t last) {
-                         const auto of = [](const Sample& sample) {
-                           return body_to_world<double>(attitude(sample), specific_force_m_s2(sample));
-                         };
-                         return std::array<Vector3<double>, 2>{
-                             velocity(last) - velocity(first),
-                             mean_of(flight, first, last - first, of) * steps.duration_s};
+                         return Step{world.velocity[last] - world.velocity[first],
+                                     integral(first, last, [&](std::size_t row) { return world.force[row]; })};
                        }));
   }
   if (has_velocity && has_altitude) {
     rates.emplace_back(
         "altitude and velocity", clock_rate<1>(steps, [&](std::size_t first, std::size_t last) {
-          const auto of = [](const Sample& sample) {
-            return body_to_world<double>(attitude(sample), sample.velocity_m_s);
-          };
           const Vector3<double> fallen(0, 0, flight[first].altitude_m - flight[last].altitude_m);
-          return std::array<Vector3<double>, 2>{fallen, mean_of(flight, first, last - first, of) * steps.duration_s};
+          return Step{fallen, integral(first, last, [&](std::size_t row) { return world.velocity[row]; })};
         }));
   }
   for (std::size_t i = 0; i < rates.size(); ++i) {
@@ -241,16 +249,17 @@ std::vector<SensorFinding> check_sensors(const Flight& flight, bool has_velocity
   std::vector<SensorFinding> findings;
   const double period_s = sample_period_s(RowSet(flight, {0, flight.size()}));
   if (!(period_s > 0)) return findings;
-  check_rates(flight, period_s, findings);
-  if (has_velocity) check_force(flight, period_s, findings);
-  check_clock_rate(flight, period_s, has_velocity, has_altitude, findings);
+  const InWorld world(flight);
+  check_rates(flight, world, period_s, findings);
+  if (has_velocity) check_force(flight, world, period_s, findings);
+  check_clock_rate(flight, world, period_s, has_velocity, has_altitude, findings);
   return findings;
 }
 
 std::optional<detail::Implausible> find_turning_of_other_size(const Flight& flight) {
   using namespace detail;
   constexpr double most = 4.0 / 3, related = 0.6;
-  const MotionBlocks sums = turning_pair(flight, {}).sums(turning_step_s);
+  const MotionBlocks sums = turning_sums(flight, attitudes_of(flight));
   const double product = sums.products.trace(), turned = sums.changes.sum(), integrated = sums.integrals.sum();
   if (!(product > related * std::sqrt(turned * integrated)) || !(product > 0)) return std::nullopt;
   // noise of the rates makes product / integrated small, noise of the attitude turned / product large

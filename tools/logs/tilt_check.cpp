@@ -18,15 +18,10 @@ Vector3<double> acceleration_of_tilt(const Sample& sample) {
 }
 
 Vector3<double> velocity_of(const Sample& sample, const detail::VelocityReading& reading) {
-  Vector3<double> velocity = detail::in_axes(sample.velocity_m_s, reading.of_columns);
-  for (int turn = 0; turn < reading.turns; ++turn) {
-    velocity = body_to_world<double>(attitude(sample), velocity);
-    if (turn == 0) velocity = detail::in_axes(velocity, reading.of_world);
-  }
-  return velocity;
+  return reading.in_world(sample.velocity_m_s, attitude(sample));
 }
 
-detail::MotionPair tilt_pair(const Flight& flight, const detail::VelocityReading& reading, bool has_altitude) {
+detail::MotionBlocks tilt_sums(const Flight& flight, const detail::VelocityReading& reading, bool has_altitude) {
   const auto rows = static_cast<double>(std::max<std::size_t>(1, flight.size()));
   const Vector3<double> level(1, 1, 0);
   Vector3<double> mean_tilt = Vector3<double>::Zero(), mean_velocity = mean_tilt;
@@ -41,38 +36,34 @@ detail::MotionPair tilt_pair(const Flight& flight, const detail::VelocityReading
     square += v.squaredNorm();
   }
   const double drag_1_s = square > 0 ? std::max(0.0, product / square) : 0;
-  return {flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-          [&](std::size_t row) {
-            const Sample &first = flight[row], &next = flight[row + 1];
-            Vector3<double> change = velocity_of(next, reading) - velocity_of(first, reading);
-            change[2] = has_altitude ? first.altitude_m - next.altitude_m : 0;
-            return change;
-          },
-          [&](std::size_t row) {
-            const Vector3<double> v = velocity_of(flight[row], reading);
-            Vector3<double> rate = acceleration_of_tilt(flight[row]) - mean_tilt - drag_1_s * (v - mean_velocity);
-            rate[2] = has_altitude ? v[2] : 0;
-            return rate;
-          }};
+  return detail::motion_steps(
+             flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+             [&](std::size_t row) {
+               const Sample &first = flight[row], &next = flight[row + 1];
+               Vector3<double> change = velocity_of(next, reading) - velocity_of(first, reading);
+               change[2] = has_altitude ? first.altitude_m - next.altitude_m : 0;
+               return change;
+             },
+             [&](std::size_t row) {
+               const Vector3<double> v = velocity_of(flight[row], reading);
+               Vector3<double> rate = acceleration_of_tilt(flight[row]) - mean_tilt - drag_1_s * (v - mean_velocity);
+               rate[2] = has_altitude ? v[2] : 0;
+               return rate;
+             },
+             detail::turning_step_s)
+      .sums();
 }
 
 }  // namespace
 
 std::optional<detail::Implausible> find_velocity_off_tilt(const Flight& flight, bool has_altitude) {
   using namespace detail;
-  const MotionBlocks sums = tilt_pair(flight, {}, has_altitude).sums(turning_step_s);
-  const std::array<bool, 3> moving = sums.moving();
-  const double as_it_stands = sums.agreement(moving);
-  if (!(as_it_stands < agrees)) return std::nullopt;
-  double most = as_it_stands;
+  const MotionBlocks sums = tilt_sums(flight, {}, has_altitude);
+  BestReading reading(sums);
+  if (!(reading.as_it_stands() < agrees)) return std::nullopt;
   std::string best;
-  const auto judge = [&](const VelocityReading& reading, const char* text) {
-    const MotionBlocks read = tilt_pair(flight, reading, has_altitude).sums(turning_step_s);
-    const double so = read.agreement(moving);
-    if (!(so > most && so > related && 1 - so < far_better * (1 - as_it_stands))) return;
-    if (!sums.agrees_less_than(read, moving)) return;
-    most = so;
-    best = text;
+  const auto judge = [&](const VelocityReading& so, const char* text) {
+    if (reading.takes(tilt_sums(flight, so, has_altitude))) best = text;
   };
   for (std::size_t kind = 0; kind < axes_kinds; ++kind) {
     judge({0, kind, 0}, "velocities in the world's axes");
@@ -85,7 +76,7 @@ std::optional<detail::Implausible> find_velocity_off_tilt(const Flight& flight, 
                      std::string("a velocity that changes as the vehicle tilts") +
                          (has_altitude ? ", and the altitude with it," : "") +
                          " in the axes that the mapping says (the log has no accelerometer)",
-                     best + "; agreement " + hundredths(as_it_stands) + " as it stands, " + hundredths(most) + " so"};
+                     best + reading.evidence()};
 }
 
 }  // namespace pinnquad::logs

@@ -89,9 +89,7 @@ Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_
   const double period_s = sample_period_s(RowSet(flight, {0, flight.size()}));
   if (!(period_s > 0)) return judged;
   const auto most = static_cast<std::size_t>(most_s / period_s);
-  Flight begin = flight;
-  std::size_t row = 0;
-  if (begin.size() > most) begin.keep_rows([&](std::size_t) { return row++ < most; });
+  Flight begin = first_rows(flight, most);
   judged.half_s = (begin[0].time_s + begin[begin.size() - 1].time_s) / 2;
   judged.aligned = split_at_gaps(std::move(begin), 1.5 * period_s);
   IdentificationSettings settings;

@@ -39,6 +39,9 @@ inline constexpr double turning_step_s = 0.2, acceleration_step_s = 0.04;
 /// Another reading of columns is asked where as they stand they agree less than this, and believed where it leaves a
 /// third of what they leave, and agrees by half.
 inline constexpr double agrees = 0.85, related = 0.5, far_better = 1.0 / 3;
+/// Two that agree as well are not late, and their derivatives not of other angles, which are nearly the body's rates
+/// where angles are small.
+inline constexpr double in_time = 0.97;
 
 inline constexpr std::size_t linear_field = 1, angular_field = 4, velocity_field = 7, rates_field = 10,
                              angles_field = 13, altitude_field = 16;
@@ -78,13 +81,42 @@ inline constexpr std::array<const char*, 9> turning_rate_texts = {
     "rates that the attitude turns against: it is that of the world in the body (conjugate the quaternion), or all "
     "rates are negated"};
 
+/// The reading of a flight's columns under which two series agree far better than as they stand.
+class BestReading {
+ public:
+  explicit BestReading(const MotionBlocks& sums)
+      : sums_(sums), moving_(sums.moving()), as_it_stands_(sums.agreement(moving_)), most_(as_it_stands_) {}
+
+  double as_it_stands() const noexcept { return as_it_stands_; }
+  /// Takes a reading that is better than those before it, and agrees by more than `enough`.
+  bool takes(const MotionBlocks& read, double enough = related);
+  bool found() const noexcept { return most_ > as_it_stands_; }
+  /// "; agreement 0.31 as it stands, 0.98 so"
+  std::string evidence() const;
+
+ private:
+  const MotionBlocks& sums_;
+  std::array<bool, 3> moving_;
+  double as_it_stands_, most_;
+};
+
 EulerAngles<double> angles_of(const Sample& sample);
 
 /// Rotation vector of a turn, the shorter way.
 Vector3<double> turn_vector(const Quaternion<double>& q);
 
-/// The turning of the attitude from row to row, as logged rates would integrate to it if a log is to be read so.
-MotionPair turning_pair(const Flight& flight, const TurningReading& reading);
+/// Of each row's angles.
+std::vector<Quaternion<double>> attitudes_of(const Flight& flight);
+
+/// The turning of the attitude from row to row, as logged rates would integrate to it if a log is to be read so, over
+/// steps of `turning_step_s`. `attitude`: attitudes_of() the flight.
+MotionBlocks turning_sums(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
+                          const TurningReading& reading = {});
+
+/// See below; `attitude`: attitudes_of() the flight.
+std::optional<Implausible> find_turning_mistake(const Flight& flight, const std::vector<Quaternion<double>>& attitude);
+std::optional<Implausible> find_acceleration_mistake(const Flight& flight,
+                                                     const std::vector<Quaternion<double>>& attitude);
 
 }  // namespace detail
 
@@ -101,14 +133,72 @@ namespace detail {
 inline constexpr std::size_t axes_kinds = 5;
 Vector3<double> in_axes(const Vector3<double>& v, std::size_t kind);
 
-/// How the velocity in the world comes from a flight's columns.
+/// A reading of the columns that should hold the derivative of the body-frame velocity.
+struct AccelerationReading {
+  enum Kind { kinematic, without_turning, world_derivative, world, world_force, no_gravity, accelerometer };
+  Kind kind = kinematic;
+  std::size_t axes = 0;  ///< of a vector of the world: axes_kinds
+
+  std::string text() const {
+    const std::string in_world = axes == 0   ? " in axes north, east, down"
+                                 : axes == 1 ? " in axes east, north, up"
+                                             : " in axes of another convention (ENU, or z up)";
+    switch (kind) {
+      case without_turning: return "the world's acceleration in the body's axes (subtract w x v)";
+      case world_derivative:
+      case world: return "the world's acceleration" + in_world + " (turn it into the body, subtract w x v)";
+      case world_force: return "the specific force" + in_world + " of the world (turn it into the body)";
+      case no_gravity: return "that with gravity added once too often (an accelerometer's without gravity?)";
+      case accelerometer: return "what an accelerometer reads (add gravity in the body's axes, subtract w x v)";
+      case kinematic: break;
+    }
+    return "";
+  }
+
+  /// A row as every reading takes it.
+  struct Row {
+    Vector3<double> velocity, given, turning;  ///< of the columns; omega x v
+    Quaternion<double> attitude;
+
+    Row(const Sample& sample, const Quaternion<double>& q)
+        : velocity(sample.velocity_m_s),
+          given(sample.linear_acceleration_m_s2),
+          turning(cross(sample.body_rates_rad_s, sample.velocity_m_s)),
+          attitude(q) {}
+  };
+
+  Vector3<double> body_derivative(const Row& row) const {
+    const Vector3<double>&given = row.given, &turning = row.turning;
+    const Quaternion<double>& q = row.attitude;
+    const bool falls = kind == world_force || kind == no_gravity || kind == accelerometer;
+    const Vector3<double> gravity =
+        falls ? world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>)) : Vector3<double>::Zero();
+    switch (kind) {
+      case without_turning: return given - turning;
+      case world_derivative: return world_to_body(q, in_axes(given, axes)) - turning;
+      case world: return world_to_body(q, in_axes(given + turning, axes)) - turning;
+      case world_force: return world_to_body(q, in_axes(given + turning - gravity, axes)) + gravity - turning;
+      case no_gravity: return given - gravity;
+      case accelerometer: return given + gravity - turning;
+      case kinematic: break;
+    }
+    return given;
+  }
+};
+
+/// How the velocity in the world, and its derivative, come from a flight's columns.
 struct VelocityReading {
   int turns = 1;  ///< by the attitude: 0 of columns in the world's axes, 2 of what was turned once too often
   std::size_t of_columns = 0;  ///< in_axes() before the first turn
   std::size_t of_world = 0;    ///< and after it
+  AccelerationReading acceleration = {};
+
+  Vector3<double> in_world(const Vector3<double>& column, const Quaternion<double>& attitude) const;
 };
-/// Changes of the velocity in the world against the world's acceleration, both of the body's columns.
-MotionPair world_velocity_pair(const Flight& flight, const VelocityReading& reading = {});
+/// Changes of the velocity in the world against the world's acceleration, both of the body's columns, over steps of
+/// `turning_step_s`. `attitude`: attitudes_of() the flight.
+MotionBlocks world_velocity_sums(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
+                                 const VelocityReading& reading = {});
 
 }  // namespace detail
 

@@ -87,64 +87,95 @@ bool can_be_of_axis(const MotionSums& sums, Eigen::Index axis, Eigen::Index colu
 /// with its own.
 std::optional<AxisMistake> find_axis_mistake(const MotionBlocks& sums, double follows, double better);
 
-/// The two series row by row, as running sums, in stretches without a gap.
-class MotionPair {
- public:
-  /// `change(row)`: of the quantity from this row to the next; `rate(row)`: of it, per second.
-  template <class Time, class Change, class Rate>
-  MotionPair(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate) {
-    constexpr double longest_step_s = 0.5, largest = 1e4;  // beyond is no motion, whatever the unit
-    bool open = false;
-    for (std::size_t row = 0; row + 1 < rows; ++row) {
-      const double dt_s = time_s(row + 1) - time_s(row);
-      const bool usable = dt_s > 0 && dt_s <= longest_step_s;
-      const Vector3<double> changed = usable ? Vector3<double>(change(row)) : Vector3<double>::Zero();
-      const Vector3<double> mean = usable ? Vector3<double>((rate(row) + rate(row + 1)) / 2) : changed;
-      if (!usable || !(changed.norm() <= largest) || !(mean.norm() <= largest)) {
-        open = false;
-        continue;
-      }
-      if (!open) {
-        stretches_.push_back({{0.0}, {Vector3<double>::Zero()}, {Vector3<double>::Zero()}});
-        if (row == 0) stretches_.back().reserve(rows);  // most flights are one stretch
-      }
-      open = true;
-      Stretch& stretch = stretches_.back();
-      stretch.changed.push_back(stretch.changed.back() + changed);
-      stretch.integral.push_back(stretch.integral.back() + mean * dt_s);
-      stretch.time_s.push_back(stretch.time_s.back() + dt_s);
+/// Calls `begin()` at each stretch of rows without a gap, then with each of its rows `add(changed, integrated, dt_s)`.
+/// `change(row)`: of a quantity from this row to the next; `rate(row)`: of it, per second, asked for once, row by row.
+template <class Time, class Change, class Rate, class Begin, class Add>
+void each_motion(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate, const Begin& begin,
+                 const Add& add) {
+  constexpr double longest_step_s = 0.5, largest = 1e4;  // beyond is no motion, whatever the unit
+  bool open = false;
+  Vector3<double> next = rows > 0 ? Vector3<double>(rate(0)) : Vector3<double>::Zero();
+  for (std::size_t row = 0; row + 1 < rows; ++row) {
+    const double dt_s = time_s(row + 1) - time_s(row);
+    const Vector3<double> rate_before = next;
+    next = rate(row + 1);
+    const Vector3<double> mean = (rate_before + next) / 2;
+    const bool usable = dt_s > 0 && dt_s <= longest_step_s && mean.squaredNorm() <= largest * largest;
+    const Vector3<double> changed = usable ? Vector3<double>(change(row)) : mean;
+    if (!usable || !(changed.squaredNorm() <= largest * largest)) {
+      open = false;
+      continue;
     }
+    if (!open) begin();
+    open = true;
+    add(changed, Vector3<double>(mean * dt_s), dt_s);
   }
+}
 
-  /// Over steps of at least `step_s`, one after the other; the rate of `late_s` before.
-  MotionBlocks sums(double step_s, double late_s = 0) const;
+/// Steps of two series, one after the other. Times are those of all stretches without a gap in a row.
+struct MotionSteps {
+  struct Step {
+    double begin_s, end_s;
+    Vector3<double> changed, integral;
+    std::size_t stretch;
+  };
+  std::vector<Step> steps;
+  std::vector<double> stretch_ends_s;
+
+  MotionBlocks sums() const;
 
   /// The time by which the quantity comes after its rate, where the two agree far better with it than without, plainly:
-  /// a tenth of a second or more, to half a second.
-  std::optional<double> lateness_s(double step_s) const;
-
- private:
-  struct Stretch {
-    std::vector<double> time_s;  // from its begin
-    std::vector<Vector3<double>> changed, integral;
-
-    void reserve(std::size_t rows) {
-      time_s.reserve(rows);
-      changed.reserve(rows);
-      integral.reserve(rows);
-    }
-
-    /// `row`: near that time; the answer's.
-    Vector3<double> integral_at(double at_s, std::size_t& row) const {
-      row = std::min(row, time_s.size() - 2);
-      while (row > 0 && time_s[row] > at_s) --row;
-      while (row + 2 < time_s.size() && time_s[row + 1] <= at_s) ++row;
-      const double share = (at_s - time_s[row]) / (time_s[row + 1] - time_s[row]);
-      return integral[row] + share * (integral[row + 1] - integral[row]);
-    }
-  };
-  std::vector<Stretch> stretches_;
+  /// a tenth of a second or more, to half a second. To ask of two that agree worse than `in_time`. `integral`: of the
+  /// rate, at times.
+  std::optional<double> lateness_s(const std::vector<double>& time_s,
+                                   const std::vector<Vector3<double>>& integral) const;
 };
+
+/// Steps of at least `step_s`; see each_motion().
+template <class Time, class Change, class Rate>
+MotionSteps motion_steps(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate, double step_s) {
+  constexpr double rounding_s = 1e-6;
+  MotionSteps result;
+  struct Place {
+    double time_s = 0;
+    Vector3<double> changed = Vector3<double>::Zero(), integral = Vector3<double>::Zero();
+  };
+  double before_s = 0;  // of the stretches that are over
+  Place first, last;    // since the stretch's begin
+  each_motion(
+      rows, time_s, change, rate,
+      [&] {
+        before_s += last.time_s;
+        first = last = {};
+        result.stretch_ends_s.push_back(before_s);
+      },
+      [&](const Vector3<double>& changed, const Vector3<double>& integrated, double dt_s) {
+        last.time_s += dt_s;
+        last.changed += changed;
+        last.integral += integrated;
+        result.stretch_ends_s.back() = before_s + last.time_s;
+        if (last.time_s - first.time_s < step_s - rounding_s) return;
+        result.steps.push_back({before_s + first.time_s, before_s + last.time_s, last.changed - first.changed,
+                                last.integral - first.integral, result.stretch_ends_s.size() - 1});
+        first = last;
+      });
+  return result;
+}
+
+/// MotionSteps::lateness_s() of two series.
+template <class Time, class Change, class Rate>
+std::optional<double> motion_lateness_s(std::size_t rows, const Time& time_s, const Change& change, const Rate& rate,
+                                        double step_s) {
+  std::vector<double> at_s = {0.0};
+  std::vector<Vector3<double>> integral = {Vector3<double>::Zero()};
+  each_motion(
+      rows, time_s, change, rate, [] {},
+      [&](const Vector3<double>&, const Vector3<double>& integrated, double dt_s) {
+        at_s.push_back(at_s.back() + dt_s);
+        integral.push_back(integral.back() + integrated);
+      });
+  return motion_steps(rows, time_s, change, rate, step_s).lateness_s(at_s, integral);
+}
 
 }  // namespace pinnquad::detail
 

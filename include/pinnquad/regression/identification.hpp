@@ -104,10 +104,9 @@ class Identifier {
   /// Along z by the velocity where there is one: an accelerometer's offset of 0.1 m/s^2 would be 1 % of the thrust.
   const Series& force(std::size_t axis) const;
 
-  /// The specific force along an axis by `fill(instant, regressors)`; instruments: the regressors and the force of past
-  /// instants, and 1.
+  /// A series by `fill(instant, regressors)`; instruments: the regressors and the series of past instants, and 1.
   template <class Fill>
-  BlockSolution force_regression(std::size_t axis, std::size_t unknowns, const Fill& fill) const {
+  BlockSolution regression_of(const Series& y, std::size_t unknowns, const Fill& fill) const {
     const std::size_t instruments = InstrumentedFlights::shifts * (unknowns + 1) + 1;
     BlockRegression regression(unknowns, instruments, rows_.blocks());
     std::vector<double> x(unknowns), z(instruments);
@@ -116,11 +115,11 @@ class Identifier {
       for (std::size_t k = 0; k < InstrumentedFlights::shifts; ++k) {
         const std::size_t before = rows_.before(i, k);
         fill(before, &z[k * (unknowns + 1)]);
-        z[k * (unknowns + 1) + unknowns] = force(axis)[before];
+        z[k * (unknowns + 1) + unknowns] = y[before];
       }
       z.back() = 1;
       fill(i, x.data());
-      regression.add(rows_.block(place), x.data(), force(axis)[i], z.data());
+      regression.add(rows_.block(place), x.data(), y[i], z.data());
     }
     return regression.solve();
   }

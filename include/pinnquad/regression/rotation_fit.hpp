@@ -64,7 +64,7 @@ class RotationFit {
 
   static constexpr double shortest_s = 5e-4, longest_s = 0.4, longest_delay_s = 0.3;  ///< a response is within
 
-  RotationFit(const InstrumentedFlights& rows, double curve) : rows_(rows), curve_(curve) {}
+  RotationFit(const InstrumentedFlights& rows, double curve);
 
   /// The response of a grid under which least squares leave least of roll, pitch and yaw: where to begin. The noise
   /// that comes back through the controller is in it.
@@ -85,20 +85,19 @@ class RotationFit {
   /// Slope of the fractions by a part of the response; `wanted`: under its delay.
   Fractions slope(const RotorResponse& at, const Part& part, const Wanted& wanted) const;
 
-  /// The three axes, linear about `response`, each row by its axis' weight; `s`: fractions under it.
-  BlockRegression linearized(const Fractions& s, const Wanted& wanted, const RotorResponse& response,
+  /// Sums of the fractions at each instant: signed about each axis, and of all rotors.
+  struct Turning {
+    std::array<Series, 3> about;
+    Series sum;
+  };
+  Turning turning_of(const Fractions& s) const;
+
+  /// The three axes, linear about `response`, each row by its axis' weight; `turning`: under it.
+  BlockRegression linearized(const Turning& turning, const Wanted& wanted, const RotorResponse& response,
                              const std::vector<Part>& parts, const std::array<double, 3>& effectiveness,
                              const std::array<double, 3>& weights) const;
 
-  /// Sums of the fractions at each instant: signed about an axis, and of all rotors.
-  struct Turning {
-    Series about, sum;
-  };
-  Turning turning_of(const Fractions& s, std::size_t axis) const;
-
   void fill_axis(const Turning& turning, std::size_t axis, std::size_t i, double* x) const;
-
-  void fill_instruments(const Turning& turning, std::size_t axis, std::size_t i, double* z) const;
 
   /// Root mean square of what is left of an axis, rad/s^2, of this sum of squares.
   double root_mean_square(double squares) const;
@@ -115,6 +114,9 @@ class RotationFit {
 
   const InstrumentedFlights& rows_;
   double curve_;
+  /// At each instant, of each axis: rate, rate product, velocity across, and the angular acceleration. No response is
+  /// in them.
+  std::array<std::vector<std::array<double, 4>>, 3> motion_;
 };
 
 }  // namespace pinnquad::detail

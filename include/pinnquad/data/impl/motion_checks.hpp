@@ -17,6 +17,18 @@ PINNQUAD_BODY std::string times_text(double factor) {
   return number_text(factor < 1 ? std::round(factor * 1e4) / 1e4 : std::round(factor * 100) / 100) + " times";
 }
 
+PINNQUAD_BODY bool BestReading::takes(const MotionBlocks& read, double enough) {
+  const double so = read.agreement(moving_);
+  const bool is_better = so > most_ && so > enough && 1 - so < far_better * (1 - as_it_stands_);
+  if (!is_better || !sums_.agrees_less_than(read, moving_)) return false;
+  most_ = so;
+  return true;
+}
+
+PINNQUAD_BODY std::string BestReading::evidence() const {
+  return "; agreement " + hundredths(as_it_stands_) + " as it stands, " + hundredths(most_) + " so";
+}
+
 PINNQUAD_BODY Vector3<double> turn_vector(const Quaternion<double>& q) {
   const double shorter_way = q.w < 0 ? -1 : 1;
   const Vector3<double> v = shorter_way * Vector3<double>(q.x, q.y, q.z);
@@ -24,7 +36,10 @@ PINNQUAD_BODY Vector3<double> turn_vector(const Quaternion<double>& q) {
   return v * (sine > 1e-12 ? 2 * std::atan2(sine, shorter_way * q.w) / sine : 2.0);
 }
 
-PINNQUAD_BODY MotionPair turning_pair(const Flight& flight, const TurningReading& reading) {
+/// `use` with what motion_steps() takes. `logged`: the attitudes of the columns as they stand.
+template <class Use>
+auto read_turning(const Flight& flight, const std::vector<Quaternion<double>>& logged, const TurningReading& reading,
+                  const Use& use) {
   const auto read = [&](std::size_t row) {
     EulerAngles<double> angles = angles_of(flight[row]);
     if (reading.degrees[0]) angles.roll_rad /= degrees_per_radian;
@@ -32,7 +47,9 @@ PINNQUAD_BODY MotionPair turning_pair(const Flight& flight, const TurningReading
     if (reading.degrees[2]) angles.yaw_rad /= degrees_per_radian;
     return angles;
   };
-  const std::vector<Quaternion<double>> attitude = attitudes(flight.size(), read);
+  const bool degrees = reading.degrees[0] || reading.degrees[1] || reading.degrees[2];
+  const std::vector<Quaternion<double>> converted = attitudes(degrees ? flight.size() : 0, read);
+  const std::vector<Quaternion<double>>& attitude = degrees ? converted : logged;
   const auto of_angles = [&](std::size_t row, const Vector3<double>& turn) {
     const EulerAngles<double> begin = read(row);
     const double sr = std::sin(begin.roll_rad), cr = std::cos(begin.roll_rad);
@@ -56,8 +73,14 @@ PINNQUAD_BODY MotionPair turning_pair(const Flight& flight, const TurningReading
     }
     return turn;
   };
-  return {flight.size(), [&](std::size_t row) { return flight[row].time_s; }, change,
-          [&](std::size_t row) -> const Vector3<double>& { return flight[row].body_rates_rad_s; }};
+  return use([&](std::size_t row) { return flight[row].time_s; }, change,
+             [&](std::size_t row) -> const Vector3<double>& { return flight[row].body_rates_rad_s; });
+}
+PINNQUAD_BODY MotionBlocks turning_sums(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
+                                        const TurningReading& reading) {
+  return read_turning(flight, attitude, reading, [&](const auto& time_s, const auto& change, const auto& rate) {
+    return motion_steps(flight.size(), time_s, change, rate, turning_step_s).sums();
+  });
 }
 /// The sentence of a reading that is not the flight's: angles and rates share the blame for a factor of 57.
 PINNQUAD_BODY Implausible misread_turning(const TurningReading& reading, const std::string& evidence) {
@@ -121,28 +144,20 @@ PINNQUAD_BODY Implausible wrong_rate(const MotionBlocks& sums, const AxisMistake
               field_name(rates_field, mistake.axis) + ", are exchanged)"};
 }
 
-}  // namespace detail
-PINNQUAD_BODY std::optional<detail::Implausible> find_turning_mistake(const Flight& flight) {
-  using namespace detail;
+PINNQUAD_BODY std::optional<Implausible> find_turning_mistake(const Flight& flight,
+                                                              const std::vector<Quaternion<double>>& attitude) {
   constexpr double follows = 0.6, clearly = 0.4;
-  constexpr double nearly = 0.97;  // of small angles, whose derivatives are nearly the body's rates
-  const MotionPair pair = turning_pair(flight, {});
-  const MotionBlocks sums = pair.sums(turning_step_s);
-  const std::array<bool, 3> moving = sums.moving();
-  const double as_it_stands = sums.agreement(moving);
+  const MotionBlocks sums = turning_sums(flight, attitude);
+  BestReading reading(sums);
+  const double as_it_stands = reading.as_it_stands();
   if (as_it_stands < agrees) {
     if (auto stopped = find_stopped_rate(flight, sums)) return stopped;
   }
-  double most = as_it_stands;
   TurningReading best;
-  const auto judge = [&](const TurningReading& reading) {
-    const MotionBlocks so = turning_pair(flight, reading).sums(turning_step_s);
-    const double agreement = so.agreement(moving);
-    if (!(agreement > most) || !sums.agrees_less_than(so, moving)) return;
-    most = agreement;
-    best = reading;
+  const auto judge = [&](const TurningReading& so) {
+    if (reading.takes(turning_sums(flight, attitude, so))) best = so;
   };
-  if (as_it_stands < nearly) {
+  if (as_it_stands < in_time) {
     for (const auto rates : {TurningReading::of_angles, TurningReading::of_angles_as_flu}) judge({{}, 1, rates});
   }
   if (as_it_stands < agrees) {
@@ -156,22 +171,23 @@ PINNQUAD_BODY std::optional<detail::Implausible> find_turning_mistake(const Flig
       judge({{}, 1, rates});
     }
   }
-  if (most > related && 1 - most < far_better * (1 - as_it_stands)) {
-    return misread_turning(best,
-                           "; agreement " + hundredths(as_it_stands) + " as it stands, " + hundredths(most) + " so");
-  }
+  if (reading.found()) return misread_turning(best, reading.evidence());
   if (as_it_stands < agrees) {
     if (const auto mistake = find_axis_mistake(sums, follows, clearly)) {
       if (mistake->axis != mistake->column || mistake->negated) return wrong_rate(sums, *mistake);
       constexpr double about = 1.5;
-      TurningReading reading;
-      if (mistake->factor > degrees_per_radian / about) reading.rates_unit = degrees_per_radian;
-      if (mistake->factor < about / degrees_per_radian) reading.degrees[0] = true;
-      if (reading.rates_unit > 1 || reading.degrees[0])
-        return misread_turning(reading, "; the rates are " + times_text(mistake->factor) + " the turning");
+      TurningReading unit;
+      if (mistake->factor > degrees_per_radian / about) unit.rates_unit = degrees_per_radian;
+      if (mistake->factor < about / degrees_per_radian) unit.degrees[0] = true;
+      if (unit.rates_unit > 1 || unit.degrees[0])
+        return misread_turning(unit, "; the rates are " + times_text(mistake->factor) + " the turning");
     }
   }
-  if (const auto late_s = pair.lateness_s(turning_step_s)) {
+  if (!(as_it_stands < in_time)) return std::nullopt;
+  const auto lateness = [&](const auto& time_s, const auto& change, const auto& rate) {
+    return motion_lateness_s(flight.size(), time_s, change, rate, turning_step_s);
+  };
+  if (const auto late_s = read_turning(flight, attitude, {}, lateness)) {
     const bool angles = *late_s > 0;
     return Implausible{0, angles ? angles_field : rates_field, "roll, pitch and yaw at the times of w_x, w_y and w_z",
                        (angles ? "roll, pitch and yaw " : "w_x, w_y and w_z ") + late_text(*late_s) +
@@ -179,8 +195,6 @@ PINNQUAD_BODY std::optional<detail::Implausible> find_turning_mistake(const Flig
   }
   return std::nullopt;
 }
-
-namespace detail {
 
 /// The first of three accelerations that follows another axis, or its own against the sign, or in another unit.
 PINNQUAD_BODY std::optional<Implausible> wrong_axis(const MotionBlocks& sums, std::size_t first_field,
@@ -198,14 +212,17 @@ PINNQUAD_BODY std::optional<Implausible> wrong_axis(const MotionBlocks& sums, st
                          field_name(first_field, mistake->column),
                      found + ", by how rates and velocity change from row to row"};
 }
+
+inline constexpr const char* expected_derivative =
+    "the derivative of the velocity in the body's axes in column vdot_bx";
+
 /// Velocities that are negated along one axis of the world, of another unit, or late.
 PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& flight,
                                                                const std::vector<Quaternion<double>>& attitude) {
   constexpr double follows = 0.8, better = 0.25, straight = 0.9, alike = 1.3;
   constexpr double fits = 0.95;  // an acceleration in other axes agrees with such a velocity by less
   constexpr std::array<const char*, 3> along = {"north", "east", "down"};
-  const MotionPair pair = world_velocity_pair(flight, attitude, {});
-  const MotionBlocks sums = pair.sums(turning_step_s);
+  const MotionBlocks sums = world_velocity_sums(flight, attitude);
   const std::string expected =
       "a velocity that changes by the accelerations vdot_bx to vdot_bz in columns v_bx, v_by, v_bz";
   if (const auto mistake = find_axis_mistake(sums, follows, better)) {
@@ -224,32 +241,35 @@ PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& fli
     if (one_unit)
       return Implausible{0, velocity_field, expected, times_text(factors[0]) + " that (km/h is 3.6 times m/s)"};
   }
-  const std::array<bool, 3> moving = sums.moving();
-  const double as_it_stands = sums.agreement(moving);
-  double most = as_it_stands;
-  std::string best;
-  const auto judge = [&](const VelocityReading& reading, const char* text) {
-    const MotionBlocks read = world_velocity_pair(flight, attitude, reading).sums(turning_step_s);
-    const double so = read.agreement(moving);
-    const double enough = reading.of_columns + reading.of_world > 0 ? fits : related;
-    if (!(so > most && so > enough && 1 - so < far_better * (1 - as_it_stands))) return;
-    if (!sums.agrees_less_than(read, moving)) return;
-    most = so;
-    best = text;
+  BestReading reading(sums);
+  const double as_it_stands = reading.as_it_stands();
+  Implausible best{0, velocity_field, expected, ""};
+  const auto judge = [&](const VelocityReading& so, const std::string& text) {
+    const bool of_force = so.acceleration.kind != AccelerationReading::kinematic;
+    const bool in_other_axes = of_force || so.of_columns + so.of_world > 0;
+    if (!reading.takes(world_velocity_sums(flight, attitude, so), in_other_axes ? fits : related)) return;
+    best = {0, of_force ? linear_field : velocity_field, of_force ? expected_derivative : expected, text};
   };
-  if (as_it_stands < agrees) {
-    for (std::size_t axes = 0; axes < axes_kinds; ++axes) {
-      judge({0, axes, 0}, "velocities in the world's axes (turn them into the body)");
-      judge({2, 0, axes}, "velocities in the body's axes that were turned into them once more");
-      if (axes > 0) judge({1, 0, axes}, "velocities in another world's axes (ENU for NED, or z up)");
-      if (axes > 0) judge({1, axes, 0}, "velocities in other axes of the body (x forward, y left, z up for FRD)");
-    }
+  for (std::size_t axes = 0; axes < axes_kinds && as_it_stands < in_time; ++axes) {
+    // over gaps and between rows that are far apart the body turns: steps of a row hide this one then
+    const AccelerationReading force{AccelerationReading::world_force, axes};
+    judge({1, 0, 0, force}, force.text());
   }
-  if (!best.empty()) {
-    return Implausible{0, velocity_field, expected,
-                       best + "; agreement " + hundredths(as_it_stands) + " as it stands, " + hundredths(most) + " so"};
+  for (std::size_t axes = 0; axes < axes_kinds && as_it_stands < agrees; ++axes) {
+    judge({0, axes, 0}, "velocities in the world's axes (turn them into the body)");
+    judge({2, 0, axes}, "velocities in the body's axes that were turned into them once more");
+    if (axes > 0) judge({1, 0, axes}, "velocities in another world's axes (ENU for NED, or z up)");
+    if (axes > 0) judge({1, axes, 0}, "velocities in other axes of the body (x forward, y left, z up for FRD)");
   }
-  if (const auto late_s = pair.lateness_s(turning_step_s)) {
+  if (reading.found()) {
+    best.found += reading.evidence();
+    return best;
+  }
+  if (!(as_it_stands < in_time)) return std::nullopt;
+  const auto lateness = [&](const auto& time_s, const auto& change, const auto& rate) {
+    return motion_lateness_s(flight.size(), time_s, change, rate, turning_step_s);
+  };
+  if (const auto late_s = read_world_velocity(flight, attitude, {}, lateness)) {
     return Implausible{0, *late_s > 0 ? velocity_field : linear_field, expected,
                        (*late_s > 0 ? "velocities " : "accelerations ") + late_text(*late_s) + " against the other"};
   }
@@ -260,13 +280,15 @@ PINNQUAD_BODY std::optional<Implausible> find_velocity_mistake(const Flight& fli
 PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& flight,
                                                                const std::vector<Quaternion<double>>& attitude) {
   constexpr double follows = 0.8;
-  const MotionPair pair(
-      flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-      [&](std::size_t row) { return Vector3<double>(flight[row + 1].altitude_m - flight[row].altitude_m, 0, 0); },
-      [&](std::size_t row) {
-        return Vector3<double>(-body_to_world(attitude[row], flight[row].velocity_m_s)[2], 0, 0);
-      });
-  const MotionBlocks sums = pair.sums(turning_step_s);
+  const MotionBlocks sums =
+      motion_steps(
+          flight.size(), [&](std::size_t row) { return flight[row].time_s; },
+          [&](std::size_t row) { return Vector3<double>(flight[row + 1].altitude_m - flight[row].altitude_m, 0, 0); },
+          [&](std::size_t row) {
+            return Vector3<double>(-body_to_world(attitude[row], flight[row].velocity_m_s)[2], 0, 0);
+          },
+          turning_step_s)
+          .sums();
   const auto mistake = find_axis_mistake(sums, follows, follows);
   if (!mistake) return std::nullopt;
   return Implausible{0, altitude_field, "a height that rises with the velocity v_bx to v_bz in column altitude",
@@ -276,41 +298,32 @@ PINNQUAD_BODY std::optional<Implausible> find_altitude_mistake(const Flight& fli
                          : "a velocity of " + times_text(mistake->factor) + " its slope (km/h is 3.6 times m/s)"};
 }
 
-}  // namespace detail
-PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
-  using namespace detail;
+PINNQUAD_BODY std::optional<Implausible> find_acceleration_mistake(const Flight& flight,
+                                                                   const std::vector<Quaternion<double>>& attitude) {
   constexpr double unexplained = 0.1, better = 0.25;
   const auto sums = [&](const auto& value, const auto& rate) {
-    return MotionPair(
+    return motion_steps(
                flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-               [&](std::size_t row) { return Vector3<double>(value(row + 1) - value(row)); }, rate)
-        .sums(acceleration_step_s);
+               [&](std::size_t row) { return Vector3<double>(value(row + 1) - value(row)); }, rate, acceleration_step_s)
+        .sums();
   };
   const MotionBlocks angular =
       sums([&](std::size_t row) -> const Vector3<double>& { return flight[row].body_rates_rad_s; },
            [&](std::size_t row) -> const Vector3<double>& { return flight[row].angular_acceleration_rad_s2; });
   if (auto mistake = wrong_axis(angular, angular_field, rates_field)) return mistake;
-  const std::vector<Quaternion<double>> attitude = attitudes_of(flight);
   if (auto mistake = find_velocity_mistake(flight, attitude)) return mistake;
   if (auto mistake = find_altitude_mistake(flight, attitude)) return mistake;
   const auto left_of = [](const MotionSums& block) {
     return block.changes.sum() + block.integrals.sum() - 2 * block.products.trace();
   };
   std::vector<AccelerationReading::Row> rows;  // in one place: they are read in many ways
-  std::vector<Vector3<double>> derivative(flight.size()), velocity;
   rows.reserve(flight.size());
-  velocity.reserve(flight.size());
   for (std::size_t row = 0; row < flight.size(); ++row) {
-    const Sample& sample = flight[row];
-    rows.push_back(
-        {sample.linear_acceleration_m_s2, cross(sample.body_rates_rad_s, sample.velocity_m_s), attitude[row]});
-    velocity.push_back(sample.velocity_m_s);
+    rows.emplace_back(flight[row], attitude[row]);
   }
   const auto read_as = [&](const AccelerationReading& reading) {
-    std::transform(rows.begin(), rows.end(), derivative.begin(),
-                   [&](const AccelerationReading::Row& row) { return reading.body_derivative(row); });
-    return sums([&](std::size_t row) -> const Vector3<double>& { return velocity[row]; },
-                [&](std::size_t row) -> const Vector3<double>& { return derivative[row]; });
+    return sums([&](std::size_t row) -> const Vector3<double>& { return rows[row].velocity; },
+                [&](std::size_t row) { return reading.body_derivative(rows[row]); });
   };
   const MotionBlocks linear = read_as({});
   const double left = left_of(linear);
@@ -332,12 +345,21 @@ PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const
       for (const auto kind : {Reading::world_derivative, Reading::world, Reading::world_force}) judge({kind, axes});
     }
     if (!best.empty()) {
-      return Implausible{0, linear_field,
-                         "the derivative of the velocity in the body's axes in column " + field_name(linear_field, 0),
+      return Implausible{0, linear_field, expected_derivative,
                          best + ", by how rates and velocity change from row to row"};
     }
   }
   return wrong_axis(linear, linear_field, velocity_field);
+}
+
+}  // namespace detail
+
+PINNQUAD_BODY std::optional<detail::Implausible> find_turning_mistake(const Flight& flight) {
+  return detail::find_turning_mistake(flight, detail::attitudes_of(flight));
+}
+
+PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
+  return detail::find_acceleration_mistake(flight, detail::attitudes_of(flight));
 }
 
 }  // namespace pinnquad

@@ -158,56 +158,50 @@ PINNQUAD_BODY bool MotionBlocks::confirms(Eigen::Index axis) const {
          is_plain(each([&](const MotionSums& block) { return correlation(axis, axis, block); }));
 }
 
-PINNQUAD_BODY MotionBlocks MotionPair::sums(double step_s, double late_s) const {
-  constexpr double rounding = 1e-6;
-  double duration_s = 0;
-  for (const Stretch& stretch : stretches_) duration_s += stretch.time_s.back();
+PINNQUAD_BODY MotionBlocks MotionSteps::sums() const {
+  const double duration_s = stretch_ends_s.empty() ? 0 : stretch_ends_s.back();
   std::vector<MotionSums> blocks(block_count(duration_s));
-  double before_s = 0;
-  for (const Stretch& stretch : stretches_) {
-    const std::size_t rows = stretch.time_s.size();
-    std::size_t row = 0, step = 1;          // of the integral that was read last; rows of the earlier step
-    std::optional<Vector3<double>> before;  // the integral at the end of the earlier step, which is this one's begin
-    const auto takes_less = [&](std::size_t begin, std::size_t end) {
-      return stretch.time_s[end] - stretch.time_s[begin] < step_s - rounding;
-    };
-    for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
-      end = std::min(begin + step, rows - 1);
-      while (end > begin && !takes_less(begin, end - 1)) --end;
-      while (end < rows && takes_less(begin, end)) ++end;
-      if (end == rows) break;
-      step = end - begin;
-      const double first_s = stretch.time_s[begin] - late_s, last_s = stretch.time_s[end] - late_s;
-      if (first_s < 0 || last_s > stretch.time_s.back()) continue;
-      const Vector3<double> first = before ? *before : stretch.integral_at(first_s, row);
-      row += step;
-      before = stretch.integral_at(last_s, row);
-      const Vector3<double> integral = *before - first;
-      const double share = (before_s + stretch.time_s[begin]) / duration_s;
-      const auto block = static_cast<std::size_t>(share * static_cast<double>(blocks.size()));
-      blocks[std::min(block, blocks.size() - 1)].add(stretch.changed[end] - stretch.changed[begin], integral);
-    }
-    before_s += stretch.time_s.back();
+  for (const Step& step : steps) {
+    const auto block = static_cast<std::size_t>(step.begin_s / duration_s * static_cast<double>(blocks.size()));
+    blocks[std::min(block, blocks.size() - 1)].add(step.changed, step.integral);
   }
   return MotionBlocks(std::move(blocks));
 }
 
-PINNQUAD_BODY std::optional<double> MotionPair::lateness_s(double step_s) const {
+PINNQUAD_BODY std::optional<double> MotionSteps::lateness_s(const std::vector<double>& time_s,
+                                                            const std::vector<Vector3<double>>& integral) const {
   constexpr double longest_s = 0.5, shortest_s = 0.1, grid_s = 0.02;
-  constexpr double enough = 0.6, misses = 0.03, left = 0.4;
-  const MotionBlocks as_it_stands = sums(step_s);
+  constexpr double enough = 0.6, left = 0.4;
+  const auto sums_at = [&](double late_s) {
+    MotionSteps late{{}, stretch_ends_s};
+    std::size_t row = 0;
+    const auto integral_at = [&](double at_s) -> Vector3<double> {
+      while (row > 0 && time_s[row] > at_s) --row;
+      while (row + 2 < time_s.size() && time_s[row + 1] <= at_s) ++row;
+      const double share = (at_s - time_s[row]) / (time_s[row + 1] - time_s[row]);
+      return integral[row] + share * (integral[row + 1] - integral[row]);
+    };
+    for (const Step& step : steps) {
+      const double first_s = step.begin_s - late_s, last_s = step.end_s - late_s;
+      const double least_s = step.stretch > 0 ? stretch_ends_s[step.stretch - 1] : 0;
+      if (first_s < least_s || last_s > stretch_ends_s[step.stretch]) continue;
+      const Vector3<double> first = integral_at(first_s);
+      late.steps.push_back({step.begin_s, step.end_s, step.changed, integral_at(last_s) - first, step.stretch});
+    }
+    return late.sums();
+  };
+  const MotionBlocks as_it_stands = sums();
   const std::array<bool, 3> moving = as_it_stands.moving();
   const double now = as_it_stands.agreement(moving);
-  if (!(now < 1 - misses)) return std::nullopt;
   double late_s = 0, most = now;
   for (int k = -static_cast<int>(longest_s / grid_s); k <= static_cast<int>(longest_s / grid_s); ++k) {
-    const MotionBlocks at = sums(step_s, grid_s * k);
+    const MotionBlocks at = sums_at(grid_s * k);
     if (!(at.agreement(moving) > most)) continue;
     most = at.agreement(moving);
     late_s = grid_s * k;
   }
   const bool found = std::abs(late_s) > shortest_s - grid_s / 2 && most > enough && 1 - most < left * (1 - now) &&
-                     as_it_stands.agrees_less_than(sums(step_s, late_s), moving);
+                     as_it_stands.agrees_less_than(sums_at(late_s), moving);
   return found ? std::optional<double>(late_s) : std::nullopt;
 }
 

@@ -160,14 +160,15 @@ PINNQUAD_BODY InputError implausible_in_file(const std::string& path, const Impl
 PINNQUAD_BODY std::optional<detail::Implausible> find_implausible(const Flight& flight) {
   if (auto found = detail::find_implausible_command(flight)) return found;
   if (auto found = detail::find_other_clock(flight)) return found;
-  if (auto found = find_turning_mistake(flight)) return found;
+  const std::vector<Quaternion<double>> attitude = detail::attitudes_of(flight);
+  if (auto found = detail::find_turning_mistake(flight, attitude)) return found;
   detail::Ranges ranges{};
   if (auto found = detail::find_out_of_range(flight, ranges)) return found;
   const double period_s = detail::row_period_s(flight);
   for (std::size_t field = 0; field < sample_value_count; ++field) {
     if (auto found = detail::find_outlier(flight, field, ranges, period_s)) return found;
   }
-  return find_acceleration_mistake(flight);
+  return detail::find_acceleration_mistake(flight, attitude);
 }
 
 PINNQUAD_BODY std::string motion_not_checked(const Flight& flight) {
@@ -178,10 +179,11 @@ PINNQUAD_BODY std::string motion_not_checked(const Flight& flight) {
       if (!sums.confirms(axis)) columns += (columns.empty() ? "" : ", ") + field_name(first_field, axis);
     }
   };
-  say(turning_pair(flight, {}).sums(turning_step_s), rates_field);
+  const std::vector<Quaternion<double>> attitude = attitudes_of(flight);
+  say(turning_sums(flight, attitude), rates_field);
   const bool has_velocity = std::any_of(flight.begin(), flight.end(),
                                         [](const Sample& sample) { return sample.velocity_m_s.squaredNorm() > 0; });
-  if (has_velocity) say(world_velocity_pair(flight).sums(turning_step_s), velocity_field);
+  if (has_velocity) say(world_velocity_sums(flight, attitude), velocity_field);
   return columns;
 }
 

@@ -33,75 +33,39 @@ PINNQUAD_BODY Vector3<double> in_axes(const Vector3<double>& v, std::size_t kind
   }
 }
 
-/// A reading of the columns that should hold the derivative of the body-frame velocity.
-struct AccelerationReading {
-  enum Kind { kinematic, without_turning, world_derivative, world, world_force, no_gravity, accelerometer };
-  Kind kind = kinematic;
-  std::size_t axes = 0;  ///< of a vector of the world: axes_kinds
-
-  std::string text() const {
-    const std::string in_world = axes == 0   ? " in axes north, east, down"
-                                 : axes == 1 ? " in axes east, north, up"
-                                             : " in axes of another convention (ENU, or z up)";
-    switch (kind) {
-      case without_turning: return "the world's acceleration in the body's axes (subtract w x v)";
-      case world_derivative:
-      case world: return "the world's acceleration" + in_world + " (turn it into the body, subtract w x v)";
-      case world_force: return "the specific force" + in_world + " of the world (turn it into the body)";
-      case no_gravity: return "that with gravity added once too often (an accelerometer's without gravity?)";
-      case accelerometer: return "what an accelerometer reads (add gravity in the body's axes, subtract w x v)";
-      case kinematic: break;
-    }
-    return "";
+PINNQUAD_BODY Vector3<double> VelocityReading::in_world(const Vector3<double>& column,
+                                                        const Quaternion<double>& attitude) const {
+  Vector3<double> read = in_axes(column, of_columns);
+  for (int turn = 0; turn < turns; ++turn) {
+    read = body_to_world(attitude, read);
+    if (turn == 0) read = in_axes(read, of_world);
   }
-
-  /// A row as every reading takes it.
-  struct Row {
-    Vector3<double> given, turning;  ///< of the columns; omega x v
-    Quaternion<double> attitude;
-  };
-
-  Vector3<double> body_derivative(const Row& row) const {
-    const Vector3<double>&given = row.given, &turning = row.turning;
-    const Quaternion<double>& q = row.attitude;
-    const bool falls = kind == world_force || kind == no_gravity || kind == accelerometer;
-    const Vector3<double> gravity =
-        falls ? world_to_body(q, Vector3<double>(0, 0, standard_gravity_m_s2<double>)) : Vector3<double>::Zero();
-    switch (kind) {
-      case without_turning: return given - turning;
-      case world_derivative: return world_to_body(q, in_axes(given, axes)) - turning;
-      case world: return world_to_body(q, in_axes(given + turning, axes)) - turning;
-      case world_force: return world_to_body(q, in_axes(given + turning - gravity, axes)) + gravity - turning;
-      case no_gravity: return given - gravity;
-      case accelerometer: return given + gravity - turning;
-      case kinematic: break;
-    }
-    return given;
-  }
-};
-PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
-                                             const VelocityReading& reading) {
-  std::vector<Vector3<double>> velocity, acceleration;
-  velocity.reserve(flight.size());
-  acceleration.reserve(flight.size());
-  for (std::size_t row = 0; row < flight.size(); ++row) {
-    const Sample& sample = flight[row];
-    Vector3<double> read = in_axes(sample.velocity_m_s, reading.of_columns);
-    for (int turn = 0; turn < reading.turns; ++turn) {
-      read = body_to_world(attitude[row], read);
-      if (turn == 0) read = in_axes(read, reading.of_world);
-    }
-    velocity.push_back(read);
-    const Vector3<double> turning = cross(sample.body_rates_rad_s, sample.velocity_m_s);
-    acceleration.push_back(body_to_world(attitude[row], Vector3<double>(sample.linear_acceleration_m_s2 + turning)));
-  }
-  return {flight.size(), [&](std::size_t row) { return flight[row].time_s; },
-          [&](std::size_t row) -> Vector3<double> { return velocity[row + 1] - velocity[row]; },
-          [&](std::size_t row) -> const Vector3<double>& { return acceleration[row]; }};
+  return read;
 }
 
-PINNQUAD_BODY MotionPair world_velocity_pair(const Flight& flight, const VelocityReading& reading) {
-  return world_velocity_pair(flight, attitudes_of(flight), reading);
+/// `use` with what motion_steps() takes.
+template <class Use>
+auto read_world_velocity(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
+                         const VelocityReading& reading, const Use& use) {
+  std::vector<Vector3<double>> velocity;
+  velocity.reserve(flight.size());
+  for (std::size_t row = 0; row < flight.size(); ++row) {
+    velocity.push_back(reading.in_world(flight[row].velocity_m_s, attitude[row]));
+  }
+  return use([&](std::size_t row) { return flight[row].time_s; },
+             [&](std::size_t row) -> Vector3<double> { return velocity[row + 1] - velocity[row]; },
+             [&](std::size_t row) {
+               const AccelerationReading::Row read(flight[row], attitude[row]);
+               const Vector3<double> derivative = reading.acceleration.body_derivative(read);
+               return body_to_world(attitude[row], Vector3<double>(derivative + read.turning));
+             });
+}
+
+PINNQUAD_BODY MotionBlocks world_velocity_sums(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
+                                               const VelocityReading& reading) {
+  return read_world_velocity(flight, attitude, reading, [&](const auto& time_s, const auto& change, const auto& rate) {
+    return motion_steps(flight.size(), time_s, change, rate, turning_step_s).sums();
+  });
 }
 
 }  // namespace pinnquad::detail

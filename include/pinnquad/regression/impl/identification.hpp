@@ -132,32 +132,16 @@ PINNQUAD_BODY std::array<Estimate, 4> Identifier::curves() const {
   };
   std::array<Estimate, 4> found;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    constexpr std::size_t unknowns = 6, each = unknowns + 1, instruments = InstrumentedFlights::shifts * each + 1;
-    const auto fill = [&](std::size_t i, double* x) {
+    found[axis] = curve_of(regression_of(flights.angular_acceleration()[axis], 6, [&](std::size_t i, double* x) {
       x[0] = rows_.signed_sum(linear, axis, i);
       x[1] = rows_.signed_sum(square, axis, i);
       x[2] = InstrumentedFlights::sum(linear, i);
       x[3] = flights.rates()[axis][i];
       x[4] = flights.rate_products()[axis][i];
       x[5] = flights.velocity()[axis == 1 ? 0 : 1][i];
-    };
-    BlockRegression regression(unknowns, instruments, rows_.blocks());
-    std::array<double, unknowns> x{};
-    std::array<double, instruments> z{};
-    for (std::size_t place = 0; place < rows_.instants().size(); ++place) {
-      const std::size_t i = rows_.instants()[place];
-      for (std::size_t k = 0; k < InstrumentedFlights::shifts; ++k) {
-        const std::size_t before = rows_.before(i, k);
-        fill(before, &z[k * each]);
-        z[k * each + unknowns] = flights.angular_acceleration()[axis][before];
-      }
-      z.back() = 1;
-      fill(i, x.data());
-      regression.add(rows_.block(place), x.data(), flights.angular_acceleration()[axis][i], z.data());
-    }
-    found[axis] = curve_of(regression.solve());
+    }));
   }
-  found[3] = curve_of(force_regression(2, 4, [&](std::size_t i, double* x) {
+  found[3] = curve_of(regression_of(force(2), 4, [&](std::size_t i, double* x) {
     x[0] = -InstrumentedFlights::sum(linear, i);
     x[1] = -InstrumentedFlights::sum(square, i);
     x[2] = -flights.velocity()[2][i];
@@ -193,12 +177,12 @@ PINNQUAD_BODY void Identifier::find_forces(double curve, Identification& result)
       return 1;
     };
     const std::size_t first = axis == 2 ? of_thrust : 1;
-    const BlockSolution both = force_regression(axis, first + 2, [&](std::size_t i, double* x) {
+    const BlockSolution both = regression_of(force(axis), first + 2, [&](std::size_t i, double* x) {
       const std::size_t from = before_drag(i, x);
       x[from] = -v[i];
       x[from + 1] = -square[i];
     });
-    const BlockSolution alone = force_regression(axis, first + 1, [&](std::size_t i, double* x) {
+    const BlockSolution alone = regression_of(force(axis), first + 1, [&](std::size_t i, double* x) {
       const std::size_t from = before_drag(i, x);
       x[from] = -square[i];
     });
@@ -207,7 +191,7 @@ PINNQUAD_BODY void Identifier::find_forces(double curve, Identification& result)
     result.drag_1_m[axis] = alone.estimate(first);
     if (axis < 2) continue;
     result.thrust_m_s2 = both.estimate(0);
-    result.thrust_slope_m_s2 = force_regression(axis, first + 2, [&](std::size_t i, double* x) {
+    result.thrust_slope_m_s2 = regression_of(force(axis), first + 2, [&](std::size_t i, double* x) {
                                  const std::size_t from = before_drag(i, x);
                                  x[from] = 1;
                                  x[from + 1] = -v[i];

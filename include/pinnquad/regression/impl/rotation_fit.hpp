@@ -34,6 +34,17 @@ PINNQUAD_BODY std::vector<RotationFit::Part> RotationFit::rise_fall_and_delay() 
   return {{&RotorResponse::rise_s}, {&RotorResponse::fall_s}, {&RotorResponse::delay_s}};
 }
 
+PINNQUAD_BODY RotationFit::RotationFit(const InstrumentedFlights& rows, double curve) : rows_(rows), curve_(curve) {
+  const SmoothedFlights& flights = rows.flights();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    motion_[axis].reserve(flights.size());
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+      motion_[axis].push_back({flights.rates()[axis][i], flights.rate_products()[axis][i],
+                               flights.velocity()[across[axis]][i], flights.angular_acceleration()[axis][i]});
+    }
+  }
+}
+
 PINNQUAD_BODY RotorResponse RotationFit::nearest() const {
   constexpr std::array<double, 4> lags_s = {0.005, 0.03, 0.06, 0.1};
   constexpr double first_delay_s = -0.1, step_s = 0.02;
@@ -47,9 +58,9 @@ PINNQUAD_BODY RotorResponse RotationFit::nearest() const {
     for (const double lag_s : lags_s) {
       const RotorResponse at{lag_s, lag_s, delay_s};
       const Fractions s = rows_.flights().followed(wanted, at);
+      const Turning turning = turning_of(s);
       double left = 0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Turning turning = turning_of(s, axis);
         if (k == 0 && lag_s <= lags_s.front()) any[axis] = products_of(turning, axis);
         left += std::log(left_by_least_squares(turning, axis, any[axis]));
       }
@@ -68,10 +79,11 @@ PINNQUAD_BODY BlockSolution RotationFit::converge(RotorResponse& response, const
   for (int step = 0; step < most_steps; ++step) {
     const Wanted wanted = rows_.flights().wanted(curve_, response.delay_s);
     const Fractions s = rows_.flights().followed(wanted, response);
-    const BlockSolution found = linearized(s, wanted, response, parts, effectiveness, weights).solve(false);
+    const Turning turning = turning_of(s);
+    const BlockSolution found = linearized(turning, wanted, response, parts, effectiveness, weights).solve(false);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       effectiveness[axis] = found.values()[axis * of_axis];
-      weights[axis] = 1 / deviation(turning_of(s, axis), axis, found, axis * of_axis);
+      weights[axis] = 1 / deviation(turning, axis, found, axis * of_axis);
     }
     if (step == 0) continue;  // without an effectiveness there was no slope
     double moved = 0;
@@ -87,7 +99,7 @@ PINNQUAD_BODY BlockSolution RotationFit::converge(RotorResponse& response, const
   }
   const Wanted wanted = rows_.flights().wanted(curve_, response.delay_s);
   const Fractions s = rows_.flights().followed(wanted, response);
-  return linearized(s, wanted, response, parts, effectiveness, weights).solve();
+  return linearized(turning_of(s), wanted, response, parts, effectiveness, weights).solve();
 }
 
 PINNQUAD_BODY double RotationFit::within_bounds(double value_s, const Part& part) {
@@ -116,69 +128,67 @@ PINNQUAD_BODY RotationFit::Fractions RotationFit::slope(const RotorResponse& at,
   return result;
 }
 
-PINNQUAD_BODY BlockRegression RotationFit::linearized(const Fractions& s, const Wanted& wanted,
+PINNQUAD_BODY BlockRegression RotationFit::linearized(const Turning& turning, const Wanted& wanted,
                                                       const RotorResponse& response, const std::vector<Part>& parts,
                                                       const std::array<double, 3>& effectiveness,
                                                       const std::array<double, 3>& weights) const {
-  std::vector<Fractions> slopes;
-  slopes.reserve(parts.size());
-  for (const Part& part : parts) slopes.push_back(slope(response, part, wanted));
+  std::vector<Turning> slopes;
+  for (const Part& part : parts) {
+    const bool counts = effectiveness[0] != 0 || effectiveness[1] != 0 || effectiveness[2] != 0;
+    if (counts) slopes.push_back(turning_of(slope(response, part, wanted)));
+  }
   BlockRegression regression(of_response + parts.size(), 3 * instruments, rows_.blocks());
   std::vector<double> x(of_response + parts.size()), z(3 * instruments);
+  std::vector<std::array<double, 6>> instrument(turning.sum.size());  // of each instant
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Turning turning = turning_of(s, axis);
-    std::vector<Series> about;
-    for (const Fractions& slope_of_part : slopes) about.push_back(turning_of(slope_of_part, axis).about);
+    const double weight = weights[axis];
+    for (std::size_t i = 0; i < instrument.size(); ++i) {
+      const auto& [rate, product, across_axis, acceleration] = motion_[axis][i];
+      instrument[i] = {turning.about[axis][i] * weight, turning.sum[i] * weight, rate * weight, product * weight,
+                       acceleration * weight,           across_axis * weight};
+    }
     std::fill(x.begin(), x.end(), 0.0);
     std::fill(z.begin(), z.end(), 0.0);
+    double *const of_x = &x[axis * of_axis], *const of_z = &z[axis * instruments];
+    of_z[instruments - 1] = weight;
     for (std::size_t place = 0; place < rows_.instants().size(); ++place) {
       const std::size_t i = rows_.instants()[place];
-      fill_axis(turning, axis, i, &x[axis * of_axis]);
-      fill_instruments(turning, axis, i, &z[axis * instruments]);
-      double y = rows_.flights().angular_acceleration()[axis][i];
-      for (std::size_t k = 0; k < parts.size(); ++k) {
-        x[of_response + k] = effectiveness[axis] * about[k][i];
-        y += x[of_response + k] * response.*parts[k].front();
+      for (std::size_t k = 0; k < shifts; ++k) {
+        const auto& before = instrument[rows_.before(i, k)];
+        std::copy(before.begin(), before.end(), of_z + k * before.size());
       }
-      for (double& value : x) value *= weights[axis];
-      for (double& value : z) value *= weights[axis];
-      regression.add(rows_.block(place), x.data(), weights[axis] * y, z.data());
+      fill_axis(turning, axis, i, of_x);
+      for (std::size_t k = 0; k < of_axis; ++k) of_x[k] *= weight;
+      double y = motion_[axis][i][3];
+      for (std::size_t k = 0; k < slopes.size(); ++k) {
+        const double of_part = effectiveness[axis] * slopes[k].about[axis][i];
+        y += of_part * response.*parts[k].front();
+        x[of_response + k] = of_part * weight;
+      }
+      regression.add(rows_.block(place), x.data(), weight * y, z.data());
     }
   }
   return regression;
 }
 
-PINNQUAD_BODY RotationFit::Turning RotationFit::turning_of(const Fractions& s, std::size_t axis) const {
+PINNQUAD_BODY RotationFit::Turning RotationFit::turning_of(const Fractions& s) const {
   const std::size_t count = s[0].size();
-  Turning turning{Series(count), Series(count)};
+  Turning turning{{Series(count), Series(count), Series(count)}, Series(count)};
   for (std::size_t i = 0; i < count; ++i) {
-    turning.about[i] = rows_.signed_sum(s, axis, i);
+    for (std::size_t axis = 0; axis < 3; ++axis) turning.about[axis][i] = rows_.signed_sum(s, axis, i);
     turning.sum[i] = InstrumentedFlights::sum(s, i);
   }
   return turning;
 }
 
 PINNQUAD_BODY void RotationFit::fill_axis(const Turning& turning, std::size_t axis, std::size_t i, double* x) const {
-  x[0] = turning.about[i];
+  const auto& [rate, product, across_axis, acceleration] = motion_[axis][i];
+  x[0] = turning.about[axis][i];
   x[1] = turning.sum[i];
-  x[2] = -rows_.flights().rates()[axis][i];
-  x[3] = rows_.flights().rate_products()[axis][i];
-  x[4] = rows_.flights().velocity()[across[axis]][i];
-}
-
-PINNQUAD_BODY void RotationFit::fill_instruments(const Turning& turning, std::size_t axis, std::size_t i,
-                                                 double* z) const {
-  const SmoothedFlights& flights = rows_.flights();
-  for (std::size_t k = 0; k < shifts; ++k) {
-    const std::size_t before = rows_.before(i, k);
-    *z++ = turning.about[before];
-    *z++ = turning.sum[before];
-    *z++ = flights.rates()[axis][before];
-    *z++ = flights.rate_products()[axis][before];
-    *z++ = flights.angular_acceleration()[axis][before];
-    *z++ = flights.velocity()[across[axis]][before];
-  }
-  *z = 1;
+  x[2] = -rate;
+  x[3] = product;
+  x[4] = across_axis;
+  static_cast<void>(acceleration);
 }
 
 PINNQUAD_BODY double RotationFit::root_mean_square(double squares) const {
@@ -191,7 +201,7 @@ PINNQUAD_BODY RotationFit::Products RotationFit::products_of(const Turning& turn
   Eigen::Matrix<double, Products::RowsAtCompileTime, 1> row;
   for (const std::size_t i : rows_.instants()) {
     fill_axis(turning, axis, i, row.data());
-    row[Products::RowsAtCompileTime - 1] = rows_.flights().angular_acceleration()[axis][i];
+    row[Products::RowsAtCompileTime - 1] = motion_[axis][i][3];
     sums.noalias() += row * row.transpose();
   }
   return sums;
@@ -204,7 +214,7 @@ PINNQUAD_BODY double RotationFit::left_by_least_squares(const Turning& turning, 
   Row row, by_about = Row::Zero(), by_sum = Row::Zero();  // the response is in these two alone
   for (const std::size_t i : rows_.instants()) {
     fill_axis(turning, axis, i, row.data());
-    row[unknowns] = rows_.flights().angular_acceleration()[axis][i];
+    row[unknowns] = motion_[axis][i][3];
     by_about += row[0] * row;
     by_sum += row[1] * row;
   }
@@ -226,7 +236,7 @@ PINNQUAD_BODY double RotationFit::deviation(const Turning& turning, std::size_t 
   std::array<double, of_axis> x{};
   for (const std::size_t i : rows_.instants()) {
     fill_axis(turning, axis, i, x.data());
-    double left = rows_.flights().angular_acceleration()[axis][i];
+    double left = motion_[axis][i][3];
     for (std::size_t k = 0; k < of_axis; ++k) left -= x[k] * solution.values()[first + k];
     squares += left * left;
   }
