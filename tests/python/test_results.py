@@ -80,6 +80,8 @@ def test_a_certificate(structured, network):
     assert list(frame.index) == ["roll", "pitch", "yaw"] and (frame["ratio"] > 0.5).all()
     assert frame.loc["yaw", "slope"] == proven.slope["yaw"]
     assert refuted.to_frame()["slope"].isna().all() and "Certificate" in repr(refuted)
+    flown = pinnquad.loop(structured)
+    assert flown.to_frame().loc["model", "rmse_m"] == flown.model["rmse_m"] < flown.without_jerk["rmse_m"]
 
 
 def test_a_training(trained):
@@ -105,6 +107,9 @@ def test_charts(charts, flight, trained, structured, tmp_path):
     assert frame.loc["thrust_m_s2", "value"] == found.numbers["thrust_m_s2"].value
     shown = [text.get_text() for text in found.plot().get_yticklabels()]
     assert any(text.startswith("roll_effectiveness_rad_s2 = ") for text in shown)
+    flown = pinnquad.loop(structured)
+    lines = flown.plot().lines
+    assert lines[0].get_ydata().max() <= flown.model["largest_error_m"] < lines[1].get_ydata().max()
     _, (one, other) = charts.subplots(1, 2)
     assert trained.plot(one) is one and judged.plot(axes=other) is other
     axes[0].figure.savefig(tmp_path / "flight.png")

@@ -89,11 +89,8 @@ inline std::string verdict_text(const FlightVerdict& verdict) {
 inline void print_verdict(const FlightVerdict& verdict) { std::fputs(verdict_text(verdict).c_str(), stdout); }
 
 inline nlohmann::json verdict_json(const FlightVerdict& verdict) {
-  return {{"may_fly", word_of(verdict.may_fly())},
-          {"in_words", verdict.words()},
-          {"why", verdict.why()},
-          {"evidence", verdict.evidence()},
-          {"next", verdict.next()}};
+  return {{"may_fly", word_of(verdict.may_fly())}, {"in_words", verdict.words()},    {"why", verdict.why()},
+          {"reasons", verdict.reasons()},          {"evidence", verdict.evidence()}, {"next", verdict.next()}};
 }
 
 /// The flight that most models lack.

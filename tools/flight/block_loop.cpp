@@ -2,6 +2,9 @@
 #include "flight/block_loop.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -57,6 +60,24 @@ AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const Model
   return take(eight, eight.half_length_m, eight.half_height_m);
 }
 
+/// Any feed-forward that learns nothing behind one type: one loop is compiled.
+struct AnyFeedForward {
+  template <class Policy>
+  explicit AnyFeedForward(const Policy& policy) {
+    const auto held = std::make_shared<Policy>(policy);
+    answer = [held](auto&&... asked) { return (*held)(asked...); };
+    counted = [held] { return fallback_count(*held); };
+  }
+  Status operator()(const State<double>& state, const Accelerations<double>& wanted, std::uint64_t time_us,
+                    Commands<double>& commands) noexcept {
+    return answer(state, wanted, time_us, commands);
+  }
+  FallbackCount count() const noexcept { return counted(); }
+
+  std::function<Status(const State<double>&, const Accelerations<double>&, std::uint64_t, Commands<double>&)> answer;
+  std::function<FallbackCount()> counted;
+};
+
 }  // namespace
 
 ModelRange range_of(const BlockModel& model) {
@@ -84,16 +105,17 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   const GroundEffectModel ground_effect =
       near_ground ? NearGroundFlight::ground_effect_of(plan.airframe) : GroundEffectModel::none;
   const SwitchedQuadrotor vehicle = flight_vehicle<AgileFlight>(plan.airframe, ground_effect);
-  const SwitchedQuadrotor flown = flight_vehicle<AgileFlight>(plan.airframe, ground_effect, plan.battery);
+  const SwitchedQuadrotor on_battery = flight_vehicle<AgileFlight>(plan.airframe, ground_effect, plan.battery);
   std::vector<double> columns = plan.columns;
-  BatteryWorld<SwitchedQuadrotor> world{{flown}, plan.battery ? voltage_among(model, columns) : nullptr};
+  double* const voltage_V = plan.battery ? voltage_among(model, columns) : nullptr;
   const double ground_z_m = vehicle.site().ground_z_m;
   LoopFlights flights;
   flights.near_ground = near_ground;
   const ModelRange range = plan.keeps_envelope ? range_of(model) : range_of(model).of_altitude();
   const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, range, flights);
+  const AnyTrajectory without_jerk{[&](double time_s) { return WithoutJerk{trajectory}.sample(time_s); }};
   Commands<double> trim{};
-  Status status = flown.status();
+  Status status = on_battery.status();
   if (status == Status::ok) status = hover_trim(vehicle, trajectory.sample(0).position_m, trim);
   if (status != Status::ok) {
     throw std::invalid_argument(std::string("this airframe can't be flown ") +
@@ -101,22 +123,26 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   }
   const FlightController<double> controller(
       {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
-  const AnalyticInverse<SwitchedQuadrotor> analytic(vehicle);
   TrackingPlan<double> how;
   how.duration_s = flights.duration_s;
-  const auto fly = [&](const auto& feed_forward) {
-    return track(vehicle, world, trajectory, controller, feed_forward, how,
-                 flights.traces.model.observer(how.duration_s));
+  const auto fly = [&](const AnyTrajectory& path, const AnyFeedForward& feed_forward, const SwitchedQuadrotor& flown,
+                       FlownTrace& trace) {
+    BatteryWorld<SwitchedQuadrotor> world{{flown}, voltage_V};
+    return track(vehicle, world, path, controller, feed_forward, how, trace.observer(how.duration_s));
   };
+  const AnalyticInverse<SwitchedQuadrotor> analytic(vehicle);
   using FallsBack = Fallback<AnalyticInverse<SwitchedQuadrotor>>;
-  const auto fly_model = [&](const auto& guard) { return with_feed_forward(model, guard, ground_z_m, columns, fly); };
-  flights.model = plan.keeps_envelope ? fly_model(Extend<TrainingGuard, FallsBack>(analytic))
-                                      : fly_model(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic));
-  if (world.voltage_V != nullptr) flights.last_voltage_V = *world.voltage_V;
-  flights.analytic_inverse = track(vehicle, trajectory, controller, analytic, how);
-  ExactWorld<SwitchedQuadrotor> exact{vehicle};
-  flights.without_jerk = track(vehicle, exact, WithoutJerk{trajectory}, controller, analytic, how,
-                               flights.traces.without.observer(how.duration_s));
+  const auto with_guard = [&](const auto& guard) {
+    return with_feed_forward(model, guard, ground_z_m, columns, [](auto policy) { return AnyFeedForward(policy); });
+  };
+  flights.model = fly(trajectory,
+                      plan.keeps_envelope ? with_guard(Extend<TrainingGuard, FallsBack>(analytic))
+                                          : with_guard(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic)),
+                      on_battery, flights.traces.model);
+  if (voltage_V != nullptr) flights.last_voltage_V = *voltage_V;
+  FlownTrace unseen;
+  flights.analytic_inverse = fly(trajectory, AnyFeedForward(analytic), vehicle, unseen);
+  flights.without_jerk = fly(without_jerk, AnyFeedForward(analytic), vehicle, flights.traces.without);
   return flights;
 }
 

@@ -20,7 +20,6 @@
 
 #include "command_line/command.hpp"
 #include "command_line/console.hpp"
-#include "command_line/interrupt.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"
 #include "flight/block_loop.hpp"
@@ -50,39 +49,6 @@ struct LoopOptions : programs::LoopModelOptions {
   bool json = false;
 };
 
-/// Ticks that the model did not answer, by the reason.
-nlohmann::json declined(const FallbackCount& count) {
-  nlohmann::json by_status = nlohmann::json::object();
-  for (int i = 0; i < status_count; ++i) {
-    const auto status = static_cast<Status>(i);
-    if (count.of(status) == 0 || has_output(status)) continue;
-    by_status[to_string(status)] = count.of(status);
-  }
-  return by_status;
-}
-
-nlohmann::json report_of(const LoopOptions& options, const BlockModel& model, const std::string& airframe,
-                         const std::vector<double>& columns, const programs::LoopFlights& flights) {
-  nlohmann::json report = {{"path", model.path()},
-                           {"answer", model.answer()},
-                           {"airframe", airframe},
-                           {"guard", options.guard},
-                           {"columns", nlohmann::json::object()},
-                           {"trajectory", options.trajectory},
-                           {"half_length_m", flights.half_length_m},
-                           {"period_s", flights.period_s},
-                           {"altitude_m", {flights.lowest_m, flights.highest_m}},
-                           {"model", programs::loop_figures(flights.model)},
-                           {"analytic_inverse", programs::loop_figures(flights.analytic_inverse)},
-                           {"without_jerk", programs::loop_figures(flights.without_jerk)}};
-  for (std::size_t i = 0; i < columns.size(); ++i) report["columns"][model.columns()[i].name] = columns[i];
-  if (flights.last_voltage_V > 0) report["columns"][BatteryVoltage::name] = flights.last_voltage_V;
-  report["model"]["asked"] = flights.model.fallback.asked;
-  report["model"]["answered_share"] = programs::answered_share(flights.model.fallback);
-  report["model"]["declined"] = declined(flights.model.fallback);
-  return report;
-}
-
 void print_flight(const char* name, const TrackingResult<double>& flown) {
   std::printf("  %-20s %8.2f %8.2f %9.2f", name, 100 * flown.rmse_m, 100 * flown.max_error_m, flown.max_speed_m_s);
   if (flown.fallback.asked > 0) {
@@ -93,8 +59,10 @@ void print_flight(const char* name, const TrackingResult<double>& flown) {
   std::printf("\n");
 }
 
-void print_table(const LoopOptions& options, const BlockModel& model, const std::string& airframe,
-                 const std::vector<double>& columns, const programs::LoopFlights& flights) {
+void print_table(const LoopOptions& options, const programs::LoopModel& given, const programs::ModelFlight& flown) {
+  const BlockModel& model = given.model;
+  const std::vector<double>& columns = given.columns;
+  const programs::LoopFlights& flights = flown.flights;
   programs::print_entry("model", printable(model.path()) + ", for " + model.airframe_name());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const ColumnName column = model.columns()[i];
@@ -112,14 +80,13 @@ void print_table(const LoopOptions& options, const BlockModel& model, const std:
       "trajectory", programs::in_words("%s, period %.1f s, %.2f to %.2f m above the ground%s, flown by %s for %.0f s",
                                        printable(options.trajectory).c_str(), flights.period_s, flights.lowest_m,
                                        flights.highest_m, flights.near_ground ? ", in ground effect" : "",
-                                       printable(airframe).c_str(), flights.duration_s));
+                                       printable(given.airframe.name).c_str(), flights.duration_s));
   std::printf("  %-20s %8s %8s %9s   %s\n", "feed-forward", "RMSE cm", "max cm", "speed m/s", "answered by the model");
   print_flight("model", flights.model);
   print_flight("analytic inverse", flights.analytic_inverse);
   print_flight("the same, no jerk", flights.without_jerk);
-  const nlohmann::json by_status = declined(flights.model.fallback);
   std::string reasons;
-  for (const auto& [status, ticks] : by_status.items()) {
+  for (const auto& [status, ticks] : flown.report["model"]["declined"].items()) {
     programs::add_to_list(reasons, std::to_string(ticks.get<unsigned>()) + " " + status);
   }
   if (!reasons.empty()) programs::print_line("the analytic inverse flew in place of the model: " + reasons, 2);
@@ -321,22 +288,15 @@ int loop(const LoopOptions& options) {
   const programs::LoopModel given = programs::read_loop_model(options);
   const BlockModel& model = given.model;
   if (compares_controllers(options)) return fly_controllers(options, given);
-  const programs::LoopFlights flights = programs::fly_loop(
-      model, {options.trajectory, given.airframe.value, options.guard == "envelope", given.columns, given.battery});
-  programs::stop_if_interrupted();
-  nlohmann::json report = report_of(options, model, given.airframe.name, given.columns, flights);
-  programs::ModelEvidence evidence = programs::evidence_of(model, false);
-  evidence.flown = programs::flight_evidence(flights, options.trajectory);
-  const programs::FlightVerdict verdict = programs::model_verdict(evidence);
-  report["verdict"] = programs::verdict_json(verdict);
+  const programs::ModelFlight flown = programs::fly_model(model, given, options.trajectory, options.guard);
   if (options.json) {
-    print_json(report);
+    print_json(flown.report);
   } else {
-    programs::print_verdict(verdict);
-    print_table(options, model, given.airframe.name, given.columns, flights);
+    programs::print_verdict(flown.verdict);
+    print_table(options, given, flown);
   }
-  if (verdict.may_fly() != programs::MayFly::no) return 0;
-  programs::complain("loop", model.path() + ": " + verdict.why());
+  if (flown.verdict.may_fly() != programs::MayFly::no) return 0;
+  programs::complain("loop", model.path() + ": " + flown.verdict.why());
   return programs::exit_failed;
 }
 

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "airframe/choice.hpp"
-#include "command_line/held_columns.hpp"
-#include "flight/battery_choice.hpp"
-#include "flight/block_loop.hpp"
+#include "flight/battery_options.hpp"
+#include "loop/model_flight.hpp"
 #include "model/given_model.hpp"
 
 namespace programs {
@@ -23,11 +21,8 @@ struct LoopModelOptions {
   BatteryOptions battery;
 };
 
-struct LoopModel {
+struct LoopModel : LoopVehicle {
   pinnquad::BlockModel model;
-  std::vector<double> columns{};  ///< in the model's order
-  std::optional<pinnquad::Battery> battery{};
-  NamedAirframe airframe{};
 };
 
 inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
@@ -42,33 +37,10 @@ inline void add_loop_model(CLI::App& line, LoopModelOptions& options) {
 
 /// Throws InputError and std::invalid_argument, one line, for what can't fly.
 inline LoopModel read_loop_model(const LoopModelOptions& options) {
-  LoopModel result{read_model(options.model)};
-  const pinnquad::BlockModel& model = result.model;
-  if (model.features().window().latest_s > 0) {
-    throw std::invalid_argument(model.path() + ": its window looks ahead of the present, which no loop can");
-  }
-  result.columns = held_columns(range_of(model).columns(), options.columns);
-  result.battery = battery_of(options.battery);
-  const std::string held = std::string(pinnquad::BatteryVoltage::name) + "=";
-  const bool is_held = std::any_of(options.columns.begin(), options.columns.end(),
-                                   [&held](const std::string& column) { return column.rfind(held, 0) == 0; });
-  if (is_held && result.battery)
-    throw std::invalid_argument("--column " + held + ": the vehicle's --battery has a voltage");
-  if (!is_held && !result.battery && voltage_among(model, result.columns) != nullptr) {
-    throw std::invalid_argument(model.path() +
-                                ": asks for battery_voltage, which the vehicle does not have: give it one " +
-                                "(--battery 3x2200), or hold the column (--column battery_voltage=11.5)");
-  }
-  if (options.airframe.empty()) {
-    result.airframe = {model.airframe_name(), model.airframe()};
-    return result;
-  }
-  result.airframe = chosen_airframe(options.airframe);
-  if (motor_torque_signs(result.airframe.value) != motor_torque_signs(model.airframe())) {
-    throw std::invalid_argument("--airframe: the motors of " + pinnquad::printable(result.airframe.name) +
-                                " stand or turn otherwise than those of " + model.airframe_name() +
-                                ", which the model commands");
-  }
+  LoopModel result{{}, read_model(options.model)};
+  std::optional<NamedAirframe> airframe;
+  if (!options.airframe.empty()) airframe = chosen_airframe(options.airframe);
+  static_cast<LoopVehicle&>(result) = loop_vehicle(result.model, options.columns, options.battery, airframe);
   return result;
 }
 

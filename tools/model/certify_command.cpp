@@ -141,12 +141,7 @@ void print_proof(const BlockModel& model, const Findings& findings) {
 }
 
 programs::FlightVerdict verdict_of(const BlockModel& model, const Findings& findings) {
-  programs::ModelEvidence evidence = programs::evidence_of(model);
-  if (!findings.proven()) {
-    evidence.signs = findings.search.found ? programs::Signs::refuted : programs::Signs::unrefuted;
-    if (findings.search.found) evidence.refuted_about = axes[findings.search.found->asked.axis];
-  }
-  return programs::model_verdict(evidence);
+  return programs::model_verdict(programs::evidence_of(model, findings));
 }
 
 void print_text(const BlockModel& model, const Findings& findings) {

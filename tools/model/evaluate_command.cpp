@@ -57,12 +57,7 @@ int evaluate(const EvaluateOptions& options) {
       programs::evaluated(model, rows, [&progress](double share) { progress.update(share); });
   progress.clear();
   const double r_squared = evaluation.judged.errors.mean.r_squared;
-  programs::ModelEvidence evidence = programs::evidence_of(model);
-  if (!evidence.held_out || !(r_squared >= evidence.held_out->test_r_squared)) {  // the worse of recorded and found
-    evidence.held_out = Verdict{r_squared};
-    evidence.rows = "these flights";
-  }
-  const programs::FlightVerdict verdict = programs::model_verdict(evidence);
+  const programs::FlightVerdict verdict = programs::model_verdict(programs::evidence_of(model, evaluation));
   if (options.json) {
     nlohmann::json report = programs::evaluation_json(model, dataset, options.rows, evaluation);
     report["verdict"] = programs::verdict_json(verdict);

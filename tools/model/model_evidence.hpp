@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Evidence for the verdict on a model, by its block alone (training/model_verdict.hpp).
+// Evidence for the verdict on a model: by its block, by flights that judge it, by what is found of its signs
+// (training/model_verdict.hpp).
 #pragma once
 
 #include <stdexcept>
@@ -8,6 +9,8 @@
 
 #include "command_line/held_columns.hpp"
 #include "flight/block_loop.hpp"
+#include "model/evaluation.hpp"
+#include "model/findings.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/file_error.hpp"
 #include "training/model_verdict.hpp"
@@ -43,6 +46,26 @@ inline ModelEvidence evidence_of(const pinnquad::BlockModel& model, bool flies =
   } else {
     evidence.signs = Signs::unknown;
   }
+  return evidence;
+}
+
+/// With the R^2 of these flights, where it is worse than the one that the block records.
+inline ModelEvidence evidence_of(const pinnquad::BlockModel& model, const EvaluatedModel& evaluation) {
+  ModelEvidence evidence = evidence_of(model);
+  const double r_squared = evaluation.judged.errors.mean.r_squared;
+  if (!evidence.held_out || !(r_squared >= evidence.held_out->test_r_squared)) {
+    evidence.held_out = pinnquad::Verdict{r_squared};
+    evidence.rows = "these flights";
+  }
+  return evidence;
+}
+
+/// With a counterexample to its signs, or without one.
+inline ModelEvidence evidence_of(const pinnquad::BlockModel& model, const Findings& findings) {
+  ModelEvidence evidence = evidence_of(model);
+  if (findings.proven()) return evidence;
+  evidence.signs = findings.search.found ? Signs::refuted : Signs::unrefuted;
+  if (findings.search.found) evidence.refuted_about = axis_names[findings.search.found->asked.axis];
   return evidence;
 }
 

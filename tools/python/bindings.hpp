@@ -35,6 +35,7 @@ void bind_flights(py::module_& module);
 void bind_simulators(py::module_& module);
 void bind_vehicles(py::module_& module);
 void bind_models(py::module_& module);
+void bind_verdicts(py::module_& module);
 void bind_training(py::module_& module);
 void bind_conversion(py::module_& module);
 void bind_identification(py::module_& module);

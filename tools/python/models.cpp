@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Models of blocks: loaded, asked one motion or many, judged, certified.
+// Models of blocks: loaded, asked one motion or many.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "model/evaluation.hpp"
-#include "model/findings.hpp"
+#include "pinnquad/evaluation/summary.hpp"
 #include "pinnquad/exported/run_time_batch.hpp"
 #include "pinnquad/io/atomic_file.hpp"
-#include "python/interruptible.hpp"
-#include "python/json.hpp"
+#include "python/bindings.hpp"
 
 namespace python {
 
@@ -265,27 +263,6 @@ py::array_t<double> features_of(const BlockModel& model, const py::object& fligh
   return result;
 }
 
-py::object evaluate(const BlockModel& model, const py::object& flights, const std::string& rows) {
-  if (rows != "all" && rows != "test") refuse_name("rows", rows, std::array<const char*, 2>{"all", "test"});
-  const std::shared_ptr<const Dataset> dataset = dataset_of(flights);
-  nlohmann::json report;
-  {
-    const py::gil_scoped_release without_gil;
-    SignalWatch watch;
-    const programs::EvaluatedModel evaluation =
-        programs::evaluated(model, programs::rows_to_judge(*dataset, rows), [&watch](double) { watch.look(); });
-    report = programs::evaluation_json(model, *dataset, rows, evaluation);
-  }
-  return to_python(report);
-}
-
-py::object certify(const BlockModel& model, double seconds, std::uint64_t seed) {
-  checked("seconds", seconds, 0.01);
-  nlohmann::json report;
-  run_interruptible([&] { report = programs::findings_json(model, programs::findings_of(model, seconds, seed)); });
-  return to_python(report);
-}
-
 py::bytes bytes_of(const BlockModel& model) {
   return py::bytes(reinterpret_cast<const char*>(model.data()), model.size());
 }
@@ -337,7 +314,7 @@ void bind_models(py::module_& module) {
       .def("save", &save, py::arg("path"),
            "Writes the block, whole or not at all. Training.save() writes the header too.")
       .def("to_bytes", &bytes_of, "The block.")
-      .def("__repr__", [](const BlockModel& self) {
+      .def("_words", [](const BlockModel& self) {
         return "<pinnquad.Model " + self.path() + ": " + self.answer() + ", " + std::to_string(self.features().size()) +
                " features, for " + self.airframe_name() + ">";
       });
@@ -357,9 +334,6 @@ void bind_models(py::module_& module) {
       [](const py::bytes& bytes) {
         return std::make_shared<BlockModel>("a pickled block", static_cast<std::string>(bytes));
       });
-  module.def("_evaluate", &evaluate, py::arg("model"), py::arg("flights"), py::arg("rows"), "Of pinnquad.evaluate().");
-  module.def("_certify", &certify, py::arg("model"), py::arg("seconds"), py::arg("seed").noconvert(),
-             "Of pinnquad.certify().");
 }
 
 }  // namespace python

@@ -125,6 +125,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_simulators(module);
   python::bind_vehicles(module);
   python::bind_models(module);
+  python::bind_verdicts(module);
   python::bind_training(module);
   python::bind_conversion(module);
   python::bind_identification(module);

@@ -15,7 +15,9 @@
 #include "pinnquad/deploy/cpp_text.hpp"
 #include "python/interruptible.hpp"
 #include "python/json.hpp"
+#include "training/beside_others.hpp"
 #include "training/export_choice.hpp"
+#include "training/given_vehicle.hpp"
 #include "training/held_out_dynamics.hpp"
 #include "training/kind_figures.hpp"
 #include "training/log_kinds.hpp"
@@ -61,7 +63,8 @@ class Training {
     if (fit_ == nullptr) throw std::invalid_argument("no fit has a finite error on the validation rows");
     verdict_ = programs::exported_verdict(plan_, judged_, chosen_, fit_->seed);
     verdict_.answered_share = programs::guard_of_seed(fits_, chosen_, fit_->seed).answered_share();
-    model_ = std::make_shared<pinnquad::BlockModel>("trained", block_bytes());
+    model_ = std::make_shared<pinnquad::BlockModel>("trained",
+                                                    fit_->model->block_with(plan_.folds.front().split, provenance()));
   }
 
   std::shared_ptr<pinnquad::BlockModel> model() const { return model_; }
@@ -103,21 +106,38 @@ class Training {
     std::filesystem::create_directories(folder);
     const pinnquad::Exported::Files files{folder + "/model.hpp", folder + "/model.block",
                                           fit_->model->has_trust() ? folder + "/trust.hpp" : ""};
-    const programs::Fold& fold = plan_.folds.front();
-    const pinnquad::Provenance from =
-        programs::provenance_of(*fit_->model,
-                                programs::provenance_of(fold, dataset_.flights, dataset_.lag_removed_s, kind(),
-                                                        plan_.settings, fit_->seed, plan_.epochs, verdict_),
-                                judged().bias_time_constants_s, true);
-    return fit_->model->export_to(files, name, fold.split, from);
+    pinnquad::Provenance from = provenance();
+    from.fitness = programs::fitness_in_words(flight_verdict());
+    from.beside = programs::in_words(others(), judged_, chosen_);
+    return fit_->model->export_to(files, name, plan_.folds.front().split, from);
+  }
+
+  /// As the program's training finds it of an airframe that was given; flown and compared when it is first asked for.
+  const programs::FlightVerdict& flight_verdict() const {
+    if (!found_) {
+      programs::FlownTraces unseen;
+      const nlohmann::json flown =
+          programs::fly_given(*fit_->model->block(), plan_.folds.front().split.train, airframe_.value, unseen);
+      found_ = programs::model_verdict(
+          programs::evidence_of(*fit_->model, judged_, chosen_, verdict_, flown, others(), true));
+    }
+    return *found_;
   }
 
  private:
   const JudgedKind& judged() const { return judged_.kinds[chosen_]; }
 
-  std::vector<unsigned char> block_bytes() const {
-    const pinnquad::BlockModel& block = *fit_->model->block();
-    return {block.data(), block.data() + block.size()};
+  const programs::BesideOthers& others() const {
+    if (!others_) others_ = programs::beside_others(plan_, judged_, chosen_);
+    return *others_;
+  }
+
+  pinnquad::Provenance provenance() const {
+    return programs::provenance_of(
+        *fit_->model,
+        programs::provenance_of(plan_.folds.front(), dataset_.flights, dataset_.lag_removed_s, kind(), plan_.settings,
+                                fit_->seed, plan_.epochs, verdict_),
+        judged().bias_time_constants_s, true);
   }
 
   bool is_imported() const { return !dataset_.mapping.empty(); }
@@ -170,6 +190,8 @@ class Training {
   const programs::FinishedFit* fit_ = nullptr;
   pinnquad::Verdict verdict_;
   std::shared_ptr<pinnquad::BlockModel> model_;
+  mutable std::optional<programs::BesideOthers> others_;
+  mutable std::optional<programs::FlightVerdict> found_;
 };
 
 std::unique_ptr<Training> train(const py::object& flights, const py::object& airframe, const TrainChoices& choices) {
@@ -214,7 +236,9 @@ void bind_training(py::module_& module) {
           py::arg("folder"), py::arg("name") = "TrainedQuadModel", py::kw_only(), py::arg("allow_poor") = false,
           "Writes model.hpp (struct `name`), model.block and, where there are limits, trust.hpp: all or none.\n"
           "The paths. ValueError for a model that is worse than the mean of the commands.")
-      .def("__repr__", [](const Training& self) {
+      .def_property_readonly("_flight_verdict",
+                             [](const Training& self) { return to_python(verdict_json(self.flight_verdict())); })
+      .def("_words", [](const Training& self) {
         return programs::in_words("<pinnquad.Training: %s of seed %llu, R^2 %.4f>", self.kind().key,
                                   static_cast<unsigned long long>(self.seed()), self.verdict().test_r_squared);
       });

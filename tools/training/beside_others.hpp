@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The exported model beside the others of the same run, by their errors on the rows held out.
+// The exported model beside the others of the same run, by their errors on the rows held out; the evidence of a run for
+// the verdict on it.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include "training/export_choice.hpp"
 #include "training/kind_figures.hpp"
 #include "training/log_kinds.hpp"
+#include "training/model_verdict.hpp"
 
 namespace programs {
 
@@ -114,6 +116,29 @@ inline std::vector<std::string> beaten_in_words(const BesideOthers& beside, cons
                     ": fly flights that cover what is held out, or let it learn a bias in flight (docs/adaptive.md)");
   }
   return lines;
+}
+
+/// Evidence for the verdict on an exported model, but for its path and the flight to record. `flown`: by
+/// flight_evidence(); `known`: the vehicle.
+inline ModelEvidence evidence_of(const TrainedNetwork& model, const JudgedKinds& judged, std::size_t exported,
+                                 const pinnquad::Verdict& verdict, const nlohmann::json& flown,
+                                 const BesideOthers& others, bool known) {
+  ModelEvidence evidence{judged.kinds[exported].kind.title, verdict, flown};
+  if (others.beaten() && judged.kinds[*others.best].proven() && !any_smoothed(model.slopes())) {
+    evidence.beaten = beaten_in_words(others, judged, exported).front();
+  }
+  const std::optional<pinnquad::BlockModel::ProvenSigns> signs = model.block()->proven_signs();
+  if (!signs) evidence.signs = Signs::unknown;
+  evidence.known = known;
+  evidence.last_commands_err_less = others.last_commands < others.own;
+  if (signs && known) evidence.slopes = odd_slopes(*signs, model.block()->airframe());
+  return evidence;
+}
+
+/// The verdict of a header's first lines.
+inline std::string fitness_in_words(const FlightVerdict& verdict) {
+  return verdict.words() + ". Next: " + verdict.next() +
+         (verdict.reasons().empty() ? "" : ". Evidence: " + verdict.evidence());
 }
 
 }  // namespace programs

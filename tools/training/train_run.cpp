@@ -447,15 +447,9 @@ class Training {
     const programs::BesideOthers others = programs::beside_others(plan_, judged_, *chosen_, unfit_);
     const std::string beside = programs::in_words(others, judged_, *chosen_);
     const std::vector<std::string> beaten = programs::beaten_in_words(others, judged_, *chosen_);
-    const bool by_a_proven_one =
-        others.beaten() && judged_.kinds[*others.best].proven() && !programs::any_smoothed(made.model->slopes());
-    programs::ModelEvidence evidence{kind.title, verdict, made.flown, by_a_proven_one ? beaten.front() : ""};
-    const std::optional<BlockModel::ProvenSigns> signs = made.model->block()->proven_signs();
-    if (!signs) evidence.signs = programs::Signs::unknown;
-    evidence.known = vehicle_.is_known();
+    programs::ModelEvidence evidence =
+        programs::evidence_of(*made.model, judged_, *chosen_, verdict, made.flown, others, vehicle_.is_known());
     evidence.flight = missing_flight();
-    evidence.last_commands_err_less = others.last_commands < others.own;
-    if (signs && evidence.known) evidence.slopes = programs::odd_slopes(*signs, plan_.airframe.value);
     const programs::FlightVerdict of_header = programs::model_verdict(evidence);  // without a path of this machine
     evidence.block = options_.out + "/model.block";
     found_ = programs::model_verdict(evidence);
@@ -474,8 +468,7 @@ class Training {
                                 programs::provenance_of(*made.fold, dataset_.flights, dataset_.lag_removed_s, kind,
                                                         plan_.settings, made.seed, plan_.epochs, verdict),
                                 bias, vehicle_.is_known());
-    from.fitness = of_header.words() + ". Next: " + of_header.next() +
-                   (of_header.reasons().empty() ? "" : ". Evidence: " + of_header.evidence());
+    from.fitness = programs::fitness_in_words(of_header);
     from.beside = beside;
     const std::string header = options_.out + "/model.hpp", block = options_.out + "/model.block";
     const std::string trust = options_.out + "/trust.hpp";

@@ -83,6 +83,11 @@ class TrainedNetwork {
                                        const pinnquad::Provenance& /*provenance*/) const {
     throw std::logic_error("a model to be compared with alone is not exported");
   }
+  /// The block that export_to() writes, but for the struct's name and limits of trust. Throws as it does.
+  virtual std::vector<unsigned char> block_with(const pinnquad::RowSplit& /*split*/,
+                                                const pinnquad::Provenance& /*provenance*/) const {
+    throw std::logic_error("a model to be compared with alone is not exported");
+  }
   /// As a program that has never seen its types flies it; null: a model to be compared with alone.
   virtual const pinnquad::BlockModel* block() const { return nullptr; }
   /// Of it is proven that the commands turn the vehicle the way that is asked: pinnquad::BlockModel::proven_signs().
@@ -145,6 +150,10 @@ class ExportableNetwork : public BlockNetwork {
   bool has_trust() const override { return with_trust_; }
   pinnquad::Exported export_to(const pinnquad::Exported::Files& files, const std::string& name,
                                const pinnquad::RowSplit& split, const pinnquad::Provenance& provenance) const override;
+  std::vector<unsigned char> block_with(const pinnquad::RowSplit& split,
+                                        const pinnquad::Provenance& provenance) const override {
+    return pinnquad::model_block(model_, pinnquad::golden_features(model_, split.train), provenance);
+  }
 
  private:
   pinnquad::GroundModel<float> model_;

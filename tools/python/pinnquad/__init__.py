@@ -14,12 +14,13 @@ from . import study
 from . import tables as _tables  # noqa: F401: Flight.from_arrays, Dataset.from_dataframe
 from .flights import fly
 from .paths import Path
-from .results import Certificate, Evaluation, IdentifiedNumber, certify, evaluate
+from .results import Certificate, Evaluation, FlightVerdict, IdentifiedNumber, ModelFlight, certify, evaluate, loop
 
-__all__ = ["Airframe", "Certificate", "Dataset", "Effects", "Error", "Evaluation", "Flight", "FlightEnded", "HoverEnv",
-           "IdentifiedNumber", "Identification", "Model", "Path", "Rotor", "Simulator", "Spin", "Status", "StructuredInverse",
-           "Training", "VectorHoverEnv", "Vehicles", "airframe_names", "certify", "convert", "evaluate", "fly",
-           "ground_effects", "identify", "instruction_set", "save_network", "split", "study", "train"]
+__all__ = ["Airframe", "Certificate", "Dataset", "Effects", "Error", "Evaluation", "Flight", "FlightEnded", "FlightVerdict",
+           "HoverEnv", "IdentifiedNumber", "Identification", "Model", "ModelFlight", "Path", "Rotor", "Simulator", "Spin",
+           "Status", "StructuredInverse", "Training", "VectorHoverEnv", "Vehicles", "airframe_names", "certify", "convert",
+           "evaluate", "fly", "ground_effects", "identify", "instruction_set", "loop", "save_network", "split", "study",
+           "train"]
 
 for _class in (Airframe, Dataset, Flight, Simulator, Vehicles):  # classes of the module, which inspect does not look into
     _signature = _inspect.signature(_class.__init__)

@@ -26,7 +26,7 @@ def main():
         else:
             model = convert(asked.source, asked.features, asked.out, name=asked.name, prefix=asked.prefix,
                             output=asked.output, double=asked.double)
-            print(f"{asked.out}/model.hpp: struct {model.name}")
+            print(f"{model.flight_verdict}\n{asked.out}/model.hpp: struct {model.name}")
     except (Error, ValueError, OSError) as error:
         print(f"convert: {error}", file=sys.stderr)
         return 2

@@ -56,8 +56,8 @@ class StructuredInverse(RegressorMixin, BaseEstimator):
     step_s     time between the rows of X, s; flights have times of their own
     seeds, epochs, seed, hold_out, altitude, slopes, lag_s, threads: of pinnquad.train()
 
-    After fit: model_ (a Model), training_ (a Training, which saves the header; not pickled), r2_ and
-    linear_regression_r2_ (of the commands on the rows held out), n_features_in_, feature_names_in_.
+    After fit: flight_verdict_ (may it fly? a FlightVerdict), model_ (a Model), training_ (a Training, which saves the header;
+    not pickled), r2_ and linear_regression_r2_ (of the commands on the rows held out), n_features_in_, feature_names_in_.
     """
 
     motion_names, command_names = MOTION, COMMANDS
@@ -79,6 +79,16 @@ class StructuredInverse(RegressorMixin, BaseEstimator):
         self.r2_, self.linear_regression_r2_ = self.training_.r2, self.training_.linear_regression_r2
         self.n_features_in_, self.feature_names_in_ = len(MOTION), np.array(MOTION, dtype=object)
         return self
+
+    @property
+    def flight_verdict_(self):
+        """May the model fly? The FlightVerdict of training_; of an estimator that was pickled that of model_."""
+        model = self._fitted()
+        return getattr(self, "training_", model).flight_verdict
+
+    def __repr__(self, *arguments, **named):
+        shown = super().__repr__(*arguments, **named)
+        return f"{self.flight_verdict_.in_words}\n{shown}" if hasattr(self, "model_") else shown
 
     def predict(self, X):
         """Commands, N x 4, not clipped: an array, or of a DataFrame a DataFrame with its index. X as of fit()."""

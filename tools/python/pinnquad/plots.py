@@ -36,6 +36,16 @@ def intervals(axes, numbers):
     return axes
 
 
+def errors(axes, traces):
+    """Distances from a path over time."""
+    axes = pyplot().subplots(layout="constrained")[1] if axes is None else axes
+    for name, trace in traces.items():
+        axes.plot(trace["time_s"], trace["error_m"], label=name.replace("_", " "), linewidth=0.9)
+    axes.set(xlabel="time, s", ylabel="position error, m")
+    axes.legend(loc="upper right", fontsize="small")
+    return axes
+
+
 def flight(axes, flown):
     """Four charts over time."""
     if axes is None:

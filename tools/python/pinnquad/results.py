@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Answers of the library as dataclasses: fields with units, to_frame() for pandas, plot() for matplotlib."""
+import os
+import weakref
 from dataclasses import asdict, dataclass, field
 from typing import Optional
 
@@ -8,6 +10,7 @@ import numpy as np
 from . import _core, plots
 
 AXES = ("roll", "pitch", "yaw")
+_verdicts = weakref.WeakKeyDictionary()  # of a Model, which never changes
 
 
 def pandas():
@@ -19,8 +22,41 @@ def pandas():
     return module
 
 
-@dataclass(frozen=True)
-class Evaluation:
+@dataclass(frozen=True, repr=False)
+class FlightVerdict:
+    """May a model fly? The one verdict of the program, its pages and headers, by all that is known of the model."""
+
+    may_fly: str  #: 'fit' for simulation and bench, 'care': fly with care, 'no': do not fly
+    in_words: str  #: "do not fly: why"
+    why: str  #: the reasons in one line; of a model that is fit the evidence
+    reasons: list  #: each for itself; none of a model that is fit
+    evidence: str  #: what the verdict is made of
+    next: str  #: the flight to record next, or the command to type
+
+    def __repr__(self):
+        return f"{self.in_words}\nnext: {self.next}"
+
+    def __bool__(self):
+        raise TypeError("a verdict is no truth value: look at may_fly, which is 'fit', 'care' or 'no'")
+
+
+class _Judged:
+    """The verdict first."""
+
+    def __repr__(self):
+        fields = (f"{name}={getattr(self, name)!r}" for name, of in self.__dataclass_fields__.items() if of.repr)
+        return f"{self.flight_verdict.in_words}\n{type(self).__name__}({', '.join(fields)})"
+
+    @property
+    def flight_verdict(self):
+        """May the model fly? A FlightVerdict."""
+        return FlightVerdict(**self.report[self._verdict_key])
+
+    _verdict_key = "verdict"  # in the report
+
+
+@dataclass(frozen=True, repr=False)
+class Evaluation(_Judged):
     """A model judged on flights: commands that it predicts beside those that were flown."""
 
     model: str  #: path of its block
@@ -45,19 +81,21 @@ class Evaluation:
         return plots.bars(axes, {name: self.figures[f"r2_{name}"] for name in ("u1", "u2", "u3", "u4")}, "$R^2$")
 
 
-@dataclass(frozen=True)
-class Certificate:
+@dataclass(frozen=True, repr=False)
+class Certificate(_Judged):
     """The signs of a model's slopes: proven, refuted by two motions, or neither."""
 
     model: str  #: path of its block
     airframe: str
-    verdict: str  #: 'proven', 'counterexample' or 'neither'
+    verdict: str  #: on the signs: 'proven', 'counterexample' or 'neither'; flight_verdict says whether it may fly
     argument: Optional[str] = field(repr=False)  #: of the proof, in words
     slope: Optional[dict]  #: least slope of the signed sums, by axis; None where nothing is proven
     airframe_slope: Optional[dict] = field(repr=False)  #: the airframe's in hover, by axis
     thrust_slope: Optional[float]
     counterexample: Optional[dict] = field(repr=False)  #: axis, features, the feature moved, the signed sums
     report: dict = field(repr=False)  #: what `pinnquad certify --json` prints
+
+    _verdict_key = "flight_verdict"
 
     @property
     def proven(self):
@@ -77,6 +115,30 @@ class Certificate:
         axes = plots.bars(axes, ratio, "proven slope / airframe's")
         axes.axhline(1.0, color="0.5", linewidth=0.8)
         return axes
+
+
+@dataclass(frozen=True, repr=False)
+class ModelFlight(_Judged):
+    """A model flown as feed-forward in the simulator, beside the analytic inverse with and without the path's jerk."""
+
+    airframe: str  #: that flew
+    trajectory: str
+    period_s: float
+    half_length_m: float
+    model: dict  #: rmse_m and largest_error_m of the position, flown_s, status, answered_share ...
+    analytic_inverse: dict
+    without_jerk: dict
+    traces: dict = field(repr=False)  #: of the model and of the analytic inverse without jerk: time_s, north_m, error_m ...
+    report: dict = field(repr=False)  #: what `pinnquad loop --json` prints
+
+    def to_frame(self):
+        """A pandas DataFrame with a row a feed-forward: its figures."""
+        names = ("model", "analytic_inverse", "without_jerk")
+        return pandas().DataFrame([getattr(self, name) for name in names], index=names).drop(columns=["declined"])
+
+    def plot(self, axes=None):
+        """How far off the path each flew, over time. Returns the axes of matplotlib."""
+        return plots.errors(axes, self.traces)
 
 
 @dataclass(frozen=True)
@@ -109,6 +171,37 @@ def certify(model, seconds=5.0, seed=1):
     report = _core._certify(model, seconds, seed)
     own = {name: report.get(name) for name in Certificate.__dataclass_fields__ if name != "report"}
     return Certificate(**own, report=report)
+
+
+def loop(model, trajectory="eight", *, airframe=None, columns=None, battery=None, battery_charge=100.0, guard=True):
+    """Flies a Model as feed-forward in the simulator, and returns a ModelFlight: the figures of `pinnquad loop`.
+
+    trajectory: 'eight', 'yaw_eight', 'circle', as large and fast as airframe and training range allow, or a CSV file of
+    waypoints (docs/loop.md). airframe: another one than the model's, with the same motor order. columns: values of the
+    model's input columns by name, by default the middle of their ranges. battery: the vehicle's, as '3x2200', and its charge
+    at the start, %. guard: False: the model is asked outside its training envelope too.
+    Raises ValueError or pinnquad.Error, one line, for what can't be flown.
+    """
+    held = [f"{name}={float(value)!r}" for name, value in (columns or {}).items()]
+    report, traces = _core._loop(model, os.fspath(trajectory), airframe, held, battery or "", battery_charge, guard)
+    own = {name: report[name] for name in ModelFlight.__dataclass_fields__ if name in report}
+    return ModelFlight(**own, traces=traces, report=report)
+
+
+def _model_verdict(self):
+    """May it fly? A FlightVerdict by what its block records, its signs, and a figure-eight in the simulator."""
+    if self not in _verdicts:
+        _verdicts[self] = FlightVerdict(**_core._verdict(self))
+    return _verdicts[self]
+
+
+def _training_verdict(self):
+    """May its model fly? The FlightVerdict of `pinnquad train` with this airframe: rows held out, other models, flight."""
+    return FlightVerdict(**self._flight_verdict)
+
+
+def _shown(self):
+    return f"{self.flight_verdict.in_words}\n{self._words()}"
 
 
 def _numbers(self):
@@ -161,6 +254,8 @@ def _flight_plot(self, axes=None):
     return plots.flight(axes, self)
 
 
+_core.Model.flight_verdict, _core.Training.flight_verdict = property(_model_verdict), property(_training_verdict)
+_core.Model.__repr__ = _core.Training.__repr__ = _shown
 _core.Flight.to_frame, _core.Flight.plot = _flight_frame, _flight_plot
 _core.Training.to_frame, _core.Training.plot = _training_frame, _training_plot
 _core.Identification.numbers = property(_numbers)
