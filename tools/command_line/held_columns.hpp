@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "command_line/listed.hpp"
-#include "command_line/options.hpp"
+#include "command_line/parse_decimal.hpp"
 #include "pinnquad/io/file_error.hpp"
 
 namespace programs {

@@ -1,41 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Options of the programs: numbers taken as they are written or refused, paths that name something, --version.
+// Options of the programs: numbers taken as they are written or refused, paths that name something.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 #include <charconv>
 #include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "command_line/command.hpp"
 #include "command_line/console.hpp"
-#include "pinnquad/version.hpp"
+#include "command_line/parse_decimal.hpp"
 
 namespace programs {
 
 /// Largest seed: those that count on from it are seeds too.
 inline constexpr std::uint64_t most_seed = ~std::uint64_t{0} >> 1;
-
-/// The whole text as a plain decimal number from `least` to `most`. No signs but a minus, no octal or hexadecimal, no
-/// leading zeros of a whole number, no NaN, no Inf.
-template <class Number>
-bool parse_decimal(const std::string& text, Number least, Number most, Number& value) {
-  if constexpr (std::is_integral_v<Number>) {
-    if (text.empty() || text.find_first_not_of("0123456789") != std::string::npos) return false;
-    if (text.size() > 1 && text[0] == '0') return false;
-  }
-  Number read{};
-  const std::from_chars_result result = std::from_chars(text.data(), text.data() + text.size(), read);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) return false;
-  if (!(read >= least && read <= most)) return false;
-  value = read;
-  return true;
-}
 
 /// The value of --lag: none for auto. Throws std::invalid_argument, one line.
 inline std::optional<double> lag_of(const std::string& text) {
@@ -98,6 +82,13 @@ inline void add_sources(CLI::App& app, std::vector<std::string>& flights, std::s
       ->type_name("NAME|FILE.toml");
 }
 
+/// MODEL, of a command that takes one.
+inline void add_model(CLI::App& line, std::string& model) {
+  add_path(line, "model", model, "MODEL",
+           "a model block, as pinnquad train writes it (model.block), or the header beside it (model.hpp)")
+      ->required();
+}
+
 /// The part of each log that counts, in a command's LogSettings or options.
 template <class Options>
 void add_time_range(CLI::App& app, Options& options) {
@@ -137,6 +128,14 @@ inline void read_before_required([[maybe_unused]] CLI::App& app) {
     if (option != app.get_help_ptr()) option->callback_priority(CLI::CallbackPriority::PreRequirementsCheckPreHelp);
   }
 #endif
+}
+
+/// Runs the command that was chosen: its exit code.
+inline int run_chosen(const std::vector<Command>& commands) {
+  for (const Command& command : commands) {
+    if (command.line->parsed()) return command.run();
+  }
+  throw std::logic_error("no command was chosen");
 }
 
 }  // namespace programs

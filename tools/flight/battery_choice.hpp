@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The battery of a simulated vehicle, as the options say it, and the loop in which a model reads its voltage.
+// The battery of a simulated vehicle, as its texts say it, and the loop in which a model reads its voltage.
 #pragma once
 
 #include <optional>
@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "command_line/options.hpp"
+#include "command_line/parse_decimal.hpp"
 #include "pinnquad/aero/battery.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/features/extra_columns.hpp"
+#include "pinnquad/io/file_error.hpp"
 #include "pinnquad/simulation/tracking.hpp"
 
 namespace programs {
@@ -19,14 +20,6 @@ struct BatteryOptions {
   std::string pack;  ///< empty: none
   double charge_percent = 100;
 };
-
-inline void add_battery(CLI::App& line, BatteryOptions& options) {
-  CLI::Option* const pack =
-      line.add_option("--battery", options.pack, "of the vehicle, as 3x2200: three LiPo cells of 2200 mAh")
-          ->type_name("CELLSxMAH");
-  add_number(line, "--battery-charge", options.charge_percent, 5.0, 100.0, "charge of the battery at the start, %")
-      ->needs(pack);
-}
 
 /// None where none is asked for. Throws std::invalid_argument, one line.
 inline std::optional<pinnquad::Battery> battery_of(const BatteryOptions& options) {

@@ -84,16 +84,17 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   const GroundEffectModel ground_effect =
       near_ground ? NearGroundFlight::ground_effect_of(plan.airframe) : GroundEffectModel::none;
   const SwitchedQuadrotor vehicle = flight_vehicle<AgileFlight>(plan.airframe, ground_effect);
-  const SwitchedQuadrotor flown = flight_vehicle<AgileFlight>(plan.airframe, ground_effect, plan.battery);
+  const SwitchedQuadrotor on_battery = flight_vehicle<AgileFlight>(plan.airframe, ground_effect, plan.battery);
   std::vector<double> columns = plan.columns;
-  BatteryWorld<SwitchedQuadrotor> world{{flown}, plan.battery ? voltage_among(model, columns) : nullptr};
+  double* const voltage_V = plan.battery ? voltage_among(model, columns) : nullptr;
   const double ground_z_m = vehicle.site().ground_z_m;
   LoopFlights flights;
   flights.near_ground = near_ground;
   const ModelRange range = plan.keeps_envelope ? range_of(model) : range_of(model).of_altitude();
   const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, range, flights);
+  const AnyTrajectory without_jerk{[&](double time_s) { return WithoutJerk{trajectory}.sample(time_s); }};
   Commands<double> trim{};
-  Status status = flown.status();
+  Status status = on_battery.status();
   if (status == Status::ok) status = hover_trim(vehicle, trajectory.sample(0).position_m, trim);
   if (status != Status::ok) {
     throw std::invalid_argument(std::string("this airframe can't be flown ") +
@@ -101,22 +102,24 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   }
   const FlightController<double> controller(
       {}, flight_limits(vehicle.airframe(), vehicle.rotor_scale(vehicle.surroundings({}, 0))));
-  const AnalyticInverse<SwitchedQuadrotor> analytic(vehicle);
   TrackingPlan<double> how;
   how.duration_s = flights.duration_s;
-  const auto fly = [&](const auto& feed_forward) {
-    return track(vehicle, world, trajectory, controller, feed_forward, how,
-                 flights.traces.model.observer(how.duration_s));
+  const auto fly = [&](const AnyTrajectory& path, const AnyFeedForward& feed_forward, const SwitchedQuadrotor& flown,
+                       FlownTrace& trace) {
+    BatteryWorld<SwitchedQuadrotor> world{{flown}, voltage_V};
+    return track(vehicle, world, path, controller, feed_forward, how, trace.observer(how.duration_s));
   };
+  const AnalyticInverse<SwitchedQuadrotor> analytic(vehicle);
   using FallsBack = Fallback<AnalyticInverse<SwitchedQuadrotor>>;
-  const auto fly_model = [&](const auto& guard) { return with_feed_forward(model, guard, ground_z_m, columns, fly); };
-  flights.model = plan.keeps_envelope ? fly_model(Extend<TrainingGuard, FallsBack>(analytic))
-                                      : fly_model(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic));
-  if (world.voltage_V != nullptr) flights.last_voltage_V = *world.voltage_V;
-  flights.analytic_inverse = track(vehicle, trajectory, controller, analytic, how);
-  ExactWorld<SwitchedQuadrotor> exact{vehicle};
-  flights.without_jerk = track(vehicle, exact, WithoutJerk{trajectory}, controller, analytic, how,
-                               flights.traces.without.observer(how.duration_s));
+  const auto behind = [&](const auto& guard) { return model_inverse(model, guard, ground_z_m, columns); };
+  flights.model = fly(trajectory,
+                      plan.keeps_envelope ? behind(Extend<TrainingGuard, FallsBack>(analytic))
+                                          : behind(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic)),
+                      on_battery, flights.traces.model);
+  if (voltage_V != nullptr) flights.last_voltage_V = *voltage_V;
+  FlownTrace unseen;
+  flights.analytic_inverse = fly(trajectory, AnyFeedForward(analytic), vehicle, unseen);
+  flights.without_jerk = fly(without_jerk, AnyFeedForward(analytic), vehicle, flights.traces.without);
   return flights;
 }
 

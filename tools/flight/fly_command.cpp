@@ -20,7 +20,7 @@
 #include "command_line/interrupt.hpp"
 #include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
-#include "flight/battery_choice.hpp"
+#include "flight/battery_options.hpp"
 #include "flight/choice.hpp"
 #include "flight/pictures.hpp"
 #include "flight/statistics.hpp"

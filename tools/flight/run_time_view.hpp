@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <limits>
 #include <map>
-#include <memory>
 #include <vector>
 
 #include "pinnquad/deploy/block_model.hpp"

@@ -10,7 +10,8 @@
 
 #include "airframe/choice.hpp"
 #include "command_line/held_columns.hpp"
-#include "flight/battery_choice.hpp"
+#include "command_line/options.hpp"
+#include "flight/battery_options.hpp"
 #include "flight/block_loop.hpp"
 #include "model/given_model.hpp"
 
