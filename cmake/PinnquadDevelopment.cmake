@@ -25,7 +25,7 @@ target_compile_options(pinnquad_flags INTERFACE
 
 # gcc 12's straight-line vectoriser makes vfmaddsub of separate products and sums, whatever -ffp-contract says.
 # Its garbage it otherwise collects from 4 MiB on, again and again: an eighth of the time of a heavy translation unit.
-# From 1 GB on it does: the heaviest unit then takes 1.6 GB in place of 2.4. Who installs the Python package may have less memory.
+# From 1 GB on it does: the heaviest unit of the program takes 1.25 GB. Who installs the Python package may have less memory.
 set(collection --param=ggc-min-heapsize=1000000 --param=ggc-min-expand=10)
 if(PINNQUAD_BUILD_PYTHON AND NOT PINNQUAD_BUILD_TOOLS)
   set(collection --param=ggc-min-heapsize=400000 --param=ggc-min-expand=30)

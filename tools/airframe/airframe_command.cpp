@@ -12,7 +12,7 @@
 #include "airframe/choice.hpp"
 #include "airframe/estimate.hpp"
 #include "airframe/toml_writer.hpp"
-#include "command_line/commands.hpp"
+#include "command_line/command.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/in_columns.hpp"
 #include "command_line/options.hpp"

@@ -23,6 +23,7 @@
 #include "command_line/options.hpp"
 #include "command_line/settings_file.hpp"
 #include "logs/nearest_names.hpp"
+#include "pinnquad/version.hpp"
 
 namespace programs {
 
@@ -116,14 +117,6 @@ inline void require_command(const CLI::App& program, const std::string& elsewher
 }
 
 }  // namespace detail
-
-/// Runs the command that was chosen (choose_command has seen to it that there is one): its exit code.
-inline int run_chosen(const std::vector<Command>& commands) {
-  for (const Command& command : commands) {
-    if (command.line->parsed()) return command.run();
-  }
-  throw std::logic_error("no command was chosen");
-}
 
 /// Adds --version and --config to a program whose commands are complete, and parses. Empty to go on; else the exit
 /// code. `name` becomes that of the command as soon as it is known: messages name it. `elsewhere` says, to

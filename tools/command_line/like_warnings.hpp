@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstddef>
-#include <regex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace programs {
@@ -18,9 +18,17 @@ inline std::vector<std::string> collapsed(const std::vector<std::string>& warnin
     return text.substr(start_of(text), text.find(": ", start_of(text)) - start_of(text));
   };
   const auto kind_of = [&](const std::string& text) {
-    static const std::regex differing(R"([-+]?\d[\d.]*(e[-+]?\d+)?|\b(roll|pitch|yaw|thrust)\b)");
+    const std::string_view digits = "0123456789";
     const std::size_t from = text.find(": ", start_of(text));
-    return std::regex_replace(from == std::string::npos ? text : text.substr(from), differing, "#");
+    std::string kind;
+    for (std::size_t at = from == text.npos ? 0 : from; at < text.size(); ++at) {
+      const bool exponent = text[at] == 'e' && at > 0 && digits.find(text[at - 1]) != digits.npos;
+      if (!exponent && std::string_view("+-.0123456789").find(text[at]) == digits.npos) kind += text[at];
+    }
+    for (const std::string_view axis : {"roll", "pitch", "yaw", "thrust"}) {
+      for (std::size_t at = 0; (at = kind.find(axis)) != kind.npos;) kind.erase(at, axis.size());
+    }
+    return kind;
   };
   std::vector<std::string> kinds, lines, named;
   std::vector<std::size_t> counts;

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Options of the programs: numbers taken as they are written or refused, paths that name something, --version.
+// Options of the programs: numbers taken as they are written or refused, paths that name something.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 #include <charconv>
 #include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/parse_decimal.hpp"
-#include "pinnquad/version.hpp"
 
 namespace programs {
 
@@ -83,6 +82,13 @@ inline void add_sources(CLI::App& app, std::vector<std::string>& flights, std::s
       ->type_name("NAME|FILE.toml");
 }
 
+/// MODEL, of a command that takes one.
+inline void add_model(CLI::App& line, std::string& model) {
+  add_path(line, "model", model, "MODEL",
+           "a model block, as pinnquad train writes it (model.block), or the header beside it (model.hpp)")
+      ->required();
+}
+
 /// The part of each log that counts, in a command's LogSettings or options.
 template <class Options>
 void add_time_range(CLI::App& app, Options& options) {
@@ -122,6 +128,14 @@ inline void read_before_required([[maybe_unused]] CLI::App& app) {
     if (option != app.get_help_ptr()) option->callback_priority(CLI::CallbackPriority::PreRequirementsCheckPreHelp);
   }
 #endif
+}
+
+/// Runs the command that was chosen: its exit code.
+inline int run_chosen(const std::vector<Command>& commands) {
+  for (const Command& command : commands) {
+    if (command.line->parsed()) return command.run();
+  }
+  throw std::logic_error("no command was chosen");
 }
 
 }  // namespace programs

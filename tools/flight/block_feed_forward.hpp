@@ -4,9 +4,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <type_traits>
 #include <vector>
 
@@ -76,23 +77,52 @@ struct MeasuredColumns {
   }
 };
 
-/// Calls `fly` with the feed-forward of a model, which must stay where it is. `columns`: the value of each that it asks
-/// for, in their order; read at each tick, where they stand. A window that looks ahead is never complete.
-template <class Guard, class Fly>
-decltype(auto) with_feed_forward(const pinnquad::BlockModel& model, const Guard& guard, double ground_z_m,
-                                 const std::vector<double>& columns, const Fly& fly) {
+/// Any feed-forward that learns nothing behind one type, so that a loop is compiled once. Copies share what was asked.
+class AnyFeedForward {
+  using State = pinnquad::State<double>;
+  using Motion = pinnquad::Accelerations<double>;
+  using Commands = pinnquad::Commands<double>;
+
+ public:
+  template <class Policy>
+  explicit AnyFeedForward(const Policy& policy) {
+    const auto held = std::make_shared<Policy>(policy);
+    answer_ = [held](auto&&... asked) { return (*held)(asked...); };
+    observed_ = [held](auto&&... asked) { return pinnquad::observed_by(*held, asked...); };
+    count_ = [held] { return pinnquad::fallback_count(*held); };
+  }
+
+  pinnquad::Status operator()(const State& state, const Motion& wanted, std::uint64_t time_us,
+                              Commands& commands) noexcept {
+    return answer_(state, wanted, time_us, commands);
+  }
+  pinnquad::Status observed(const State& state, const Motion& flown, std::uint64_t time_us,
+                            Commands& commands) noexcept {
+    return observed_(state, flown, time_us, commands);
+  }
+  pinnquad::FallbackCount count() const noexcept { return count_(); }
+
+ private:
+  std::function<pinnquad::Status(const State&, const Motion&, std::uint64_t, Commands&)> answer_, observed_;
+  std::function<pinnquad::FallbackCount()> count_;
+};
+
+/// The feed-forward of a model, which must stay where it is. `columns`: the value of each that it asks for, in their
+/// order; read at each tick, where they stand. A window that looks ahead is never complete.
+template <class Guard>
+AnyFeedForward model_inverse(const pinnquad::BlockModel& model, const Guard& guard, double ground_z_m,
+                             const std::vector<double>& columns) {
   return model.with([&](const auto& own) {
     using Scalar = std::decay_t<decltype(*own.parameters())>;
-    const auto fly_with = [&](auto features) {
+    const auto with = [&](auto features) {
       using Features = decltype(features);
       using Inverse = pinnquad::InverseDynamics<RunTimeView<Features, Scalar>, Guard>;
       using History = pinnquad::InputHistory<Features, Scalar>;
-      const Inverse inverse(RunTimeView<Features, Scalar>(own), guard);
-      return fly(pinnquad::NetworkInverse<Inverse, MeasuredColumns<Scalar>>(inverse, {ground_z_m, &columns},
-                                                                            History(own.features())));
+      return AnyFeedForward(pinnquad::NetworkInverse<Inverse, MeasuredColumns<Scalar>>(
+          Inverse(RunTimeView<Features, Scalar>(own), guard), {ground_z_m, &columns}, History(own.features())));
     };
     constexpr int few = 24;  // each tick takes the time of all that there is room for
-    return own.features().size() <= few ? fly_with(FlightFeatures<few>{}) : fly_with(FlightFeatures<>{});
+    return own.features().size() <= few ? with(FlightFeatures<few>{}) : with(FlightFeatures<>{});
   });
 }
 

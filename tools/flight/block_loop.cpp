@@ -2,9 +2,6 @@
 #include "flight/block_loop.hpp"
 
 #include <algorithm>
-#include <cstdint>
-#include <functional>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -60,24 +57,6 @@ AnyTrajectory trajectory_of(const LoopPlan& plan, double ground_z_m, const Model
   return take(eight, eight.half_length_m, eight.half_height_m);
 }
 
-/// Any feed-forward that learns nothing behind one type: one loop is compiled.
-struct AnyFeedForward {
-  template <class Policy>
-  explicit AnyFeedForward(const Policy& policy) {
-    const auto held = std::make_shared<Policy>(policy);
-    answer = [held](auto&&... asked) { return (*held)(asked...); };
-    counted = [held] { return fallback_count(*held); };
-  }
-  Status operator()(const State<double>& state, const Accelerations<double>& wanted, std::uint64_t time_us,
-                    Commands<double>& commands) noexcept {
-    return answer(state, wanted, time_us, commands);
-  }
-  FallbackCount count() const noexcept { return counted(); }
-
-  std::function<Status(const State<double>&, const Accelerations<double>&, std::uint64_t, Commands<double>&)> answer;
-  std::function<FallbackCount()> counted;
-};
-
 }  // namespace
 
 ModelRange range_of(const BlockModel& model) {
@@ -132,12 +111,10 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   };
   const AnalyticInverse<SwitchedQuadrotor> analytic(vehicle);
   using FallsBack = Fallback<AnalyticInverse<SwitchedQuadrotor>>;
-  const auto with_guard = [&](const auto& guard) {
-    return with_feed_forward(model, guard, ground_z_m, columns, [](auto policy) { return AnyFeedForward(policy); });
-  };
+  const auto behind = [&](const auto& guard) { return model_inverse(model, guard, ground_z_m, columns); };
   flights.model = fly(trajectory,
-                      plan.keeps_envelope ? with_guard(Extend<TrainingGuard, FallsBack>(analytic))
-                                          : with_guard(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic)),
+                      plan.keeps_envelope ? behind(Extend<TrainingGuard, FallsBack>(analytic))
+                                          : behind(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic)),
                       on_battery, flights.traces.model);
   if (voltage_V != nullptr) flights.last_voltage_V = *voltage_V;
   FlownTrace unseen;

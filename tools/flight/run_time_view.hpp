@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <memory>
 #include <vector>
 
 #include "pinnquad/deploy/block_model.hpp"

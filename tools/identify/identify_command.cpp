@@ -12,9 +12,10 @@
 #include <nlohmann/json.hpp>
 
 #include "airframe/choice.hpp"
-#include "command_line/commands.hpp"
+#include "command_line/command.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/like_warnings.hpp"
+#include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
 #include "identify/told_vehicle.hpp"
 #include "identify/vehicle_verdict.hpp"

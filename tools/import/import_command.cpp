@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Makes one dataset of flight logs, and says what each step cost.
 //   pinnquad import flight.ulg --airframe mine.toml --out dataset
-#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -11,10 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "command_line/commands.hpp"
+#include "command_line/command.hpp"
 #include "command_line/in_columns.hpp"
 #include "command_line/in_words.hpp"
 #include "command_line/like_warnings.hpp"
+#include "command_line/options.hpp"
 #include "command_line/progress_line.hpp"
 #include "pinnquad/logs/dataset_folder.hpp"
 

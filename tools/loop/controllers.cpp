@@ -31,16 +31,10 @@ AnyPolicy loop_policy(const std::string& name, const LoopKnowledge& known, const
   if (name == "formula") return AnyPolicy(parts.formula);
   if (name == "formula_adaptive") return AnyPolicy(parts.adaptive(parts.formula));
   if (name == "indi") return AnyPolicy(parts.incremental(parts.at_once, parts.rigid_body));
-  if (name == "structured") {
-    return parts.of_model(parts.falls_back(), [](const auto& network) { return AnyPolicy(network); });
-  }
-  const bool at_once = name == "structured_indi";
-  if (at_once || name == "adaptive") {
-    return parts.of_model(TrainingGuard{}, [&](const auto& network) {
-      return at_once ? AnyPolicy(parts.incremental(parts.at_once, network, parts.formula))
-                     : AnyPolicy(parts.adaptive(network, parts.formula));
-    });
-  }
+  if (name == "structured") return AnyPolicy(parts.of_model(parts.falls_back()));
+  const AnyFeedForward network = parts.of_model(TrainingGuard{});
+  if (name == "structured_indi") return AnyPolicy(parts.incremental(parts.at_once, network, parts.formula));
+  if (name == "adaptive") return AnyPolicy(parts.adaptive(network, parts.formula));
   throw std::out_of_range(name);
 }
 

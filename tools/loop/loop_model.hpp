@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "airframe/choice.hpp"
+#include "command_line/options.hpp"
 #include "flight/battery_options.hpp"
 #include "loop/model_flight.hpp"
 #include "model/given_model.hpp"

@@ -54,9 +54,9 @@ struct PolicyParts {
     return pinnquad::AdaptiveInverse<double, Inverse, pinnquad::FilteredMotion<double>, Reserve...>(
         inverse, known.vehicle.airframe(), settings, filtered_, reserve...);
   }
-  template <class Guard, class Compose>
-  AnyPolicy of_model(const Guard& guard, const Compose& compose) const {
-    return with_feed_forward(known.model, guard, known.vehicle.site().ground_z_m, known.columns, compose);
+  template <class Guard>
+  AnyFeedForward of_model(const Guard& guard) const {
+    return model_inverse(known.model, guard, known.vehicle.site().ground_z_m, known.columns);
   }
   /// Where the model declines, the analytic inverse answers.
   pinnquad::Extend<pinnquad::TrainingGuard, pinnquad::Fallback<Formula>> falls_back() const { return {formula}; }

@@ -12,6 +12,7 @@
 #include "command_line/command.hpp"
 #include "command_line/in_columns.hpp"
 #include "command_line/in_words.hpp"
+#include "command_line/options.hpp"
 #include "model/given_model.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "training/certificate_words.hpp"

@@ -3,20 +3,18 @@
 // acceleration about its axis: proven by its structure (docs/certificate.md), or refuted by two motions inside its
 // envelope.
 //   pinnquad certify my_model/model.hpp
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "command_line/command.hpp"
 #include "command_line/console.hpp"
+#include "command_line/options.hpp"
 #include "model/findings.hpp"
 #include "model/given_model.hpp"
 #include "model/model_evidence.hpp"

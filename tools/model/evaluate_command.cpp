@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Judges a model on recorded flights, by its block, which describes itself: no compiler is asked.
 //   pinnquad evaluate my_model/model.hpp flight.csv --json
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>

@@ -10,12 +10,6 @@
 
 namespace programs {
 
-void add_model(CLI::App& line, std::string& model) {
-  add_path(line, "model", model, "MODEL",
-           "a model block, as pinnquad train writes it (model.block), or the header beside it (model.hpp)")
-      ->required();
-}
-
 namespace {
 
 /// The number behind the last `line` of a header, 0 where there is none: nothing else is understood.

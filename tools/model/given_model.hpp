@@ -5,15 +5,9 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
-
-#include "command_line/options.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 
 namespace programs {
-
-/// MODEL, of a command that takes one.
-void add_model(CLI::App& line, std::string& model);
 
 /// The path of the block: itself, or the one beside a header, which says the header's hash. Throws InputError, one
 /// line: no block is there, or one of another header.

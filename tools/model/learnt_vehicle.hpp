@@ -16,7 +16,6 @@
 #include <nlohmann/json.hpp>
 
 #include "airframe/toml_writer.hpp"
-#include "command_line/folders.hpp"
 #include "command_line/in_words.hpp"
 #include "page/chart.hpp"
 #include "pinnquad/control/onboard/onboard_inverse.hpp"

@@ -6,8 +6,6 @@
 #include <stdexcept>
 
 #include "command_line/in_words.hpp"
-#include "command_line/listed.hpp"
-#include "model/replayed_row.hpp"
 #include "pinnquad/aero/drag.hpp"
 #include "pinnquad/control/autopilot/core_record.hpp"
 

@@ -3,12 +3,10 @@
 // core received, the core itself, and compares what it answers with what was logged.
 //   pinnquad replay flight.csv --model my_model/model.hpp
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +16,7 @@
 #include "command_line/command.hpp"
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
+#include "command_line/folders.hpp"
 #include "command_line/in_words.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/options.hpp"

@@ -9,8 +9,9 @@
 #include <thread>
 
 #include "airframe/choice.hpp"
-#include "command_line/commands.hpp"
+#include "command_line/command.hpp"
 #include "command_line/interrupt.hpp"
+#include "command_line/options.hpp"
 #include "study/beyond_conditions.hpp"
 #include "study/beyond_models.hpp"
 #include "study/beyond_rows.hpp"

@@ -3,7 +3,6 @@
 // that train, validate and test, and the airframe that a model is told.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>

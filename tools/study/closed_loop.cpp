@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/closed_loop.hpp"
 
-#include <cmath>
 #include <exception>
 
 #include "pinnquad/control/trajectory.hpp"

@@ -139,13 +139,9 @@ AnyPolicy studied_policy(const std::string& name, const LoopKnowledge& known, co
     if (name == "wrench_indi") return AnyPolicy(parts.incremental(parts.at_once, with_wrench(learnt)));
     if (name == "full") return full(learnt);
   }
-  if (name == "structured_drag") {
-    return parts.of_model(parts.falls_back(), [&](const auto& network) { return AnyPolicy(leaning(network)); });
-  }
+  if (name == "structured_drag") return AnyPolicy(leaning(parts.of_model(parts.falls_back())));
   if (name == "structured_observer") {
-    return parts.of_model(TrainingGuard{}, [&](const auto& network) {
-      return AnyPolicy(parts.incremental(parts.slower, leaning(network), leaning(parts.formula)));
-    });
+    return AnyPolicy(parts.incremental(parts.slower, leaning(parts.of_model(TrainingGuard{})), leaning(parts.formula)));
   }
   return loop_policy(name, known, gains);
 }

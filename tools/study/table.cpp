@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "command_line/options.hpp"
+#include "command_line/parse_decimal.hpp"
 #include "study/models.hpp"
 
 namespace study {

@@ -4,7 +4,6 @@
 // what the rotors would have to make against it (AccelerationOutputs), so that its block and header are as any other's.
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include "pinnquad/features/motion_parts.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,7 +11,6 @@
 #include "command_line/listed.hpp"
 #include "pinnquad/control/motion_bias.hpp"
 #include "pinnquad/deploy/block_model.hpp"
-#include "pinnquad/deploy/opening_comment.hpp"
 #include "pinnquad/exported/certificate.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"

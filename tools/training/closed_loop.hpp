@@ -9,14 +9,13 @@
 #include <cstddef>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "airframe/choice.hpp"
-#include "command_line/in_words.hpp"
+#include "flight/battery_choice.hpp"
 #include "flight/block_feed_forward.hpp"
 #include "flight/loop_figures.hpp"
 #include "flight/loop_trajectories.hpp"
@@ -69,14 +68,13 @@ struct IdentifiedAir {
   }
 };
 
-using IdentifiedQuadrotor = pinnquad::Quadrotor<double, pinnquad::QuadraticDrag, IdentifiedAir>;
-
-/// The same on a battery.
-using IdentifiedOnBattery = pinnquad::Quadrotor<double, pinnquad::Battery, pinnquad::QuadraticDrag, IdentifiedAir>;
+using IdentifiedQuadrotor =
+    pinnquad::Quadrotor<double, pinnquad::Switched<pinnquad::Battery>, pinnquad::QuadraticDrag, IdentifiedAir>;
 
 /// As it was identified. Drag along an axis is linear and quadratic where the flights tell the linear part, else all
 /// quadratic, as the airframe has it.
-inline IdentifiedQuadrotor identified_quadrotor(const IdentifiedVehicle& vehicle) {
+inline IdentifiedQuadrotor identified_quadrotor(const IdentifiedVehicle& vehicle,
+                                                const std::optional<pinnquad::Battery>& battery = {}) {
   pinnquad::Airframe<double> airframe = vehicle.airframe->value;
   const IdentifiedAir air(vehicle.found);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -85,7 +83,7 @@ inline IdentifiedQuadrotor identified_quadrotor(const IdentifiedVehicle& vehicle
     const double drag_1_m = pinnquad::is_told(beside, 0.5) ? std::max(beside.value, 0.0) : 0.0;
     airframe.drag_area_m2[axis] = drag_1_m * airframe.mass_kg / pinnquad::rated_air_density_kg_m3<double>;
   }
-  return IdentifiedQuadrotor(airframe, {}, {}, air);
+  return IdentifiedQuadrotor(airframe, {}, {battery.value_or(pinnquad::Battery{}), battery.has_value()}, {}, air);
 }
 
 /// Limits that flights have reached in all but their last hundredths; of body axes each its own. A range of motions
@@ -158,16 +156,19 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
   const pinnquad::FlightController<double> controller({}, pinnquad::flight_limits(vehicle.airframe(), 1.0));
   using Analytic = pinnquad::AnalyticInverse<IdentifiedQuadrotor>;
   const Analytic analytic(vehicle);
-  pinnquad::ExactWorld<IdentifiedQuadrotor> exact{vehicle};
-  const auto fly = [&](const auto& feed_forward) {
-    return pinnquad::track(vehicle, exact, *eight, controller, feed_forward, plan,
-                           traces.model.observer(plan.duration_s));
+  const auto fly = [&](BatteryWorld<IdentifiedQuadrotor> world, const AnyTrajectory& path,
+                       const AnyFeedForward& feed_forward, FlownTrace& trace) {
+    return pinnquad::track(vehicle, world, path, controller, feed_forward, plan, trace.observer(plan.duration_s));
   };
-  const auto alone = pinnquad::track(vehicle, exact, pinnquad::WithoutJerk{*eight}, controller, analytic, plan,
-                                     traces.without.observer(plan.duration_s));
-  nlohmann::json result = {{"trajectory", "figure-eight"},           {"half_length_m", eight->half_length_m},
-                           {"half_width_m", eight->half_width_m},    {"period_s", eight->period_s},
-                           {"formula", loop_figures(fly(analytic))}, {"without_jerk", loop_figures(alone)}};
+  const AnyTrajectory path{[&eight](double time_s) { return eight->sample(time_s); }};
+  const AnyTrajectory no_jerk{[&eight](double time_s) { return pinnquad::WithoutJerk{*eight}.sample(time_s); }};
+  const auto alone = fly({{vehicle}}, no_jerk, AnyFeedForward(analytic), traces.without);
+  nlohmann::json result = {{"trajectory", "figure-eight"},
+                           {"half_length_m", eight->half_length_m},
+                           {"half_width_m", eight->half_width_m},
+                           {"period_s", eight->period_s},
+                           {"without_jerk", loop_figures(alone)},
+                           {"formula", loop_figures(fly({{vehicle}}, path, AnyFeedForward(analytic), traces.model))}};
   if (analytic_inverse_fails(result)) {
     return {{"why_not", "the vehicle that was identified is not known well enough: its own formula does not fly it"}};
   }
@@ -175,14 +176,11 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
   ComparedCommands compared;
   std::vector<double> columns = usual_columns(model, training);
   const auto battery = battery_of_flights(model, training, vehicle.airframe());
-  const auto by_model = with_feed_forward(model, Guard(analytic), 0, columns, [&](const auto& feed_forward) {
-    const ComparedPolicy policy{feed_forward, analytic, vehicle.airframe(), &compared};
-    if (!battery) return fly(policy);
-    const auto& effects = vehicle.effects();
-    const IdentifiedOnBattery flown(vehicle.airframe(), {}, *battery, std::get<0>(effects), std::get<1>(effects));
-    BatteryWorld<IdentifiedOnBattery> world{{flown}, voltage_among(model, columns)};
-    return pinnquad::track(vehicle, world, *eight, controller, policy, plan, traces.model.observer(plan.duration_s));
-  });
+  const ComparedPolicy policy{model_inverse(model, Guard(analytic), 0, columns), analytic, vehicle.airframe(),
+                              &compared};
+  const auto by_model =
+      fly({{identified_quadrotor(identified, battery)}, battery ? voltage_among(model, columns) : nullptr}, path,
+          AnyFeedForward(policy), traces.model);
   result["model"] = loop_figures(by_model);
   result["against_formula"] = comparison_json(compared);
   result["model"]["answered_share"] = answered_share(by_model.fallback);

@@ -3,7 +3,6 @@
 // model itself, which the same rows and seed give again.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>

@@ -3,7 +3,6 @@
 // altitude where the validation rows gain by it.
 
 #include <algorithm>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>

@@ -2,7 +2,6 @@
 // The paper's network (Sec. 5.2) for a feature set: ten hidden layers of 25 ReLU.
 #pragma once
 
-#include "pinnquad/dynamics/rotor.hpp"
 #include "pinnquad/nn/network.hpp"
 #include "pinnquad/nn/relu.hpp"
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "pinnquad/core/scalar_math.hpp"
-#include "pinnquad/evaluation/physical_consistency.hpp"
 
 namespace programs {
 

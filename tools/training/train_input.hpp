@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>

@@ -25,6 +25,7 @@
 #include "logs/command_curve.hpp"
 #include "logs/vehicle_check.hpp"
 #include "pinnquad/deploy/cpp_text.hpp"
+#include "pinnquad/deploy/opening_comment.hpp"
 #include "training/beside_others.hpp"
 #include "training/closed_loop.hpp"
 #include "training/export_choice.hpp"

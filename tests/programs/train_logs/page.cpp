@@ -10,6 +10,7 @@
 #include "judged_run.hpp"
 #include "page/text.hpp"
 #include "training/training_page.hpp"
+#include "training/worst_moments.hpp"
 
 namespace {
 
@@ -235,7 +236,7 @@ TEST_CASE("the page draws what the first seed's model predicts") {
   pinnquad::logs::ImportedDataset imported;
   const nlohmann::json none;
   const programs::TrainingPage page{run.plan, imported, run.fits, run.judged, run.verdicts, none, {}, "", {}};
-  const auto shown = programs::detail::shown_predictions(page, 0);
+  const auto shown = programs::shown_predictions(page, 0);
   REQUIRE(shown.size() == 1);
   for (const programs::FinishedFit& fit : run.fits.finished) {
     CHECK((shown[0] == &fit.held_out) == (fit.seed == run.plan.first_seed));
