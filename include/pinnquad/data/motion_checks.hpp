@@ -105,7 +105,7 @@ EulerAngles<double> angles_of(const Sample& sample);
 /// Rotation vector of a turn, the shorter way.
 Vector3<double> turn_vector(const Quaternion<double>& q);
 
-/// Of each row's angles.
+/// Attitude of each row, from its Euler angles.
 std::vector<Quaternion<double>> attitudes_of(const Flight& flight);
 
 /// The turning of the attitude from row to row, as logged rates would integrate to it if a log is to be read so, over

@@ -114,9 +114,11 @@ class RotationFit {
 
   const InstrumentedFlights& rows_;
   double curve_;
-  /// At each instant, of each axis: rate, rate product, velocity across, and the angular acceleration. No response is
-  /// in them.
-  std::array<std::vector<std::array<double, 4>>, 3> motion_;
+  /// Motion about an axis at an instant; no response is in it.
+  struct AxisMotion {
+    double rate, rate_product, across, acceleration;
+  };
+  std::array<std::vector<AxisMotion>, 3> motion_;
 };
 
 }  // namespace pinnquad::detail

@@ -143,9 +143,9 @@ PINNQUAD_BODY BlockRegression RotationFit::linearized(const Turning& turning, co
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double weight = weights[axis];
     for (std::size_t i = 0; i < instrument.size(); ++i) {
-      const auto& [rate, product, across_axis, acceleration] = motion_[axis][i];
-      instrument[i] = {turning.about[axis][i] * weight, turning.sum[i] * weight, rate * weight, product * weight,
-                       acceleration * weight,           across_axis * weight};
+      const AxisMotion& motion = motion_[axis][i];
+      instrument[i] = {turning.about[axis][i] * weight, turning.sum[i] * weight,      motion.rate * weight,
+                       motion.rate_product * weight,    motion.acceleration * weight, motion.across * weight};
     }
     std::fill(x.begin(), x.end(), 0.0);
     std::fill(z.begin(), z.end(), 0.0);
@@ -159,7 +159,7 @@ PINNQUAD_BODY BlockRegression RotationFit::linearized(const Turning& turning, co
       }
       fill_axis(turning, axis, i, of_x);
       for (std::size_t k = 0; k < of_axis; ++k) of_x[k] *= weight;
-      double y = motion_[axis][i][3];
+      double y = motion_[axis][i].acceleration;
       for (std::size_t k = 0; k < slopes.size(); ++k) {
         const double of_part = effectiveness[axis] * slopes[k].about[axis][i];
         y += of_part * response.*parts[k].front();
@@ -182,13 +182,12 @@ PINNQUAD_BODY RotationFit::Turning RotationFit::turning_of(const Fractions& s) c
 }
 
 PINNQUAD_BODY void RotationFit::fill_axis(const Turning& turning, std::size_t axis, std::size_t i, double* x) const {
-  const auto& [rate, product, across_axis, acceleration] = motion_[axis][i];
+  const AxisMotion& motion = motion_[axis][i];
   x[0] = turning.about[axis][i];
   x[1] = turning.sum[i];
-  x[2] = -rate;
-  x[3] = product;
-  x[4] = across_axis;
-  static_cast<void>(acceleration);
+  x[2] = -motion.rate;
+  x[3] = motion.rate_product;
+  x[4] = motion.across;
 }
 
 PINNQUAD_BODY double RotationFit::root_mean_square(double squares) const {
@@ -201,7 +200,7 @@ PINNQUAD_BODY RotationFit::Products RotationFit::products_of(const Turning& turn
   Eigen::Matrix<double, Products::RowsAtCompileTime, 1> row;
   for (const std::size_t i : rows_.instants()) {
     fill_axis(turning, axis, i, row.data());
-    row[Products::RowsAtCompileTime - 1] = motion_[axis][i][3];
+    row[Products::RowsAtCompileTime - 1] = motion_[axis][i].acceleration;
     sums.noalias() += row * row.transpose();
   }
   return sums;
@@ -214,7 +213,7 @@ PINNQUAD_BODY double RotationFit::left_by_least_squares(const Turning& turning, 
   Row row, by_about = Row::Zero(), by_sum = Row::Zero();  // the response is in these two alone
   for (const std::size_t i : rows_.instants()) {
     fill_axis(turning, axis, i, row.data());
-    row[unknowns] = motion_[axis][i][3];
+    row[unknowns] = motion_[axis][i].acceleration;
     by_about += row[0] * row;
     by_sum += row[1] * row;
   }
@@ -236,7 +235,7 @@ PINNQUAD_BODY double RotationFit::deviation(const Turning& turning, std::size_t 
   std::array<double, of_axis> x{};
   for (const std::size_t i : rows_.instants()) {
     fill_axis(turning, axis, i, x.data());
-    double left = motion_[axis][i][3];
+    double left = motion_[axis][i].acceleration;
     for (std::size_t k = 0; k < of_axis; ++k) left -= x[k] * solution.values()[first + k];
     squares += left * left;
   }
