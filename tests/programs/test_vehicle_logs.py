@@ -2,6 +2,7 @@
 """Logs as vehicles write them, told apart by their content: a flight in closed form as a blackbox log of Betaflight and
 of INAV, and as a DataFlash log; containers that are not read."""
 import json
+import re
 import struct
 from math import degrees
 from pathlib import Path
@@ -151,7 +152,7 @@ def test_a_hexacopter_is_named(pinnquad):
 
 @pytest.mark.parametrize("begin, keyword", [
     (b"\x89MCAP0\r\n", "ros2 topic echo --csv"), (b"#ROSBAG V2.0\n", "rostopic echo"), (b"SQLite format 3\0", "ROS 2 bag"),
-    (struct.pack(">Q", 1_700_000_000_000_000) + b"\xfd\x09\0\0", "mavlogdump.py"), (b"\x89HDF\r\n\x1a\n", "HDF5"),
+    (struct.pack(">Q", 1_700_000_000_000_000) + b"\xfd\x09\0\0", "mavlogdump.py"), (b"\x89HDF\r\n\x1a\n", "with [()].T"),
     (b"MATLAB 5.0 MAT-file, Platform", "writetable"), (b"PK\x03\x04" + 20 * b"\0" + b"archive/data.pkl", "PyTorch"),
     (b"PK\x03\x04" + 20 * b"\0" + b"flight.ulg", "unzip"), (b"\x1f\x8b\x08\0", "gzip -d"), (b"\xfd7zXZ\0\0", "xz -d"),
     (b"<?xml version='1.0'?>\n<root><tabbed_widget/></root>", "PlotJuggler"), (b"FMT, 128, 89, FMT, BBnNZ", "the .bin"),
@@ -161,6 +162,17 @@ def test_other_containers_are_named_with_what_to_do(pinnquad, begin, keyword):
     for command in "import flight.csv --out out", "train flight.csv --out out", "identify flight.csv":
         pinnquad.refused(command, keyword=keyword)
     assert not Path("out").exists()
+
+
+def test_the_advice_for_json_leaves_stamps_numbers(pinnquad):
+    pandas = pytest.importorskip("pandas")
+    rows = [[50_000_000 + 4000 * i, 0.5 * i] for i in range(3)]  # by default pandas makes dates of 1971 of `timestamp`
+    Path("flight.json").write_text("\n".join(json.dumps(dict(zip(("timestamp", "roll"), row))) for row in rows))
+    refusal = pinnquad.refused("import flight.json --out out").lines[0]
+    advice = re.search(r"pandas\.read_json.*index=False\)", refusal)[0]
+    exec(advice.replace("FILE", "'flight.json'"), {"pandas": pandas})
+    header, *table = Path("log.csv").read_text().splitlines()
+    assert header == "timestamp,roll" and [[float(cell) for cell in row.split(",")] for row in table] == rows
 
 
 def test_every_cut_of_a_log_is_read_or_refused_in_one_line(pinnquad):

@@ -31,14 +31,16 @@ constexpr std::array<Container, 19> containers{{
      "an SQLite file, as a ROS 2 bag is (a table of a topic: ros2 bag play FOLDER, and ros2 topic echo --csv /TOPIC > "
      "topic.csv)"},
     {{"\x89HDF\r\n\x1a\n", 8},
-     "an HDF5 file or MATLAB's of version 7.3 (a table: pandas.DataFrame(h5py.File(FILE)[NAME]).to_csv('log.csv'))"},
+     "an HDF5 file or MATLAB's of version 7.3 (a table: pandas.DataFrame(h5py.File(FILE)[NAME][()]).to_csv('log.csv'), "
+     "with [()].T for MATLAB's, which is transposed)"},
     {{"MATLAB 5.0 MAT-file", 19}, "a MATLAB file (a table: writetable(T, 'log.csv') in MATLAB)"},
     {{"\x93NUMPY", 6},
      "a NumPy array (a table: numpy.savetxt('log.csv', numpy.load(FILE), delimiter=','), with a header)"},
     {{"PAR1", 4}, "a Parquet table (pandas.read_parquet(FILE).to_csv('log.csv', index=False))"},
     {{"\x80\x02", 2}, "a Python pickle, as old PyTorch files are: a network, not a log (pinnquad convert)"},
     {{"{\"", 2},
-     "JSON (a table, of an object a line: pandas.read_json(FILE, lines=True).to_csv('log.csv', index=False))"},
+     "JSON (a table, of an object a line: pandas.read_json(FILE, lines=True, convert_dates=False).to_csv('log.csv', "
+     "index=False))"},
     {{"\xff\xfe", 2}, "text in UTF-16 (make it UTF-8: iconv -f UTF-16 -t UTF-8 FILE > log.csv)"},
     {{"\xfe\xff", 2}, "text in UTF-16 (make it UTF-8: iconv -f UTF-16 -t UTF-8 FILE > log.csv)"},
     {{"FMT, 128, 89", 12}, "a DataFlash log as text (give the .bin of the vehicle)"},
