@@ -82,8 +82,7 @@ Flight fly_core(const std::vector<char>& block, bool learns) {
     const Quaternion<double>& q = body.attitude;
     const autopilot::LocalState local{in_float(body.position_m), in_float(body.velocity_m_s)};
     const TrajectoryPoint<float> asked{in_float(point.position_m), in_float(point.velocity_m_s),
-                                       in_float(point.acceleration_m_s2), in_float(point.jerk_m_s3),
-                                       in_float(point.snap_m_s4)};
+                                       in_float(point.acceleration_m_s2), in_float(point.jerk_m_s3)};
     for (const Status taken : {core.body_rates(now_us, in_float(body.body_rates_rad_s)),
                                core.attitude(now_us, {float(q.w), float(q.x), float(q.y), float(q.z)}),
                                core.local(now_us, local), core.set_point(now_us, asked)}) {

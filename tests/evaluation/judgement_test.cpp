@@ -141,6 +141,25 @@ TEST_CASE("a model on a split: test rows judge, validation rows give their error
   CHECK(judged.verdict.worst_motor_r_squared == verdict.worst_motor_r_squared);
 }
 
+TEST_CASE("a model of a window is judged by the rows that have one; pairs of rows end with a flight") {
+  using Features = Windowed<PaperFeatures, 3, PeriodMicroseconds<50000>>;
+  TrainedModel<Network<double, InputSize<Features::size>, Dense<4>>, Context<Features, PaperQuadrotor>> model;
+  model.input.standard_deviation.fill(1);
+  model.output.standard_deviation.fill(1);
+  for (std::size_t i = 0; i < 64; ++i) model.network.parameters[i] = 0.01 * std::cos(1.7 * double(i));
+  const Flight flight = test::random_flight_rows(500, 5), other = test::random_flight_rows(60, 8);
+  RowSplit split{RowSet(flight, {0, 300}), RowSet(flight, {300, 400}), RowSet(flight, {400, 500})};
+  split.test.add(other, {0, 60});
+  const Judgement judged = judge(model, split);
+  CHECK(judged.errors.mean.root_mean_square == model_errors(model, split.test).mean.root_mean_square);
+  CHECK(std::isfinite(judged.verdict.test_r_squared));
+  CHECK(judged.verdict.answered_share == 0);  // its envelope is a point
+  for (std::size_t axis = 0; axis < 3; ++axis) CHECK(std::isfinite(judged.axes[axis].sign_violation_share));
+  const auto series =
+      axis_series(GivenAirframe("x", airframe_value<PaperQuadrotor, double>()), split.test, flown(split.test));
+  CHECK(series[0].starts == std::vector<std::size_t>{0, 100});
+}
+
 TEST_CASE("the commands of a model, row by row; NaN where the guard of its export declines") {
   const Flight flight = test::random_flight_rows(100, 6);
   RowSet rows(flight, {0, 40});

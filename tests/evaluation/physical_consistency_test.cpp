@@ -85,6 +85,10 @@ TEST_CASE("which pairs count, and which violate") {
   CHECK(std::isnan(sign_violation_share({1, 2, 3}, {4, 4, 4})));
   CHECK(std::isnan(sign_violation_share({1}, {1})));
   CHECK(std::isnan(sign_violation_share({}, {})));
+  CHECK(sign_violation_share({0, 1, 0, 1}, {0, 1, 2, 3}, 0, {0, 2}) == 0);  // from 1 to 0: another flight
+  constexpr double nan = pinnquad::not_a_number;
+  CHECK(std::isnan(sign_violation_share({nan, 1, 2}, {0, 1, 2})));
+  CHECK(sign_violation_share({nan, 1, 2}, {1, 1, 2}) == 0);  // of a pair that does not count
   CHECK_THROWS_AS(sign_violation_share({1, 2}, {1}), std::invalid_argument);
 }
 

@@ -25,6 +25,10 @@ struct TorqueAsked {
   static constexpr const char* name = "torque_x";
   static constexpr const char* unit = "N m";
 };
+struct Spin {
+  static constexpr const char* name = "spin";
+  static constexpr const char* unit = "rpm/s";
+};
 /// A feature that nobody but its author knows.
 struct OwnFeature : detail::MotionPart<OwnFeature> {
   static constexpr int size = 1;
@@ -42,6 +46,7 @@ using LoneFuture = PartlyWindowed<InverseFeatures, Chosen<NamedFeatures, 18, 5>,
 using TwoOfThree = PartlyWindowed<Chosen<NamedFeatures, 18, 3, 4, 5>, Chosen<NamedFeatures, 5, 4>, 2, Period>;
 using OfTurningColumn = WithColumns<InverseFeatures, BatteryVoltage, GyroSlope>;
 using OfTorque = Windowed<WithColumns<AccelerationFeatures, TorqueAsked>, 2, Period>;
+using OfSpin = WithColumns<AccelerationFeatures, Spin>;
 using OfOwnFeature = Joined<AccelerationFeatures, OwnFeature>;
 // proven
 using ChosenPlaces = Chosen<NamedFeatures, 18, 9, 3, 4, 5>;
@@ -69,6 +74,7 @@ TEST_CASE("an angular acceleration beside the threes of the affine part, or an u
   header_and_block_say<Certified<TwoOfThree>>(false);
   header_and_block_say<Certified<OfTurningColumn>>(false);
   header_and_block_say<Certified<OfTorque>>(false);
+  header_and_block_say<Certified<OfSpin>>(false);
   header_and_block_say<Certified<OfOwnFeature>>(false);
   header_and_block_say<Certified<PhysicsFeatures, RatesToo>>(false);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Exports a trained model whole: its header with the certificate, its block, its limits of trust. All files appear, or
-// none.
+// Exports a trained model whole: its header with the certificate, its block, its limits of trust. None
+// appears before all are written.
 #pragma once
 
 #include <cstddef>

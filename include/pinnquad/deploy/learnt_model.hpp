@@ -3,6 +3,7 @@
 // bit.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -58,7 +59,7 @@ class LearntRows {
     std::vector<typename LearntModel<Scalar>::FeatureVector> some;
     for (std::size_t i = 0; i < count && !rows_.empty(); ++i) {
       auto& vector = some.emplace_back();
-      const Row& row = rows_[i * (rows_.size() - 1) / (count - 1)];
+      const Row& row = rows_[i * (rows_.size() - 1) / std::max<std::size_t>(1, count - 1)];
       for (std::size_t k = 0; k < row.size(); ++k) vector[k] = static_cast<Scalar>(row[k]);
     }
     return some;

@@ -224,7 +224,7 @@ constexpr CommandMeaning command_meaning_of(const Airframe<Scalar>& airframe) no
   return thrust ? CommandMeaning::thrust : (speed ? CommandMeaning::speed : CommandMeaning::throttle);
 }
 
-/// The enumerator as C++ text.
+/// In words.
 constexpr const char* to_string(CommandMeaning meaning) noexcept {
   switch (meaning) {
     case CommandMeaning::thrust: return "thrust";

@@ -89,6 +89,11 @@ std::array<AxisSeries, 3> axis_series(const AirframeSource& airframe, const RowS
       airframe.template signs<Roll>(), airframe.template signs<Pitch>(), airframe.template signs<Yaw>()};
   std::array<AxisSeries, 3> series;
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::size_t start = 0;
+    for (const FlightRows& piece : rows.pieces()) {
+      series[axis].starts.push_back(start);
+      start += piece.rows.size();
+    }
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const Sample& sample = rows[i];
       series[axis].angular_acceleration.push_back(sample.angular_acceleration_rad_s2[static_cast<int>(axis)]);
@@ -126,9 +131,9 @@ std::vector<Commands<double>> predicted_commands(const AskedModel& model, const 
 /// The share of rows that the guard of a model's export lets it answer.
 double answered_share(const AskedModel& model, const RowSet& rows);
 
-/// Judges a model on the test rows; its verdict is beside linear regression on the paper's features. Figures of a model
-/// of a window are NaN: its first rows have no features (model_errors() leaves them out). Throws std::invalid_argument
-/// for a split with an empty part.
+/// Judges a model on the test rows that have features: the first ones of a flight have no whole window. Its verdict is
+/// beside linear regression on the paper's features. Throws std::invalid_argument for a split with an empty part, and
+/// where no row has features.
 Judgement judge(const AskedModel& model, const RowSplit& split);
 
 }  // namespace pinnquad

@@ -69,18 +69,20 @@ double slope_error(const std::vector<double>& target_sum, const std::vector<doub
 
 /// Share of consecutive pairs of rows in which the predicted sum moves against the angular acceleration:
 ///   #{i : dS_i d_omega_dot_i < 0} / #{i : d_omega_dot_i != 0},   d x_i = x_{i+1} - x_i,  i = 0 .. n-2
-/// A sum that stands still is no violation. Rows must be in time order and follow each other. Twice this share is the
-/// local monotonicity loss (Alg. 1) with the sign as step if no difference is 0. NaN if no pair counts.
-/// `above`: pairs count whose |d_omega_dot_i| is larger, rad/s^2.
+/// A sum that stands still is no violation. Rows must be in time order. Twice this share is the local monotonicity loss
+/// (Alg. 1) with the sign as step if no difference is 0. NaN if no pair counts, or if a sum of one that counts is NaN.
+/// `above`: pairs count whose |d_omega_dot_i| is larger, rad/s^2. `starts`: rows in order that do not follow the row
+/// before, as the first one of a flight.
 /// Throws std::invalid_argument for series of different length.
 double sign_violation_share(const std::vector<double>& predicted_sum, const std::vector<double>& angular_acceleration,
-                            double above = 0);
+                            double above = 0, const std::vector<std::size_t>& starts = {});
 
 /// Signed command sum and angular acceleration about one axis, row by row, in time order.
 struct AxisSeries {
   std::vector<double> angular_acceleration;  ///< rad/s^2
   std::vector<double> target;                ///< sum of the flown commands
   std::vector<double> predicted;
+  std::vector<std::size_t> starts{};  ///< rows that do not follow the row before
 };
 
 /// All measures of one axis of rotation (roll, pitch or yaw). Ellipses have x = angular acceleration, y = command sum.

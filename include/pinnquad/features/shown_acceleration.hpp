@@ -24,10 +24,10 @@ constexpr std::string_view name_at_tap(std::string_view name) noexcept {
 constexpr bool is_of_present(std::string_view name) noexcept { return name_at_tap(name).size() == name.size(); }
 
 /// True of an angular acceleration, whatever its unit of angle, and of a torque, which is made for one: "rad/s^2",
-/// "deg/s/s", "N m". Not of "m/s^2".
+/// "deg/s/s", "rpm/s", "N m". Not of "m/s^2".
 constexpr bool is_unit_of_turning(std::string_view unit) noexcept {
-  for (const std::string_view torque : {"N m", "Nm", "N*m", "N.m", "N·m"}) {
-    if (unit.find(torque) < unit.size()) return true;
+  for (const std::string_view whole : {"N m", "Nm", "N*m", "N.m", "N·m", "rpm/s", "dps/s", "Hz/s"}) {
+    if (unit.find(whole) < unit.size()) return true;
   }
   for (const std::string_view squared : {"/s^2", "/s2", "/s²", "/s/s", "s^-2", "s-2", "s⁻²"}) {
     std::size_t at = unit.find(squared);

@@ -28,7 +28,7 @@ enum class Reaction : std::uint8_t {
   gives_up,        ///< no commands: the flight stack must take over
 };
 
-/// The enumerator as C++ text.
+/// In words.
 constexpr const char* to_string(Reaction reaction) noexcept {
   switch (reaction) {
     case Reaction::flies: return "flies";

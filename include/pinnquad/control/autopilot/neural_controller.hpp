@@ -95,7 +95,8 @@ class NeuralController {
     if (status == Status::ok) learner_.motion().velocity(time_us, state.velocity_m_s);
     return status;
   }
-  /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point.
+  /// A number that is not finite is not asked for, axis by axis, as in PX4's trajectory set point. Snap and the yaw's
+  /// acceleration are not taken: no flight stack sends them, no record holds them.
   Status set_point(std::uint64_t time_us, const TrajectoryPoint<float>& wanted) noexcept {
     return samples_.set_point(time_us, wanted);
   }

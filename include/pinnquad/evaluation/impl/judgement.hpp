@@ -16,10 +16,10 @@ PINNQUAD_BODY Judgement::PairSigns pair_signs(const std::array<AxisSeries, 3>& s
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const AxisSeries& s = series[axis];
     const double large = large_step_share * std::sqrt(joint_moments(s.angular_acceleration, s.target).variance_x);
-    result.all[axis] = sign_violation_share(s.predicted, s.angular_acceleration);
-    result.of_flown[axis] = sign_violation_share(s.target, s.angular_acceleration);
-    result.large[axis] = sign_violation_share(s.predicted, s.angular_acceleration, large);
-    result.large_of_flown[axis] = sign_violation_share(s.target, s.angular_acceleration, large);
+    result.all[axis] = sign_violation_share(s.predicted, s.angular_acceleration, 0, s.starts);
+    result.of_flown[axis] = sign_violation_share(s.target, s.angular_acceleration, 0, s.starts);
+    result.large[axis] = sign_violation_share(s.predicted, s.angular_acceleration, large, s.starts);
+    result.large_of_flown[axis] = sign_violation_share(s.target, s.angular_acceleration, large, s.starts);
   }
   return result;
 }
@@ -50,8 +50,21 @@ PINNQUAD_BODY double answered_share(const AskedModel& model, const RowSet& rows)
 }
 
 PINNQUAD_BODY Judgement judge(const AskedModel& model, const RowSplit& split) {
-  Judgement result =
-      judge(GivenAirframe(model.airframe_name, model.airframe), split.test, predicted_commands(model, split.test));
+  RowSet rows;  // with features: the first ones of a piece have no whole window
+  std::vector<Commands<double>> predictions;
+  for (const FlightRows& piece : split.test.pieces()) {
+    IndexRange run;
+    model.each_row(RowSet(*piece.flight, piece.rows), [&](const Flight&, std::size_t row, const double* x) {
+      predictions.push_back(model.predict(x));
+      if (row != run.end) {
+        rows.add(*piece.flight, run);
+        run.begin = row;
+      }
+      run.end = row + 1;
+    });
+    rows.add(*piece.flight, run);
+  }
+  Judgement result = judge(GivenAirframe(model.airframe_name, model.airframe), rows, predictions);
   result.validation_error = model_errors(model, split.validation).mean.mean_absolute;
   result.verdict =
       verdict_on(result.errors, linear_regression_errors<PaperFeatures>(split.train, split.test).mean.r_squared);

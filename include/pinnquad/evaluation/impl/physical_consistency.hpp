@@ -2,6 +2,8 @@
 // Bodies of physical_consistency.hpp.
 #pragma once
 
+#include <algorithm>
+
 #include "pinnquad/evaluation/physical_consistency.hpp"
 
 namespace pinnquad {
@@ -70,19 +72,23 @@ PINNQUAD_BODY double slope_error(const std::vector<double>& target_sum, const st
 }
 
 PINNQUAD_BODY double sign_violation_share(const std::vector<double>& predicted_sum,
-                                          const std::vector<double>& angular_acceleration, double above) {
+                                          const std::vector<double>& angular_acceleration, double above,
+                                          const std::vector<std::size_t>& starts) {
   detail::require_equal_length("sign_violation_share", predicted_sum.size(), angular_acceleration.size());
   std::size_t pairs = 0;
   std::size_t violations = 0;
   const std::size_t rows = std::min(predicted_sum.size(), angular_acceleration.size());  // equal; gcc 12 can't see it
   for (std::size_t i = 0; i + 1 < rows; ++i) {
+    if (std::binary_search(starts.begin(), starts.end(), i + 1)) continue;
     // by comparison: the product of two small differences could underflow to 0
     const bool large = std::abs(angular_acceleration[i + 1] - angular_acceleration[i]) > above;
     const bool rises = large && angular_acceleration[i + 1] > angular_acceleration[i];
     const bool falls = large && angular_acceleration[i + 1] < angular_acceleration[i];
     const bool sum_rises = predicted_sum[i + 1] > predicted_sum[i];
     const bool sum_falls = predicted_sum[i + 1] < predicted_sum[i];
-    pairs += rises || falls ? 1 : 0;
+    if (!rises && !falls) continue;
+    if (std::isnan(predicted_sum[i] + predicted_sum[i + 1])) return not_a_number;
+    ++pairs;
     violations += (rises && sum_falls) || (falls && sum_rises) ? 1 : 0;
   }
   return pairs == 0 ? not_a_number : static_cast<double>(violations) / static_cast<double>(pairs);
@@ -102,7 +108,7 @@ PINNQUAD_BODY PhysicalConsistency physical_consistency(const AxisSeries& series)
   result.slope_error = slope_error(series.target, series.predicted, x);
   result.target_correlation = pearson_correlation(series.target, x);
   result.predicted_correlation = pearson_correlation(series.predicted, x);
-  result.sign_violation_share = sign_violation_share(series.predicted, x);
+  result.sign_violation_share = sign_violation_share(series.predicted, x, 0, series.starts);
   return result;
 }
 
