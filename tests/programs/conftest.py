@@ -6,12 +6,15 @@ Tests pin exit codes, places (file:line:column) and one word of a complaint, not
 import csv
 import hashlib
 import json
+import lzma
 import os
+import pty
 import re
 import shutil
 import signal
 import subprocess
 import sys
+import termios
 import time
 from pathlib import Path
 
@@ -157,6 +160,25 @@ def ended(process, signal_number=signal.SIGINT, whole_group=False):
     return Done(process.args, code, Path("stdout.txt").read_bytes(), Path("stderr.txt").read_bytes())
 
 
+def on_terminal(command, stream="stdout"):
+    """A program whose standard output, or other stream, is a terminal: exit code, and what it prints there."""
+    master, terminal = pty.openpty()
+    attributes = termios.tcgetattr(terminal)
+    attributes[1] &= ~termios.OPOST  # line feeds as they are
+    termios.tcsetattr(terminal, termios.TCSANOW, attributes)
+    process = subprocess.Popen(list(map(str, command)), stdin=subprocess.DEVNULL,
+                               **{"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, stream: terminal})
+    os.close(terminal)
+    out = b""
+    try:
+        while part := os.read(master, 65536):
+            out += part
+    except OSError:  # the other end is closed
+        pass
+    os.close(master)
+    return process.wait(), out.decode()
+
+
 @pytest.fixture(scope="session")
 def program(request):
     """program(name): one that was built."""
@@ -284,6 +306,22 @@ def recorded(request):
     def find(path):
         there = request.config.getoption("--reference") / path
         return there if there.exists() else pytest.skip(f"{path} is not here")
+
+    return find
+
+
+@pytest.fixture(scope="session")
+def unpacked(recorded, tmp_path_factory):
+    """unpacked(name...): a folder with these logs of PX4's simulation, once."""
+    folders = {}
+
+    def find(*names):
+        if names not in folders:
+            folders[names] = tmp_path_factory.mktemp("sih")
+            for name in names:
+                with lzma.open(recorded(f"sih/{name}.ulg.xz")) as packed:
+                    Path(folders[names], f"{name}.ulg").write_bytes(packed.read())
+        return folders[names]
 
     return find
 

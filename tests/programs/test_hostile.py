@@ -83,7 +83,7 @@ def fly_cases():
         yield left_alone(f"{FEW} --sticks {path} --watch in/sticks.csv")
     for words in ["--out run/x --record-sticks run/x", "--out run/x --record-sticks run/./x",
                   "--out run/trajectory.svg --pictures run", "--record-sticks run/wind.svg --pictures run",
-                  "--out run/x --pictures run/x", f"--out run/x --watch run/../run/x"]:
+                  "--out run/x --pictures run/x", "--out run/x --watch run/../run/x"]:
         yield refused(f"{FEW} {words}")
     yield Case(f"{FEW} --sticks run/mine.partial-1 --out run/mine", leaves=True,
                after=unchanged("sticks.csv", "mine.partial-1"), before=lambda run: shutil.copy(run / "../in/sticks.csv",

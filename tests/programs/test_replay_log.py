@@ -352,7 +352,7 @@ def test_learnt(pinnquad, core, same, differs, stack):
         drop(folder / RECORD, part / RECORD, first, last)
         left = len(table(part / RECORD))
         said = same(part, *words)
-        assert re.search(f"all ([0-9]+) ticks compared", said) and int(
+        assert re.search("all ([0-9]+) ticks compared", said) and int(
             re.search("([0-9]+) ticks not compared", said)[1]) > 0.3 * left, said
         pinnquad.refused("replay", part, *words, "--learnt", "none", keyword="flight that is not in this log")
     plant(folder / RECORD, part / RECORD, late, "learnt", "1")
