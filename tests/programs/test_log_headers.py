@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A header of any log compiles and flies, whatever window and columns its model asks for: in the cores of both flight stacks. What the cores recorded replays to the bit."""
 import json
-import lzma
 import math
 import re
-import shutil
 from pathlib import Path
 
 import pytest
@@ -110,15 +108,10 @@ LOGS = {
 
 
 @pytest.mark.parametrize("logs", LOGS)
-def test_real_logs(logs, two_models, fly_cores, recorded):
+def test_real_logs(logs, two_models, fly_cores, recorded, unpacked):
     held_out, share = LOGS[logs]
     if logs == "sih":
-        Path("logs").mkdir()
-        for name in "train_random", "train_figure8", "train_excite":
-            packed = recorded(f"sih/{name}.ulg.xz")
-            with lzma.open(packed) as log, open(f"logs/{name}.ulg", "wb") as out:
-                shutil.copyfileobj(log, out)
-        source = "logs --mapping px4"
+        source = f"{unpacked('train_random', 'train_figure8', 'train_excite')} --mapping px4"
     else:
         table = recorded("flight_logs/nanobench_subset_50hz.csv" if logs == "nanobench" else "flight_logs/arpl_crazyflie.csv")
         source = f"{table} --mapping {logs}"
