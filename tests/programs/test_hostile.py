@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Hostile invocations of every program: texts, places, surroundings (hostile.py); numbers are in test_options.py."""
-import fcntl
 import itertools
 import os
 import shutil
@@ -208,12 +207,3 @@ def test_hostile(cases, pinnquad, given, work):
 def test_hostile_study(study, given, work):
     report = Program(sys.executable, SOURCE / "tools/study/report.py")
     assert try_all(study_cases(), {"study": study, "report": report}, given, work) >= 60
-
-
-def test_two_programs_in_one_folder(pinnquad, given):
-    os.mkdir("o")
-    folder = os.open("o", os.O_RDONLY)
-    fcntl.flock(folder, fcntl.LOCK_EX)
-    pinnquad.refused("train --seeds 1 --epochs 1 --out o", given / "flight.csv", keyword="another program")
-    assert not os.listdir("o")
-    os.close(folder)
