@@ -311,6 +311,13 @@ def recorded(request):
 
 
 @pytest.fixture(scope="session")
+def nanobench(recorded, made):
+    """A Crazyflie's flights as import leaves them: five types of trajectory, a row every 20 ms."""
+    log = recorded("flight_logs/nanobench_subset_50hz.csv")
+    return made(f"import {log} --mapping nanobench --out nano") / "nano"
+
+
+@pytest.fixture(scope="session")
 def unpacked(recorded, tmp_path_factory):
     """unpacked(name...): a folder with these logs of PX4's simulation, once."""
     folders = {}
@@ -361,27 +368,6 @@ def column(*columns, to):
             cells[at - 1] = repr(to(float(cells[at - 1]))) if callable(to) else to
 
     return change
-
-
-@pytest.fixture
-def slowed():
-    """slowed(flight, target): the flight of a vehicle 16 times as large, whose time is 4 times as slow (Froude): it
-    accelerates alike, and its rotors lag four times as long."""
-    powers = {"t": 1, "v_bx": 1, "v_by": 1, "v_bz": 1, "w_x": -1, "w_y": -1, "w_z": -1, "wdot_x": -2, "wdot_y": -2,
-              "wdot_z": -2, "altitude": 2}
-
-    def slow(flight, target):
-        names = Path(flight).read_text().splitlines()[0].split(",")
-        factors = [4.0 ** powers.get(name, 0) for name in names]
-
-        def change(line, cells):
-            for at, factor in enumerate(factors) if line > 1 else ():
-                if factor != 1:
-                    cells[at] = repr(float(cells[at]) * factor)
-
-        return edited(flight, target, change)
-
-    return slow
 
 
 def replaced(source, target, *pairs):

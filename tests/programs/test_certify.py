@@ -169,13 +169,11 @@ def test_models_of_logs(pinnquad, flown, dataset, model, code):
 
 
 @pytest.mark.parametrize("model", ["ridge_causal", "ridge_centred", "structured_causal"])
-def test_windows(pinnquad, recorded, made, model):
+def test_windows(pinnquad, nanobench, model):
     """Of logs that have a row every 20 ms: proven by what the weights of all instants sum to."""
-    log = recorded("flight_logs/nanobench_subset_50hz.csv")
-    nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
     held = "B9_trefoil_fast_rep1"  # and with it the other flight of that trajectory
-    said = judge_export(pinnquad, model, 0, [nano / f"{held}.csv", nano / "B9_trefoil_medium_rep1.csv"],
-                        f"{nano} --airframe crazyflie_2_1 --hold-out {held}")
+    said = judge_export(pinnquad, model, 0, [nanobench / f"{held}.csv", nanobench / "B9_trefoil_medium_rep1.csv"],
+                        f"{nanobench} --airframe crazyflie_2_1 --hold-out {held}")
     assert "of one that is held; of the present alone" in said.flat
     assert model != "structured_causal" or re.search("^with rates ", said.out, re.M), said
     if model != "ridge_causal":

@@ -202,14 +202,6 @@ def test_refused(pinnquad, flight, change, word, code):
     no_partial_files(".")
 
 
-def test_a_lag_that_no_quadrotor_has(pinnquad, flown, slowed):
-    """A vehicle of four times the time constants: nothing is written, and the range is said."""
-    slowed(flown("d1 --airframe crazyflie_2_1 --max-speed 2 --interval 10 --samples 6000"), "slow.csv")
-    said = pinnquad.refused("identify slow.csv --airframe crazyflie_2_1 --out vehicle.toml", at="slow.csv",
-                            keyword="rotor lag is 0.23", code=1)
-    assert "quadrotors have 0 to 0.2 s" in said.lines[0] and not Path("vehicle.toml").exists()
-
-
 def test_roll_and_pitch_that_are_unlike(pinnquad):
     """One of four times the other's moment of inertia is told, and identified."""
     pinnquad("airframe convert px4_sih --out usual.toml")

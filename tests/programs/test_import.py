@@ -233,16 +233,14 @@ def lost_on_the_ground(dataset):
     return [step["rows_before"] - step["rows_after"] for step in dataset["steps"] if step["step"] == "on the ground"]
 
 
-def test_nanobench(pinnquad, recorded):
+def test_nanobench(nanobench, recorded):
     """Its authors took a lag of 30 ms, and flew."""
-    log = recorded("flight_logs/nanobench_subset_50hz.csv")
-    imported(pinnquad, log, "--mapping", "nanobench", out="nanobench")
-    dataset = facts("nanobench")
+    dataset = facts(nanobench)
     assert any(flight["trajectory"] == "lissajous" for flight in dataset["flights"])
     assert 0.02 <= dataset["lag_removed_s"] <= 0.04 and dataset["sample_period_s"] == 0.02
     assert lost_on_the_ground(dataset) == [0]
-    assert len(list(Path("nanobench").glob("*.csv"))) == 11
-    everything = table(log)
+    assert len(list(nanobench.glob("*.csv"))) == 11
+    everything = table(recorded("flight_logs/nanobench_subset_50hz.csv"))
     for name in "B10_lissajous_fast_rep1", "B5_helix_fast_rep1", "B9_trefoil_medium_rep1":
         rows = [{key: float(value or "nan") for key, value in row.items() if key not in ("flight",)
                  and is_number(value)}
@@ -250,7 +248,7 @@ def test_nanobench(pinnquad, recorded):
 
         def compare(ours, theirs):
             truth = [[row["t"], *(row[key] for key in theirs.split())] for row in rows]
-            return errors(truth, numbers(f"nanobench/{name}.csv", *ours.split()))
+            return errors(truth, numbers(nanobench / f"{name}.csv", *ours.split()))
 
         count, found = compare("v_bx v_by v_bz w_x w_y w_z wdot_x wdot_y wdot_z roll pitch",
                                "vbx vby vbz wx wy wz dwx dwy dwz roll pitch")

@@ -102,8 +102,8 @@ def test_window_and_battery(two_models, fly_cores, pinnquad, dataset, flown):
 
 LOGS = {
     "sih": ("train_figure8", 0.99),
-    "nanobench": ("B7_oval_fast_rep1", 0.1),  # of an airframe that is assumed, the loop leaves its path
-    "arpl": ("arpl_cf_log15_12s", 0.99),
+    "nanobench_subset_50hz": ("B7_oval_fast_rep1", 0.1),  # of an airframe that is assumed, the loop leaves its path
+    "arpl_crazyflie": ("arpl_cf_log15_12s", 0.99),
 }
 
 
@@ -113,8 +113,7 @@ def test_real_logs(logs, two_models, fly_cores, recorded, unpacked):
     if logs == "sih":
         source = f"{unpacked('train_random', 'train_figure8', 'train_excite')} --mapping px4"
     else:
-        table = recorded("flight_logs/nanobench_subset_50hz.csv" if logs == "nanobench" else "flight_logs/arpl_crazyflie.csv")
-        source = f"{table} --mapping {logs}"
+        source = f"{recorded(f'flight_logs/{logs}.csv')} --mapping {logs.split('_')[0]}"
     two_models("structured_causal", source, held_out, held_out)
     assert "PartlyWindowed<" in Path("one/model.hpp").read_text()
     for (_, phase), ticks in fly_cores().items():
