@@ -520,13 +520,9 @@ def activation(graph, name):
                     "leaky_relu": "LeakyRelu", "softsign": "Softsign"}[name], x)
 
 
-@pytest.mark.parametrize("how, names", zip(["gemm", "scaled", "matmul", "transposed", "scaled"], TRIPLES))
-def test_onnx(pinnquad, how, names):
-    """Each activation and each way to write a layer, batch norm behind the first."""
-    onnx = has_onnx()
-    network = Network(5, 12, "norm", names[0], 12, names[1], 12, names[2], 4)
-    graph, width = Graph(onnx, number="DOUBLE" if how == "scaled" else "FLOAT"), 5
-    graph.node("Flatten", graph.node("Identity", "x"))
+def layered(graph, network, how="gemm"):
+    """The network's layers, one behind the other."""
+    width = 5
     for layer in network.layers:
         if layer[0] == "norm":
             graph.node("BatchNormalization", graph.x, *(graph.constant(values, [width]) for values in layer[1:]))
@@ -535,6 +531,16 @@ def test_onnx(pinnquad, how, names):
             width = layer[0]
         else:
             activation(graph, layer[0])
+
+
+@pytest.mark.parametrize("how, names", zip(["gemm", "scaled", "matmul", "transposed", "scaled"], TRIPLES))
+def test_onnx(pinnquad, how, names):
+    """Each activation and each way to write a layer, batch norm behind the first."""
+    onnx = has_onnx()
+    network = Network(5, 12, "norm", names[0], 12, names[1], 12, names[2], 4)
+    graph = Graph(onnx, number="DOUBLE" if how == "scaled" else "FLOAT")
+    graph.node("Flatten", graph.node("Identity", "x"))
+    layered(graph, network, how)
     graph.write()
     onnx.checker.check_model(onnx.load("net.onnx"), full_check=True)
     features_toml(per_feature=mean_and_scale)
@@ -614,9 +620,7 @@ def test_input_shapes(pinnquad, shape):
     """One motion without a row of its own, or as the only step of a sequence."""
     network = Network(5, 12, "relu", 4)
     graph = Graph(has_onnx())
-    linear(graph, network.layers[0], 5, "matmul")
-    activation(graph, "relu")
-    linear(graph, network.layers[2], 12, "matmul")
+    layered(graph, network, "matmul")
     graph.shapes = [shape, [*shape[:-1], 4]]
     graph.write()
     features_toml(per_feature=mean_and_scale)
@@ -678,8 +682,7 @@ WRONG_ONNX = wrong_onnx()
 def test_wrong_onnx(case):
     change, keyword = WRONG_ONNX[case]
     graph = Graph(has_onnx())
-    linear(graph, Network(5, 4).layers[0], 5, "gemm")
-    graph.node("Relu", graph.x)
+    layered(graph, Network(5, 4, "relu"))
     change(graph)
     graph.write()
     refused_network("net.onnx", keyword)
@@ -688,7 +691,7 @@ def test_wrong_onnx(case):
 def test_cut_onnx(pinnquad):
     """At every place one line; by the program too."""
     graph = Graph(has_onnx())
-    linear(graph, Network(5, 4).layers[0], 5, "gemm")
+    layered(graph, Network(5, 4))
     graph.write()
     whole = Path("net.onnx").read_bytes()
     for length in range(0, len(whole), 7):
@@ -761,8 +764,7 @@ def test_external_data(pinnquad):
     onnx = has_onnx()
     network = Network(5, 12, "elu", 4)
     graph = Graph(onnx)
-    for layer, inputs in (network.layers[0], 5), ("elu", 12), (network.layers[2], 12):
-        activation(graph, layer) if layer == "elu" else linear(graph, layer, inputs, "gemm")
+    layered(graph, network)
     external(graph)
     graph.nodes[0].doc_string = "File /home/author/secret.py, line 3"
     Path("there").mkdir()
@@ -793,7 +795,7 @@ WRONG_EXTERNAL = {
 def test_wrong_external(case, tmp_path_factory):
     entries, keyword = WRONG_EXTERNAL[case]
     graph = Graph(has_onnx())
-    linear(graph, Network(5, 4).layers[0], 5, "gemm")
+    layered(graph, Network(5, 4))
     external(graph, lambda own: own.update(entries) if own["offset"] == "0" else None)
     graph.write()
     outside = tmp_path_factory.mktemp("outside") / "data"
