@@ -336,12 +336,3 @@ def test_progress_on_a_terminal(pinnquad, recorded):
         shares.setdefault(job, []).append(int(share))
     assert all(of == sorted(of) for of in shares.values()), shares
     assert "reading test_circle" in shares and any(0 < share < 100 for share in shares["comparing the flights"]), shares
-
-
-def test_a_part_of_a_log_whose_mapping_its_content_names(pinnquad, recorded):
-    log = recorded("sih/test_circle.ulg")
-    rows = {}
-    for words in "", "--from 40 --to 70":
-        pinnquad(f"import {log} {words} --out dataset")
-        rows[words] = sum(flight["rows"] for flight in facts("dataset")["flights"])
-    assert 0 < rows["--from 40 --to 70"] < rows[""], rows

@@ -74,10 +74,3 @@ def test_other_containers_are_named_with_what_to_do(pinnquad, begin, keyword):
     for command in "import flight.csv --out out", "train flight.csv --out out", "identify flight.csv":
         pinnquad.refused(command, keyword=keyword)
     assert not Path("out").exists()
-
-
-def test_every_cut_of_a_log_is_read_or_refused_in_one_line(pinnquad):
-    for log in blackbox(), dataflash():
-        for size in 5, 70, 200, 600, 2000:
-            Path("cut").write_bytes(log[:size])
-            pinnquad.refused("import cut --out out")

@@ -51,12 +51,3 @@ def test_a_terminal_gets_warnings_wrapped(pinnquad):
     assert len(pinnquad.run(*command[1:]).lines) == 1
     said = on_terminal(command, "stderr")[1].splitlines()
     assert len(said) > 1 and all(len(line) <= WIDEST for line in said), said
-
-
-def test_one_vehicle_is_one(pinnquad):
-    assert pinnquad("loop --vehicles 1 --controllers start --out flown").out.startswith("1 vehicle of seed ")
-
-
-def test_conditions_are_named_once(pinnquad):
-    line = pinnquad("loop --conditions storm model.block", code=2).lines[0]
-    assert line.count("calm") == line.count("gusts") == 1, line

@@ -121,12 +121,6 @@ def test_a_copy_flies_on_alone_and_alike(copied):
     assert other.effects == Effects(wake=True)
 
 
-def test_repr():
-    simulator = Simulator(seed=9)
-    simulator.fly(1.0)
-    assert "paper_quadrotor, seed 9: 1.000 s, 20 rows" in repr(simulator)
-
-
 # effects
 
 
