@@ -6,12 +6,15 @@ Tests pin exit codes, places (file:line:column) and one word of a complaint, not
 import csv
 import hashlib
 import json
+import lzma
 import os
+import pty
 import re
 import shutil
 import signal
 import subprocess
 import sys
+import termios
 import time
 from pathlib import Path
 
@@ -157,6 +160,25 @@ def ended(process, signal_number=signal.SIGINT, whole_group=False):
     return Done(process.args, code, Path("stdout.txt").read_bytes(), Path("stderr.txt").read_bytes())
 
 
+def on_terminal(command, stream="stdout"):
+    """A program whose standard output, or other stream, is a terminal: exit code, and what it prints there."""
+    master, terminal = pty.openpty()
+    attributes = termios.tcgetattr(terminal)
+    attributes[1] &= ~termios.OPOST  # line feeds as they are
+    termios.tcsetattr(terminal, termios.TCSANOW, attributes)
+    process = subprocess.Popen(list(map(str, command)), stdin=subprocess.DEVNULL,
+                               **{"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, stream: terminal})
+    os.close(terminal)
+    out = b""
+    try:
+        while part := os.read(master, 65536):
+            out += part
+    except OSError:  # the other end is closed
+        pass
+    os.close(master)
+    return process.wait(), out.decode()
+
+
 @pytest.fixture(scope="session")
 def program(request):
     """program(name): one that was built."""
@@ -288,6 +310,29 @@ def recorded(request):
     return find
 
 
+@pytest.fixture(scope="session")
+def nanobench(recorded, made):
+    """A Crazyflie's flights as import leaves them: five types of trajectory, a row every 20 ms."""
+    log = recorded("flight_logs/nanobench_subset_50hz.csv")
+    return made(f"import {log} --mapping nanobench --out nano") / "nano"
+
+
+@pytest.fixture(scope="session")
+def unpacked(recorded, tmp_path_factory):
+    """unpacked(name...): a folder with these logs of PX4's simulation, once."""
+    folders = {}
+
+    def find(*names):
+        if names not in folders:
+            folders[names] = tmp_path_factory.mktemp("sih")
+            for name in names:
+                with lzma.open(recorded(f"sih/{name}.ulg.xz")) as packed:
+                    Path(folders[names], f"{name}.ulg").write_bytes(packed.read())
+        return folders[names]
+
+    return find
+
+
 def needed(name):
     """The path of a program of the machine; the test is skipped where it is not installed."""
     return shutil.which(name) or pytest.skip(f"{name} is not installed")
@@ -323,27 +368,6 @@ def column(*columns, to):
             cells[at - 1] = repr(to(float(cells[at - 1]))) if callable(to) else to
 
     return change
-
-
-@pytest.fixture
-def slowed():
-    """slowed(flight, target): the flight of a vehicle 16 times as large, whose time is 4 times as slow (Froude): it
-    accelerates alike, and its rotors lag four times as long."""
-    powers = {"t": 1, "v_bx": 1, "v_by": 1, "v_bz": 1, "w_x": -1, "w_y": -1, "w_z": -1, "wdot_x": -2, "wdot_y": -2,
-              "wdot_z": -2, "altitude": 2}
-
-    def slow(flight, target):
-        names = Path(flight).read_text().splitlines()[0].split(",")
-        factors = [4.0 ** powers.get(name, 0) for name in names]
-
-        def change(line, cells):
-            for at, factor in enumerate(factors) if line > 1 else ():
-                if factor != 1:
-                    cells[at] = repr(float(cells[at]) * factor)
-
-        return edited(flight, target, change)
-
-    return slow
 
 
 def replaced(source, target, *pairs):

@@ -11,18 +11,9 @@ from statistics import fmean
 import pytest
 
 from conftest import SOURCE, Program
+from made_logs import FLIGHT_MAPPING as MAPPING
 
 benchmark = Program(sys.executable, SOURCE / "tools/study/benchmark.py")
-MAPPING = """about = "flights of pinnquad fly"
-world = "ned"
-body = "frd"
-time = { column = "t", unit = "s" }
-attitude = { euler = ["roll", "pitch", "yaw"] }
-body_rates = { columns = ["w_x", "w_y", "w_z"] }
-velocity = { columns = ["v_bx", "v_by", "v_bz"], axes = "body" }
-altitude = { columns = "altitude" }
-motors = { columns = ["u1", "u2", "u3", "u4"], numbers = "thrust", order = "px4" }
-"""
 SET = """about = "three flights"
 url = "here"
 licence = "none"

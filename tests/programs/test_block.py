@@ -7,7 +7,7 @@ import zlib
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE
+from conftest import SOURCE, Program, report_of
 
 SHIPPED = SOURCE / "examples/models/structured_quadrotor.block"
 RACER = SOURCE / "tests/models/own_racer.block"
@@ -68,3 +68,17 @@ def test_refused(pinnquad, flown):
     for name, keyword in (("cut.block", "cut short"), ("empty.block", "76 bytes or more, found 0"), ("weight.block", "NaN"),
                           ("flight.csv", "model block"), ("none.block", "found none")):
         pinnquad.refused("block", name, at=name, keyword=keyword)
+
+
+def test_shipped_models_are_of_todays_flights(pinnquad):
+    """The blocks of examples/models record the flights that they were trained on: the program makes those today."""
+    Program("bash")("", SOURCE / "scripts/models", "--flights", pinnquad, ".")
+    for flight, airframe, models in (("flight.csv", "paper_quadrotor", ("demo_quadrotor", "structured_quadrotor")),
+                                     ("crazyflie_flight.csv", "crazyflie_2_1", ("crazyflie_2_1",))):
+        pinnquad(f"train {flight} --airframe {airframe} --models linear --seeds 1 --allow-poor --out made")
+        report = report_of("made")
+        (made,), (fold,) = report["settings"]["flights"], report["folds"]
+        for model in models:
+            said = described(pinnquad, SOURCE / f"examples/models/{model}.block")
+            assert said["training_data_hash"] == made["flight_hash"], f"{model} is stale (docs/train.md, 'The models that are shipped')"
+            assert said["training_rows"] == fold["rows"]["train"], model

@@ -6,10 +6,9 @@ import json
 import math
 import re
 import shutil
-from pathlib import Path
 
 import pytest
-from conftest import SOURCE, edited, replaced, report_of
+from conftest import SOURCE, edited, report_of
 from exported import AXES, Header
 
 PLAIN = ["mean_absolute_error", "rmse", "r2"]
@@ -133,17 +132,6 @@ def test_by_another_program(trained, flight, judged):
             assert abs(judged[figure][name] - share) <= 2 / len(pairs), (figure, name)
 
 
-def test_own_airframe(pinnquad, flight):
-    """A block brings it."""
-    replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "mine.toml", ("^name = .*", 'name = "mine"'),
-             ("^mass_kg = .*", "mass_kg = 1.31"))
-    pinnquad(f"train --models paper_physics_informed --airframe mine.toml {flight} --out b --seeds 1 --epochs 2 "
-             "--allow-poor")
-    of_block, of_header = (pinnquad(f"evaluate b/{file}", flight, code=(0, 1)).out
-                           for file in ("model.block", "model.hpp"))
-    assert of_block.splitlines()[1:] == of_header.splitlines()[1:] and "for mine" in of_block
-
-
 def test_of_a_dataset(pinnquad, trained, flight, dataset):
     """Told apart from a flight, and judged as it."""
     dataset("logs", {"one": flight})
@@ -176,13 +164,6 @@ def test_worse_than_the_mean(pinnquad, trained, flight):
     assert "worse than the mean" in done.err and "model.block: " in done.err, done
 
 
-def test_refused(pinnquad, trained, flight):
-    """What is no block, or no longer one; all of blocks is in test_block.py."""
-    whole = (trained / "a/model.block").read_bytes()
-    shutil.copy(flight, "flight.csv")
-    shutil.copy(flight, "flight.hpp")
-    Path("changed.block").write_bytes(whole[:2000] + b"\xff" + whole[2001:])
-    for name, keyword in (("none.block", "found none"), ("flight.csv", "model block"), ("flight.hpp", "flight.block"),
-                          ("changed.block", "expected")):
-        pinnquad.refused("evaluate", name, "flight.csv", at=name, keyword=keyword)
+def test_refused(pinnquad, trained):
+    """What is no block, or no longer one, is in test_block.py."""
     pinnquad.refused("evaluate", trained / "a/model.block", "none.csv", at="none.csv", keyword="readable file")

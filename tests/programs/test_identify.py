@@ -2,7 +2,6 @@
 """The vehicle that flew: found again in simulated flights and in PX4's simulation, whose numbers are known; what no
 vehicle can be found in is refused, with file, column and evidence, and nothing is written."""
 import json
-import lzma
 import re
 import shutil
 import tomllib
@@ -10,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from conftest import column, edited, no_partial_files, replaced, table
+from made_logs import FLIGHT_MAPPING
 
 FLOWN = "d1 --airframe px4_sih --seed 3 --samples 6000"
 FLIGHT = {name: at for at, name in enumerate(
@@ -84,25 +84,7 @@ def test_a_thrust_curve(pinnquad, flight):
     assert tomllib.loads(Path("curved.toml").read_text())["rotor"][3]["thrust_curve"] > 0.9
 
 
-THROTTLE = """world = "ned"
-body = "frd"
-[time]
-column = "t"
-unit = "s"
-[attitude]
-euler = ["roll", "pitch", "yaw"]
-[body_rates]
-columns = ["w_x", "w_y", "w_z"]
-[velocity]
-columns = ["v_bx", "v_by", "v_bz"]
-axes = "body"
-[motors]
-columns = ["u1", "u2", "u3", "u4"]
-order = "px4"
-numbers = "signal"
-least = 1000
-most = 2000
-"""
+THROTTLE = FLIGHT_MAPPING.replace('"thrust"', '"signal", least = 1000, most = 2000')
 
 
 def test_a_throttle(pinnquad, flown):
@@ -120,7 +102,7 @@ def test_a_throttle(pinnquad, flown):
     edited(flight, "throttle.csv", pulses(0.6))
     edited(flight, "straight.csv", pulses(0))
     Path("throttle.toml").write_text(THROTTLE)
-    Path("stated.toml").write_text(THROTTLE + "thrust_curve = 0.6\n")
+    Path("stated.toml").write_text(THROTTLE.replace("2000", "2000, thrust_curve = 0.6"))
     said = pinnquad("import throttle.csv --mapping throttle.toml --out throttle").out
     assert re.search(r"^thrust curve of the commands, .*: k = 0\.(59|6|61) \(.* in flight throttle by roll 0\.\d.*overrules", said,
                      re.M), said
@@ -155,14 +137,10 @@ def test_a_throttle(pinnquad, flown):
     assert "straight, k = 0 taken" in pinnquad("import straight.csv --mapping throttle.toml --out straight").out
 
 
-@pytest.fixture(scope="module")
-def excited(recorded, tmp_path_factory):
+@pytest.fixture
+def excited(unpacked):
     """A log of PX4's simulation with multisines, and its payload flight."""
-    folder = tmp_path_factory.mktemp("sih")
-    for name in ("train_excite", "payload"):
-        with lzma.open(recorded(f"sih/{name}.ulg.xz")) as packed, open(folder / f"{name}.ulg", "wb") as log:
-            shutil.copyfileobj(packed, log)
-    return folder
+    return unpacked("train_excite", "payload")
 
 
 def test_px4_simulation(pinnquad, excited):
@@ -222,14 +200,6 @@ def test_refused(pinnquad, flight, change, word, code):
     pinnquad.refused("identify bad.csv --out vehicle.toml", at="bad.csv", keyword=word, code=code)
     assert not Path("vehicle.toml").exists()
     no_partial_files(".")
-
-
-def test_a_lag_that_no_quadrotor_has(pinnquad, flown, slowed):
-    """A vehicle of four times the time constants: nothing is written, and the range is said."""
-    slowed(flown("d1 --airframe crazyflie_2_1 --max-speed 2 --interval 10 --samples 6000"), "slow.csv")
-    said = pinnquad.refused("identify slow.csv --airframe crazyflie_2_1 --out vehicle.toml", at="slow.csv",
-                            keyword="rotor lag is 0.23", code=1)
-    assert "quadrotors have 0 to 0.2 s" in said.lines[0] and not Path("vehicle.toml").exists()
 
 
 def test_roll_and_pitch_that_are_unlike(pinnquad):

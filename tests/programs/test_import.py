@@ -1,60 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Flight logs to a dataset: a flight in closed form in two conventions, bad input, and recorded logs where they are at
 hand."""
-import json
 import math
 import os
 import re
 import shutil
-import struct
 import subprocess
 import sys
-import zlib
-from math import asin, atan2, cos, degrees, sin, sqrt
+from math import asin, atan2, cos, degrees, sin
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, cell, column, edited, needed, replaced, table
+from conftest import SOURCE, cell, column, edited, on_terminal, replaced, table
+from made_logs import (GRAVITY, angles, commands_at, errors, facts, imported, like_closed_form, numbers, position,
+                       quaternion_enu_flu, rates, specific_force, velocity)
 
 HERE = SOURCE / "tests/programs/import"
 FLIGHT = "A1_wave_rep1.csv"
-STEP_S = 1e-4
-
-
-def angles(t):
-    """Roll, pitch, yaw."""
-    return (0.25 * sin(1.7 * t) + 0.08 * sin(7.1 * t + 1), 0.2 * sin(1.3 * t + 0.5) + 0.07 * sin(8.3 * t),
-            0.3 * sin(0.7 * t) + 0.05 * sin(5.3 * t))
-
-
-def slope(function, t, step):
-    return [(after - before) / (2 * step) for after, before in zip(function(t + step), function(t - step))]
-
-
-def rates(t):
-    """Body rates."""
-    phi, theta, _ = angles(t)
-    d_phi, d_theta, d_psi = slope(angles, t, STEP_S)
-    return (d_phi - d_psi * sin(theta), d_theta * cos(phi) + d_psi * cos(theta) * sin(phi),
-            -d_theta * sin(phi) + d_psi * cos(theta) * cos(phi))
-
-
-def specific_force(t):
-    north, east, down = 1.8 * cos(0.9 * t), -0.9 * sin(0.6 * t), 0.4 * cos(0.8 * t) + 1.5 * sin(4.1 * t) - 9.80665
-    (sr, sp, sy), (cr, cp, cy) = map(sin, angles(t)), map(cos, angles(t))
-    return (cp * cy * north + cp * sy * east - sp * down,
-            (sr * sp * cy - cr * sy) * north + (sr * sp * sy + cr * cy) * east + sr * cp * down,
-            (cr * sp * cy + sr * sy) * north + (cr * sp * sy - sr * cy) * east + cr * cp * down)
-
-
-def quaternion_enu_flu(t):
-    """FRD to NED as a quaternion, then FLU to ENU: (0, s, s, 0) q (0, 1, 0, 0)."""
-    (sr, sp, sy), (cr, cp, cy) = map(sin, (a / 2 for a in angles(t))), map(cos, (a / 2 for a in angles(t)))
-    w, a = cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy
-    b, e = cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy
-    s = sqrt(0.5)
-    w1, a1, b1, e1 = -s * a - s * b, s * w + s * e, s * w - s * e, s * b - s * a
-    return w1, e1, -b1, -a1
 
 
 @pytest.fixture(scope="module")
@@ -63,25 +25,18 @@ def logs(pinnquad, tmp_path_factory):
     FLU, degrees, g, mm, us, pulse widths and Betaflight's motor order. The motors are 40 ms ahead of the motion that
     they cause. And ned.csv imported: ned/, ned.txt."""
     folder = tmp_path_factory.mktemp("logs")
-    lag_s, g = 0.04, 9.80665
     with open(folder / "ned.csv", "w") as ned, open(folder / "enu.csv", "w") as enu:
         ned.write("t,roll,pitch,yaw,p,q,r,fx,fy,fz,vn,ve,vd,x,y,z,u1,u2,u3,u4,bat,label\n")
         enu.write("t_us,qx,qy,qz,qw,p_deg,q_deg,r_deg,gx,gy,gz,v_east,v_north,v_up,east,north,up,m1,m2,m3,m4,bat_mV,"
                   "label\n")
         for i in range(2000):
             t = i / 100
-            (p, q, r), (fx, fy, fz) = rates(t), specific_force(t)
-            vn, ve, vd = 2 * sin(0.9 * t), 1.5 * cos(0.6 * t), 0.5 * sin(0.8 * t) - 1.5 / 4.1 * cos(4.1 * t)
-            x, y = -2 / 0.9 * cos(0.9 * t), 2.5 * sin(0.6 * t)
-            z = -20 - 0.5 / 0.8 * cos(0.8 * t) - 1.5 / 4.1**2 * sin(4.1 * t)
-            c = -specific_force(t + lag_s)[2] / 20
-            kx, ky, kz = (dot / size for dot, size in zip(slope(rates, t + lag_s, 1e-3), (160, 160, 80)))
-            u1, u2, u3, u4 = c - kx + ky + kz, c + kx - ky + kz, c + kx + ky - kz, c - kx - ky - kz
-            battery = 12 - 0.01 * t
+            (p, q, r), (vn, ve, vd), (x, y, z) = rates(t), velocity(t), position(t)
+            (fx, fy, fz), (u1, u2, u3, u4), battery = specific_force(t), commands_at(t), 12 - 0.01 * t
             row = [t, *angles(t), p, q, r, fx, fy, fz, vn, ve, vd, x, y, z, u1, u2, u3, u4, battery]
             ned.write(",".join(map(repr, row)) + ",A1_wave_rep1\n")
-            row = [*quaternion_enu_flu(t), degrees(p), -degrees(q), -degrees(r), fx / g, -fy / g, -fz / g, ve * 1000,
-                   vn * 1000, -vd * 1000, y, x, -z, *(1000 + 1000 * u for u in (u4, u1, u2, u3)), battery * 1000]
+            row = [*quaternion_enu_flu(t), degrees(p), -degrees(q), -degrees(r), *(f / GRAVITY for f in (fx, -fy, -fz)),
+                   ve * 1000, vn * 1000, -vd * 1000, y, x, -z, *(1000 + 1000 * u for u in (u4, u1, u2, u3)), battery * 1000]
             enu.write(f"{i * 10000}," + ",".join(map(repr, row)) + ",A1_wave_rep1\n")
     done = pinnquad("import ned.csv --out ned --mapping", HERE / "ned.toml", cwd=folder)
     (folder / "ned.txt").write_text(done.out)
@@ -92,45 +47,6 @@ def logs(pinnquad, tmp_path_factory):
 def copies(logs, work):
     for name in "ned.csv", "enu.csv":
         shutil.copy(logs / name, work)
-
-
-def imported(pinnquad, log, *words, out=None):
-    """What it says; the dataset is a folder named as the log, or as said."""
-    out = out or Path(log).stem
-    return pinnquad("import", log, "--out", out, *words).out
-
-
-def facts(folder):
-    return json.loads(Path(folder, "dataset.json").read_text())
-
-
-def numbers(path, *names, clock="t", ticks=1):
-    """Rows of time and those columns; what is no number is NaN."""
-    with open(path) as file:
-        header = re.split(r",", file.readline().strip())
-        places = [header.index(name) for name in (clock, *names)]
-        rows = [[float(cells[at] or "nan") for at in places] for cells in (line.strip().split(",") for line in file)]
-    return [[row[0] / ticks, *row[1:]] for row in rows]
-
-
-def errors(truth, flight, late_s=0.0):
-    """Rows compared, and the root mean squares of the difference in each column: of a flight and what a reference says
-    `late_s` before its times, by lines between the reference's rows."""
-    at, count, sums = 0, 0, [0.0] * (len(flight[0]) - 1)
-    for time, *values in flight:
-        now = time - late_s
-        while at < len(truth) - 2 and truth[at + 1][0] <= now:
-            at += 1
-        begin, end = truth[at][0], truth[at + 1][0]
-        if now < begin - 1e-6 or now > end + 1e-6 or end - begin > 0.1:
-            continue
-        share = (now - begin) / (end - begin)
-        for k, value in enumerate(values):
-            a, b = truth[at][k + 1], truth[at + 1][k + 1]
-            sums[k] += (value - (a + share * (b - a))) ** 2
-        count += 1
-    assert count
-    return count, [sqrt(total / count) for total in sums]
 
 
 def largest_difference(one, other):
@@ -168,8 +84,7 @@ def test_against_closed_form(pinnquad):
              for n in range(1, len(flown) - 1)]
     count, found = errors(truth, numbers(f"given/{FLIGHT}", "wdot_x", "wdot_y", "wdot_z"))
     assert 1900 <= count <= 2000 and max(found) <= 0.02
-    commands = "u1", "u2", "u3", "u4"
-    assert max(errors(numbers("ned.csv", *commands), numbers(f"given/{FLIGHT}", *commands), 0.04)[1]) <= 1e-5
+    like_closed_form(f"given/{FLIGHT}", 1e-5, 1900)
 
 
 def test_between_two_rows(pinnquad):
@@ -303,7 +218,7 @@ def test_tables(pinnquad, work, at, keyword, change):
     ("ned.csv ned.csv NED", "", "the same flight"), ("ned.csv ./ned.csv NED", "", "the same flight"),
     ("ned.csv copy.csv NED", "", "A1_wave_rep1 (2) hold the same flight"), ("ned.csv NED --lag soon", "", "--lag"),
     ("ned.csv NED --rate 0", "", "--rate"), ("cut.ulg --mapping px4", "cut.ulg", ""),
-    ("empty_folder --mapping px4", "empty_folder", "ulog2csv")])
+    ("empty_folder --mapping px4", "empty_folder", "ulog2csv"), ("empty_folder", "empty_folder", "found a folder without logs")])
 def test_refused(pinnquad, work, words, at, keyword):
     shutil.copy("ned.csv", "copy.csv")
     edited("enu.csv", "quaternion.csv", cell(77, 5, "0.9"))
@@ -314,113 +229,18 @@ def test_refused(pinnquad, work, words, at, keyword):
     left_nothing(work)
 
 
-def commands_at(t, lag_s=0.04):
-    """Commands as the fixture has them: the motors are that far ahead."""
-    c = -specific_force(t + lag_s)[2] / 20
-    kx, ky, kz = (dot / size for dot, size in zip(slope(rates, t + lag_s, 1e-3), (160, 160, 80)))
-    return c - kx + ky + kz, c + kx - ky + kz, c + kx + ky - kz, c - kx - ky - kz
-
-
-def like_closed_form(flight, rounding, least_rows):
-    """A flight of the dataset has the closed form's attitude, rates and commands, but for what its log has rounded.
-    Heading counts from anywhere."""
-    rows = numbers(flight, "roll", "pitch", "w_x", "w_y", "w_z")
-    truth = [[n / 100, *angles(n / 100)[:2], *rates(n / 100)] for n in range(2000)]
-    count, found = errors(truth, rows)
-    assert count >= least_rows and max(found) < rounding, found
-    u = numbers(flight, "u1", "u2", "u3", "u4")
-    found = errors([[n / 100, *commands_at(n / 100)] for n in range(2000)], u, 0.04)[1]
-    assert max(found) < rounding, found
-    yaw = [row[1] for row in numbers(flight, "yaw")]
-    for (time, *_), now in zip(rows, yaw):
-        turned, expected = now - yaw[0], angles(time)[2] - angles(rows[0][0])[2]
-        assert abs(sin(turned - expected)) < 2 * rounding, time
-
-
-def test_blackbox(pinnquad):
-    """Betaflight's blackbox as blackbox_decode writes it."""
-    with open("LOG00001.01.csv", "w") as log:
-        log.write("loopIteration, time (us), rcCommand[0], vbatLatest (V), gyroADC[0] (deg/s), gyroADC[1] (deg/s), "
-                  "gyroADC[2] (deg/s), accSmooth[0] (m/s/s), accSmooth[1] (m/s/s), accSmooth[2] (m/s/s), debug[0], "
-                  "motor[0], motor[1], motor[2], motor[3], roll, pitch, heading, flightModeFlags (flags)\n")
-        for n in range(2000):
-            t = n / 100
-            (p, q, r), (fx, fy, fz), (roll, pitch, yaw) = rates(t), specific_force(t), angles(t)
-            u1, u2, u3, u4 = commands_at(t)
-            motors = ", ".join(f"{round(48 + 1999 * u):3d}" for u in (u4, u1, u2, u3))
-            log.write(f"{8 * n}, {10000 * n}, {-3:3d}, {16.8 - 0.01 * t:.1f}, "
-                      f"{degrees(p):.2f}, {-degrees(q):.2f}, {-degrees(r):.2f}, {fx:.2f}, {-fy:.2f}, {-fz:.2f}, {0:3d}, "
-                      f"{motors}, {degrees(roll):.2f}, {-degrees(pitch):.2f}, {degrees(yaw) % 360:.2f}, "
-                      "ANGLE_MODE|ARM\n")
-    said = imported(pinnquad, "LOG00001.01.csv", "--mapping", "betaflight", "--airframe", "paper_quadrotor", "--lag",
-                    "0.04", out="flown")
-    dataset = facts("flown")
-    assert "velocity" in dataset["absent"] and not [w for w in dataset["warnings"] if "axis" in w or "attitude" in w], said
-    flight = Path("flown", dataset["flights"][0]["file"])
-    assert "battery_voltage [V]" in flight.read_text().split("\n")[0]
-    like_closed_form(flight, 2e-3, least_rows=1900)
-
-
-def write_usd_log(path, leave_out="nothing"):
-    """A Crazyflie's log of the variables that docs/how_to_log.md names."""
-    document = (SOURCE / "docs/how_to_log.md").read_text()
-    names = re.search(r"on:fixedFrequency\n.*\n.*\n((?:\w+\.\w+\n)+)", document).group(1).split()
-    names = [name for name in names if not name.startswith(leave_out)]
-    kinds = {name: "I" if name.startswith("motor.") else "f" for name in names}
-    head = b"\xbc" + struct.pack("<HHH", 2, 1, 0) + b"fixedFrequency\0" + struct.pack("<H", len(names))
-    head += b"".join(f"{name}({kinds[name]})".encode() + b"\0" for name in names)
-    rows = b""
-    for n in range(2000):
-        t, g = n / 100, 9.80665
-        (p, q, r), (fx, fy, fz) = rates(t), specific_force(t)
-        u1, u2, u3, u4 = commands_at(t)
-        values = dict(zip((f"stateEstimate.q{axis}" for axis in "xyzw"), quaternion_enu_flu(t)))
-        values.update(zip(("gyro.x", "gyro.y", "gyro.z"), (degrees(p), -degrees(q), -degrees(r))))
-        values.update(zip(("acc.x", "acc.y", "acc.z"), (fx / g, -fy / g, -fz / g)))
-        values.update(zip(("stateEstimate.vx", "stateEstimate.vy", "stateEstimate.vz"),
-                          (1.5 * cos(0.6 * t), 2 * sin(0.9 * t), -0.5 * sin(0.8 * t) + 1.5 / 4.1 * cos(4.1 * t))))
-        values.update(zip(("stateEstimate.x", "stateEstimate.y", "stateEstimate.z"),
-                          (2.5 * sin(0.6 * t), -2 / 0.9 * cos(0.9 * t), 20 + 0.5 / 0.8 * cos(0.8 * t))))
-        values.update(zip((f"motor.m{i}" for i in (1, 2, 3, 4)), (round(65535 * u) for u in (u1, u4, u2, u3))))
-        values["pm.vbat"] = 4.1 - 0.01 * t
-        rows += struct.pack("<HQ" + "".join(kinds.values()), 0, 10000 * n, *(values[name] for name in names))
-    Path(path).write_bytes(head + rows + struct.pack("<I", zlib.crc32(head + rows)))
-
-
-def test_usd_log(pinnquad):
-    write_usd_log("log00")
-    said = imported(pinnquad, "log00", "--mapping", "crazyflie", "--lag", "0.04", out="flown")
-    dataset = facts("flown")
-    assert dataset["absent"] == [] and not [w for w in dataset["warnings"] if "attitude" in w], said
-    flight = Path("flown", dataset["flights"][0]["file"])
-    assert "battery_voltage [V]" in flight.read_text().split("\n")[0]
-    like_closed_form(flight, 1e-4, least_rows=1500)  # the lowest are taken for ground
-
-
-def test_usd_log_without_an_attitude(pinnquad):
-    """Roll and pitch are made of gyroscope and accelerometer."""
-    write_usd_log("log00", leave_out="stateEstimate")
-    imported(pinnquad, "log00", "--lag", "0.04", out="flown")
-    flight = facts("flown")["flights"][0]
-    assert "velocity" in facts("flown")["absent"] and flight["rows"] > 1500
-    for t, roll, pitch in numbers(Path("flown", flight["file"]), "roll", "pitch"):
-        assert abs(roll - angles(t)[0]) < 0.2 and abs(pitch - angles(t)[1]) < 0.2
-
-
 def lost_on_the_ground(dataset):
     return [step["rows_before"] - step["rows_after"] for step in dataset["steps"] if step["step"] == "on the ground"]
 
 
-def test_nanobench(pinnquad, recorded):
+def test_nanobench(nanobench, recorded):
     """Its authors took a lag of 30 ms, and flew."""
-    log = recorded("flight_logs/nanobench_subset_50hz.csv")
-    imported(pinnquad, log, "--mapping", "nanobench", out="nanobench")
-    dataset = facts("nanobench")
+    dataset = facts(nanobench)
     assert any(flight["trajectory"] == "lissajous" for flight in dataset["flights"])
     assert 0.02 <= dataset["lag_removed_s"] <= 0.04 and dataset["sample_period_s"] == 0.02
     assert lost_on_the_ground(dataset) == [0]
-    assert len(list(Path("nanobench").glob("*.csv"))) == 11
-    everything = table(log)
+    assert len(list(nanobench.glob("*.csv"))) == 11
+    everything = table(recorded("flight_logs/nanobench_subset_50hz.csv"))
     for name in "B10_lissajous_fast_rep1", "B5_helix_fast_rep1", "B9_trefoil_medium_rep1":
         rows = [{key: float(value or "nan") for key, value in row.items() if key not in ("flight",)
                  and is_number(value)}
@@ -428,7 +248,7 @@ def test_nanobench(pinnquad, recorded):
 
         def compare(ours, theirs):
             truth = [[row["t"], *(row[key] for key in theirs.split())] for row in rows]
-            return errors(truth, numbers(f"nanobench/{name}.csv", *ours.split()))
+            return errors(truth, numbers(nanobench / f"{name}.csv", *ours.split()))
 
         count, found = compare("v_bx v_by v_bz w_x w_y w_z wdot_x wdot_y wdot_z roll pitch",
                                "vbx vby vbz wx wy wz dwx dwy dwz roll pitch")
@@ -459,8 +279,8 @@ def test_arpl(pinnquad, recorded):
     for name in "velocity", "altitude":
         assert re.search(f"^absent: {name}", said, re.M), said
     assert 0.029 <= facts("arpl")["lag_removed_s"] <= 0.041 and lost_on_the_ground(facts("arpl")) == [0]
-    for _, *velocity in numbers("arpl/arpl_cf_log10_5s.csv", "v_bx", "v_by", "v_bz"):
-        assert not any(velocity), "a velocity was made up"
+    for _, *moved in numbers("arpl/arpl_cf_log10_5s.csv", "v_bx", "v_by", "v_bz"):
+        assert not any(moved), "a velocity was made up"
 
 
 def test_px4_simulated(pinnquad, recorded):
@@ -510,33 +330,9 @@ def test_px4_recorded(pinnquad, recorded):
 
 def test_progress_on_a_terminal(pinnquad, recorded):
     """Each part has shares of its own, which never fall; those of one flight move while it is compared."""
-    needed("script")
-    if os.system("script -qec true /dev/null >/dev/null 2>&1 </dev/null"):
-        pytest.skip("no pseudo-terminal here")
-    words = f"'{pinnquad}' import '{recorded('sih/test_circle.ulg')}' --out dataset"
-    os.system(f'script -qec "{words}" terminal.txt >/dev/null </dev/null')
+    _, seen = on_terminal([pinnquad, "import", recorded("sih/test_circle.ulg"), "--out", "dataset"], "stderr")
     shares = {}
-    for job, share in re.findall(r"([a-z][a-z0-9_ ]*): +([0-9]+) %", Path("terminal.txt").read_text()):
+    for job, share in re.findall(r"([a-z][a-z0-9_ ]*): +([0-9]+) %", seen):
         shares.setdefault(job, []).append(int(share))
     assert all(of == sorted(of) for of in shares.values()), shares
     assert "reading test_circle" in shares and any(0 < share < 100 for share in shares["comparing the flights"]), shares
-
-
-def test_a_part_of_a_log_whose_mapping_its_content_names(pinnquad, recorded):
-    log = recorded("sih/test_circle.ulg")
-    rows = {}
-    for words in "", "--from 40 --to 70":
-        pinnquad(f"import {log} {words} --out dataset")
-        rows[words] = sum(flight["rows"] for flight in json.loads(Path("dataset/dataset.json").read_text())["flights"])
-    assert 0 < rows["--from 40 --to 70"] < rows[""], rows
-
-
-def test_folder_without_logs(pinnquad):
-    Path("empty").mkdir()
-    pinnquad.refused("import empty --out dataset", at="empty", keyword="found a folder without logs")
-
-
-def test_unknown_key_of_a_mapping(pinnquad):
-    Path("own.toml").write_text('[moters]\ncolumns = ["u1"]\n')
-    Path("log.csv").write_text("t,u1\n0,0\n")
-    pinnquad.refused("import log.csv --mapping own.toml --out dataset", at="own.toml:1:2", keyword="nearest: motors")

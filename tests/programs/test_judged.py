@@ -31,14 +31,13 @@ def good(flown):
     ("2:11", "degrees per second", column(11, 12, 13, to=lambda rate: rate * DEGREES)),
     # a command that stands still
     ("2:19", "1800 training rows", column(19, to=0.5)),
-    ("2402:20", "600 test rows", lambda line, cells: [*cells[:19], 0.25, *cells[20:]] if line > 2401 else None),
-    ("3:1", "milliseconds", column(1, to=lambda t: 1000 * t))])
-@pytest.mark.parametrize("folder", ["there", "made"])
-def test_refused(pinnquad, good, place, keyword, change, folder):
+    ("2402:20", "600 test rows", lambda line, cells: [*cells[:19], 0.25, *cells[20:]] if line > 2401 else None)])
+def test_refused(pinnquad, good, place, keyword, change):
     """Before training: it leaves no trace in a folder that is there, and makes none."""
     Path("there").mkdir()
     edited(good, "bad.csv", change)
-    pinnquad.refused(f"train bad.csv --out {folder} {TRAIN}", at=f"bad.csv:{place}", keyword=keyword)
+    for folder in ("there", "made") if keyword == "u1" else ("made",):
+        pinnquad.refused(f"train bad.csv --out {folder} {TRAIN}", at=f"bad.csv:{place}", keyword=keyword)
     assert not os.listdir("there") and not Path("made").exists()
 
 

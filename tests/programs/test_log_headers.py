@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A header of any log compiles and flies, whatever window and columns its model asks for: in the cores of both flight stacks. What the cores recorded replays to the bit."""
 import json
-import lzma
 import math
 import re
-import shutil
 from pathlib import Path
 
 import pytest
@@ -104,24 +102,18 @@ def test_window_and_battery(two_models, fly_cores, pinnquad, dataset, flown):
 
 LOGS = {
     "sih": ("train_figure8", 0.99),
-    "nanobench": ("B7_oval_fast_rep1", 0.1),  # of an airframe that is assumed, the loop leaves its path
-    "arpl": ("arpl_cf_log15_12s", 0.99),
+    "nanobench_subset_50hz": ("B7_oval_fast_rep1", 0.1),  # of an airframe that is assumed, the loop leaves its path
+    "arpl_crazyflie": ("arpl_cf_log15_12s", 0.99),
 }
 
 
 @pytest.mark.parametrize("logs", LOGS)
-def test_real_logs(logs, two_models, fly_cores, recorded):
+def test_real_logs(logs, two_models, fly_cores, recorded, unpacked):
     held_out, share = LOGS[logs]
     if logs == "sih":
-        Path("logs").mkdir()
-        for name in "train_random", "train_figure8", "train_excite":
-            packed = recorded(f"sih/{name}.ulg.xz")
-            with lzma.open(packed) as log, open(f"logs/{name}.ulg", "wb") as out:
-                shutil.copyfileobj(log, out)
-        source = "logs --mapping px4"
+        source = f"{unpacked('train_random', 'train_figure8', 'train_excite')} --mapping px4"
     else:
-        table = recorded("flight_logs/nanobench_subset_50hz.csv" if logs == "nanobench" else "flight_logs/arpl_crazyflie.csv")
-        source = f"{table} --mapping {logs}"
+        source = f"{recorded(f'flight_logs/{logs}.csv')} --mapping {logs.split('_')[0]}"
     two_models("structured_causal", source, held_out, held_out)
     assert "PartlyWindowed<" in Path("one/model.hpp").read_text()
     for (_, phase), ticks in fly_cores().items():

@@ -96,10 +96,8 @@ def test_refused(pinnquad, own_here, words, keyword):
     pinnquad.refused(f"loop {words}", keyword=keyword)
 
 
-def test_a_window_that_looks_ahead(pinnquad, recorded, made):
-    log = recorded("flight_logs/nanobench_subset_50hz.csv")
-    nano = made(f"import {log} --mapping nanobench --out nano") / "nano"
-    pinnquad(f"train {nano} --airframe crazyflie_2_1 --hold-out B9_trefoil_fast_rep1 --seeds 1 --out c "
+def test_a_window_that_looks_ahead(pinnquad, nanobench):
+    pinnquad(f"train {nanobench} --airframe crazyflie_2_1 --hold-out B9_trefoil_fast_rep1 --seeds 1 --out c "
              "--models constant,ridge_centred --export ridge_centred --allow-poor")
     pinnquad.refused("loop c/model.hpp", at="c/model.block", keyword="ahead")
 

@@ -1,34 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""An airframe that no library knows: from its file to a flight, a training, and a header that flies without file or
-trainer."""
+"""An airframe that no library knows: unequal arms, the centre of gravity off the middle."""
 import json
 import re
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, Program, replaced, report_of
-
-TRAIN = "train flight.csv --seeds 1 --epochs 2 --threads 1 --allow-poor"
-
-
-def test_own_airframe(pinnquad, compiler, flags):
-    replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "mine.toml",
-             ("^name = .*", r'name = "my \\"own\\" quad"'), ("^mass_kg = .*", "mass_kg = 1.31"))
-    pinnquad("fly --airframe mine.toml --seed 3 --samples 2500 --out flight.csv")
-    pinnquad(f"{TRAIN} --airframe mine.toml --out a")
-    header = Path("a/model.hpp").read_text()
-    assert "using Vehicle = TrainedQuadModelAirframe;" in header
-    assert 'static constexpr const char* name = "my \\"own\\" quad";' in header
-    assert '"airframe": "my \\"own\\" quad"' in Path("a/report.json").read_text()
-
-    compiler(*flags, "-O1", "-DPINNQUAD_INLINE_AS_COMPILER_LIKES", "-Ia",
-             SOURCE / "tests/programs/own_airframe/replay.cpp", "-o", "replay")
-    Program("./replay")("a/replay.txt a/model.block")
-    # the weights of the same training for the library's airframe are those of another vehicle
-    pinnquad(f"{TRAIN} --airframe paper_quadrotor --out b")
-    assert "block: block_incompatible" in Program("./replay")("a/replay.txt b/model.block", code=1).out
-
-
+from conftest import report_of
 
 ASYMMETRIC = """name = "asym"
 mass_kg = 1.2
@@ -51,7 +28,7 @@ spin = "{spin}"
 
 @pytest.fixture
 def asymmetric():
-    """A vehicle of unequal arms, its centre of gravity off the middle; Conyers' ground effect has no fit for it."""
+    """Conyers' ground effect has no fit for it."""
     Path("asym.toml").write_text(ASYMMETRIC)
     return "--airframe asym.toml"
 

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE, Program, edited, report_of, same_bytes
+from conftest import SOURCE, Program, edited, replaced, report_of, same_bytes
 from exported import AXES
 
 PAPER = "--models formula,paper_vanilla,paper_physics_informed"
@@ -44,22 +44,18 @@ def test_defaults_and_order(trained):
     assert [row.split(",")[0] for row in figures(one)] == ["model", "formula", "paper_vanilla", "structured"]
 
 
-def test_reports(pinnquad, trained, flight):
+def test_reports(pinnquad, trained):
+    """test_certify.py has the default's proof, test_evaluate.py the judgement of what is exported."""
     default, best = report_of(trained()), report_of(trained(PAPER.replace("paper", "best")))
     paper = report_of(trained(PAPER))
     folder = trained("--models formula,small_pearson,small_constant_weight")
     small = report_of(folder)
-    assert default["verdict"]["model"] == "structured"
-    assert sorted(default["models"]) == ["formula", "paper_physics_informed", "paper_vanilla", "structured"]
-    # the default's signs are proven, whatever it was trained for
     certificate = default["certificate"]
     assert certificate["proven"] is True and paper["certificate"] is None
     said = pinnquad("certify", trained() / "model.hpp").out
-    assert "\nproven " in said
     for axis in AXES:
         slope, own = certificate["slope"][axis], certificate["airframe_slope"][axis]
         assert f"{axis:5} {slope:.6f} s^2/rad, {slope / own:.2f} of the airframe's own" in said, axis
-        assert default["models"]["structured"]["wrong_derivative_share"][axis]["mean"] == 0, axis
     assert default["settings"]["structured"]["slopes"] == "learned"
     structured, warned = default["models"]["structured"], (trained() / "stderr.txt").read_text()
     motors = [motor["r2"]["mean"] for motor in structured["per_motor"].values()]
@@ -85,16 +81,7 @@ def test_reports(pinnquad, trained, flight):
     # the loss named first in the list of losses is the one that is exported where physics_informed was not asked for
     assert small["verdict"]["model"] == small["exported_model"] == "small_constant_weight"
     assert "constant weight" in (folder / "model.hpp").read_text()
-    header, block = (pinnquad("evaluate", folder / name, flight, "--rows", "test", "--json",
-                              code=(0, 1)).out
-                     for name in ("model.hpp", "model.block"))
-    judged, of_block = json.loads(header), json.loads(block)
-    assert {**judged, "model": ""} == {**of_block, "model": ""}, "header and block are judged otherwise"
-    assert "Dense<32>" in judged["answer"] and judged["answer"].count("Dense<") == 3
-    model = small["models"]["small_constant_weight"]
-    assert abs(model["rmse"]["mean"] - judged["rmse"]) <= 1e-6
-    for axis in AXES:
-        assert abs(model["wrong_derivative_share"][axis]["mean"] - judged["wrong_derivative_share"][axis]) <= 1e-6, axis
+    assert json.loads(pinnquad("block --json", folder / "model.block").out)["network"].count("Dense<") == 3
 
 
 def test_slopes_under_noise(pinnquad, flown):
@@ -129,7 +116,7 @@ def test_slopes_under_noise(pinnquad, flown):
     assert errors["smoothed rows"] < 1.1 * errors["least squares"] < 0.02, "on a flight without noise"
 
 
-@pytest.mark.parametrize("noise, seed, most", ((0.02, 21, 0.010), (0.05, 21, 0.012), (0.05, 23, 0.012), (0.05, 25, 0.012)))
+@pytest.mark.parametrize("noise, seed, most", ((0.02, 21, 0.010), (0.05, 25, 0.012)))
 def test_slopes_of_any_seed(pinnquad, flown, noise, seed, most):
     """Flights whose noise has a large mean, or hides yaw most, teach as well as others do: slopes, their intervals, and
     the error on a flight without noise."""
@@ -168,8 +155,6 @@ def test_latency(pinnquad, flown):
         error[str(flight), options] = report["models"]["structured"]["rmse"]["mean"]
     assert error[str(late), ""] < 0.5 * error[str(late), "--lag 0"]
     assert error[str(late), ""] < 1.8 * error[str(prompt), ""]
-    for options, keyword in (("--lag soon ahead.csv", "--lag"),):
-        pinnquad.refused(f"{words} {options} --out aligned", keyword=keyword)
 
 
 def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
@@ -213,10 +198,14 @@ def test_altitude_and_slopes(pinnquad, trained, flight, compiler):
 
 
 def test_limits_of_trust(pinnquad, flight, flown, compiler, flags):
-    """In a header beside the model, of 80 s of validation rows and more; nothing that stays."""
+    """In a header beside the model, of 80 s of validation rows and more; nothing that stays. The header brings an airframe
+    that a file gave."""
     assert re.search(" no trust.hpp: .* 80 s", pinnquad(f"train {flight} {TRAIN} --out short --models structured").flat)
     long = flown("--seed 3 --samples 9000")
-    said = pinnquad(f"train {long} {TRAIN} --out trusted --models structured").out
+    replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "mine.toml", ("^name = .*", r'name = "my \\"own\\" quad"'))
+    said = pinnquad(f"train {long} {TRAIN} --out trusted --models structured --airframe mine.toml").out
+    header = Path("trusted/model.hpp").read_text()
+    assert "using Vehicle = TrainedQuadModelAirframe;" in header and 'name = "my \\"own\\" quad";' in header
     assert " trusted/trust.hpp: struct TrainedQuadModelTrust" in said
     compiler(*flags, "-O1", "-Wall", "-Wextra", "-Werror", "-I", "trusted", SOURCE / "tests/programs/trust/guarded.cpp",
              "-o", "guarded")

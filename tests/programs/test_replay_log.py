@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from conftest import SOURCE, cell, edited, listing, replaced, table
 from exported import Header
+from made_logs import ulog
 
 DEMO = SOURCE / "examples/models/demo_quadrotor.hpp"
 TRUST = SOURCE / "tests/flight_stacks/structured_trust.hpp"
@@ -352,7 +353,7 @@ def test_learnt(pinnquad, core, same, differs, stack):
         drop(folder / RECORD, part / RECORD, first, last)
         left = len(table(part / RECORD))
         said = same(part, *words)
-        assert re.search(f"all ([0-9]+) ticks compared", said) and int(
+        assert re.search("all ([0-9]+) ticks compared", said) and int(
             re.search("([0-9]+) ticks not compared", said)[1]) > 0.3 * left, said
         pinnquad.refused("replay", part, *words, "--learnt", "none", keyword="flight that is not in this log")
     plant(folder / RECORD, part / RECORD, late, "learnt", "1")
@@ -376,37 +377,18 @@ def test_earlier_core(pinnquad, eight):
     pinnquad.refused("replay", "earlier.csv", *models(eight), at="earlier.csv:1", keyword="a core before flew")
 
 
-def write_ulog(folder, target):
-    """A core's log as PX4's logger writes it: the two messages, in the binary format that PX4 publishes."""
-    letters = {"uint64": "Q", "uint32": "I", "float32": "f", "int8": "b", "uint8": "B"}
-    types = {"uint64": "uint64_t", "uint32": "uint32_t", "float32": "float", "int8": "int8_t", "uint8": "uint8_t"}
-
-    def message(kind, body):
-        return struct.pack("<HB", len(body), ord(kind)) + body
-
-    log, data = b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0) + message("B", bytes(40)), []
-    for number, name in enumerate(("Record", "Settings")):
-        topic, fields, code, columns = f"pinnquad_{name.lower()}", [], "<", []
-        for line in (SOURCE / f"examples/px4_module/msg/Pinnquad{name}.msg").read_text().splitlines():
-            words = line.split("#")[0].split()
-            if len(words) != 2:
-                continue
-            kind, _, count = words[0].partition("[")
-            count = int(count.rstrip("]") or 0)
-            fields.append(types[kind] + (f"[{count}]" if count else "") + " " + words[1])
-            code += letters[kind] * max(count, 1)
-            columns += [f"{words[1]}[{i}]" for i in range(count)] or [words[1]]
-        log += message("F", f"{topic}:{';'.join(fields)};".encode())
-        data.append(message("A", struct.pack("<BH", 0, number) + topic.encode()))
-        for row in table(folder / f"flight_{topic}_0.csv"):
-            values = [float(row[c]) if letter == "f" else int(row[c]) for c, letter in zip(columns, code[1:])]
-            data.append(message("D", struct.pack("<H", number) + struct.pack(code, *values)))
-    Path(target).write_bytes(log + b"".join(data))
+def core_topic(folder, name):
+    """One of the two messages of a core's log, for ulog()."""
+    topic, message = f"pinnquad_{name.lower()}", SOURCE / f"examples/px4_module/msg/Pinnquad{name}.msg"
+    types = {"float32": "float", **{kind: f"{kind}_t" for kind in ("uint64", "uint32", "int8", "uint8")}}
+    fields = [f"{types[kind]}{count} {field}" for kind, count, field in
+              re.findall(r"^(\w+)((?:\[\d+\])?) +(\w+) *(?:#.*)?$", message.read_text(), re.M)]
+    return topic, fields, [list(row.values()) for row in table(folder / f"flight_{topic}_0.csv")]
 
 
 def test_one_log_in_other_forms(pinnquad, eight, same):
     same(eight / RECORD, *models(eight))
-    write_ulog(eight, "flight.ulg")
+    ulog("flight.ulg", [core_topic(eight, name) for name in ("Record", "Settings")])
     same("flight.ulg", *models(eight))
     # what is whole of it is run
     whole = Path("flight.ulg").read_bytes()

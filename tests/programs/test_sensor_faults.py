@@ -2,7 +2,6 @@
 """Faults of sensors and vehicles that every single row hides, planted into recorded flights: import tells each, in the
 flight that has it and in no other. docs/import.md has the smallest that are found."""
 import json
-import lzma
 import re
 import shutil
 from math import cos, radians, sin
@@ -72,7 +71,7 @@ def told(done):
 
 
 @pytest.fixture(scope="module")
-def flights(pinnquad, recorded, tmp_path_factory):
+def flights(pinnquad, recorded, unpacked, tmp_path_factory):
     """flights(log): the rows of its flights by name; importing them says nothing of the kind."""
     folder = tmp_path_factory.mktemp("recorded")
     known = {}
@@ -81,15 +80,10 @@ def flights(pinnquad, recorded, tmp_path_factory):
         if log in known:
             return known[log]
         if log == "px4":
-            source = folder / "sih"
-            source.mkdir()
-            shutil.copy(recorded("sih/test_circle.ulg"), source)
-            for name in "train_random", "train_figure8", "payload":
-                with lzma.open(recorded(f"sih/{name}.ulg.xz")) as packed, open(source / f"{name}.ulg", "wb") as file:
-                    shutil.copyfileobj(packed, file)
+            source = [recorded("sih/test_circle.ulg"), unpacked("train_random", "train_figure8", "payload")]
         else:
-            source = recorded("flight_logs/nanobench_subset_50hz.csv")
-        done = pinnquad("import --json --lag 0 --rate 50", source, "--mapping", log, "--out", folder / log)
+            source = [recorded("flight_logs/nanobench_subset_50hz.csv")]
+        done = pinnquad("import --json --lag 0 --rate 50", *source, "--mapping", log, "--out", folder / log)
         assert not [line for line in told(done) for _, pattern in FAULTS.values() if re.search(pattern, line)], done
         known[log] = {}
         for flight in sorted(folder.glob(f"{log}/*.csv")):

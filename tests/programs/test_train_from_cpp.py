@@ -8,26 +8,8 @@ import shutil
 from pathlib import Path
 
 from conftest import SOURCE, Program, edited, no_partial_files, report_of, same_bytes
+from made_logs import FLIGHT_MAPPING
 
-MAPPING = """
-[time]
-column = "t"
-unit = "s"
-[attitude]
-euler = ["roll", "pitch", "yaw"]
-[body_rates]
-columns = ["w_x", "w_y", "w_z"]
-unit = "rad/s"
-[velocity]
-columns = ["v_bx", "v_by", "v_bz"]
-axes = "body"
-[altitude]
-columns = "altitude"
-[motors]
-columns = ["u1", "u2", "u3", "u4"]
-numbers = "thrust"
-order = "px4"
-"""
 EXTRA = """
 [[extra]]
 name = "pack_temperature"
@@ -84,8 +66,8 @@ def test_column_of_ones_own(pinnquad, program, flown, compiler):
     assert Path(flown("--seed 1 --samples 2500")).read_text().splitlines()[0].endswith("u1,u2,u3,u4")
     for seed in 1, 2, 3, 4:
         warm(flown(f"--seed {seed} --samples 2500"), f"logs/flight{seed}.csv", seed)
-    Path("mine.toml").write_text(MAPPING + EXTRA)
-    Path("none.toml").write_text(MAPPING)
+    Path("mine.toml").write_text(FLIGHT_MAPPING + EXTRA)
+    Path("none.toml").write_text(FLIGHT_MAPPING)
     pinnquad("import logs --mapping mine.toml --airframe paper_quadrotor --lag 0 --out dataset")
     said = train("out dataset").out
     r2 = float(re.search(r"held out: R\^2 ([0-9.]+)", said).group(1))

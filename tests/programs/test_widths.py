@@ -1,51 +1,20 @@
 # SPDX-License-Identifier: MIT
 """No line that a command prints is wider than 100 columns, on a terminal nor in a file; the verdict comes first."""
-import os
-import pty
 import re
-import subprocess
-import termios
 from pathlib import Path
 
 import pytest
-from conftest import SOURCE
+from conftest import SOURCE, on_terminal
+from made_logs import FLIGHT_MAPPING
 
 MODELS = SOURCE / "examples/models"
 WIDEST = 100
-MAPPING = """world = "ned"
-body = "frd"
-time = { column = "t", unit = "s" }
-attitude = { euler = ["roll", "pitch", "yaw"] }
-body_rates = { columns = ["w_x", "w_y", "w_z"], unit = "rad/s" }
-velocity = { columns = ["v_bx", "v_by", "v_bz"], axes = "body" }
-altitude = { columns = "altitude" }
-motors = { columns = ["u1", "u2", "u3", "u4"], numbers = "thrust", order = "px4" }
-"""
 
 
 @pytest.fixture(scope="module")
 def trained(made, flown):
     flight = flown("--seed 3 --samples 3000")
     return made(f"train {flight} --models structured,ridge --seeds 1 --out ."), flight
-
-
-def on_terminal(command, stream="stdout"):
-    """Exit code, and what it prints there."""
-    master, terminal = pty.openpty()
-    attributes = termios.tcgetattr(terminal)
-    attributes[1] &= ~termios.OPOST  # line feeds as they are
-    termios.tcsetattr(terminal, termios.TCSANOW, attributes)
-    process = subprocess.Popen(command, stdin=subprocess.DEVNULL,
-                               **{"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, stream: terminal})
-    os.close(terminal)
-    out = b""
-    try:
-        while part := os.read(master, 65536):
-            out += part
-    except OSError:  # the other end is closed
-        pass
-    os.close(master)
-    return process.wait(), out.decode()
 
 
 @pytest.mark.parametrize("words", [
@@ -57,7 +26,7 @@ def on_terminal(command, stream="stdout"):
     "train {flight} --models structured,paper_vanilla --epochs 2 --seeds 1 --out trained --verbose", "train {flight} --models linear --seeds 1 --out a"])
 def test_width(pinnquad, trained, words):
     folder, flight = trained
-    Path("mine.toml").write_text(MAPPING)
+    Path("mine.toml").write_text(FLIGHT_MAPPING)
     words = words.format(flight=flight, model=folder / "model.block")
     code, out = on_terminal([str(pinnquad), *words.split()])
     assert code in (0, 1), out
@@ -82,12 +51,3 @@ def test_a_terminal_gets_warnings_wrapped(pinnquad):
     assert len(pinnquad.run(*command[1:]).lines) == 1
     said = on_terminal(command, "stderr")[1].splitlines()
     assert len(said) > 1 and all(len(line) <= WIDEST for line in said), said
-
-
-def test_one_vehicle_is_one(pinnquad):
-    assert pinnquad("loop --vehicles 1 --controllers start --out flown").out.startswith("1 vehicle of seed ")
-
-
-def test_conditions_are_named_once(pinnquad):
-    line = pinnquad("loop --conditions storm model.block", code=2).lines[0]
-    assert line.count("calm") == line.count("gusts") == 1, line

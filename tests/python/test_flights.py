@@ -20,7 +20,9 @@ def test_arrays_are_the_memory_of_the_flight(flight):
         assert not array.flags.owndata and not array.flags.writeable
     assert np.shares_memory(flight.rows, flight.commands)
     np.testing.assert_array_equal(flight.rows[:, 17:], flight.commands)
-    np.testing.assert_array_equal(flight.rows[:, 10:13], flight.body_rates_rad_s)
+    for at, quantity in ((1, flight.linear_acceleration_m_s2), (4, flight.angular_acceleration_rad_s2),
+                         (7, flight.velocity_m_s), (10, flight.body_rates_rad_s), (13, flight.euler_rad)):
+        np.testing.assert_array_equal(flight.rows[:, at:at + 3], quantity)
     for i, name in enumerate(Flight.column_names):
         np.testing.assert_array_equal(flight[name], flight.rows[:, i])
     with pytest.raises(ValueError):

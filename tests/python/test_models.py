@@ -30,14 +30,6 @@ def test_one_and_many_are_the_same_bits(structured, network):
         assert model.predict(x[:0]).shape == (0, 4)
 
 
-def test_an_affine_model_is_worked_out_by_hand(structured):
-    """du/dx is the same everywhere: the model of examples/models has no network."""
-    x = inside(structured, 2)
-    step = x[1] - x[0]
-    u = structured.predict(np.stack([x[0], x[0] + 0.25 * step, x[0] + step])).astype(float)
-    np.testing.assert_allclose(u[1] - u[0], 0.25 * (u[2] - u[0]), atol=1e-5)
-
-
 def test_features_of_a_flight_give_its_commands(structured, flight):
     x = structured.features(flight)
     assert x.shape == (len(flight), len(structured.feature_names))

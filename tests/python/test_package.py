@@ -3,7 +3,6 @@
 import ast
 import enum
 import inspect
-import pydoc
 from pathlib import Path
 
 import pytest
@@ -93,14 +92,3 @@ def test_signatures_are_those_of_the_stub():
                 else:
                     wanted = ast.literal_eval(default)
                     assert found == wanted or list(found) == list(wanted), f"{node.name}.{member.name}: {one.arg}"
-
-
-def test_help_shows_arguments():
-    assert pydoc.render_doc(pinnquad.Simulator.step, renderer=pydoc.plaintext).count("step(self, commands, seconds=0.002)") == 1
-    assert str(inspect.signature(pinnquad.Vehicles)).startswith("(count, airframe='paper_quadrotor', *, effects=None")
-
-
-def test_signatures_have_units():
-    assert "NED" in pinnquad.__doc__
-    for word in ("kg", "rev/s", "m/s"):
-        assert word in " ".join(vars(pinnquad.Airframe)[name].__doc__ or "" for name in public(pinnquad.Airframe))

@@ -146,19 +146,12 @@ def test_what_is_refused_on_the_way_stays_there():
     assert 0 < vehicles.time_s[4] < 0.01 and vehicles.time_s[5] == pytest.approx(0.5)
 
 
-def test_each_has_commands_and_a_place_of_its_own():
+def test_one_of_many_begins_anew():
     vehicles = Vehicles(1000)
-    vehicles.position_m[:, 0] = np.arange(1000)
-    commands = np.tile(vehicles.hover_commands(), (1000, 1))
-    commands[7] += [-0.01, 0.01, 0.01, -0.01]
-    assert (vehicles.step(commands, 0.1) == 0).all()
-    assert vehicles.body_rates_rad_s[7, 0] > 0.1
-    np.testing.assert_allclose(vehicles.body_rates_rad_s[:7], 0, atol=1e-12)
-    np.testing.assert_allclose(vehicles.position_m[:, 0], np.arange(1000), atol=1e-2)
-    np.testing.assert_allclose(vehicles.time_s, 0.1)
-    which = np.arange(1000) == 7
-    vehicles.reset(which, (1, 2, -3))
-    assert vehicles.time_s[7] == 0 and vehicles.position_m[7, 2] == -3 and vehicles.position_m[8, 2] < -30
+    vehicles.step(np.tile(vehicles.hover_commands(), (1000, 1)), 0.1)
+    vehicles.reset(np.arange(1000) == 7, (1, 2, -3))
+    assert vehicles.time_s[7] == 0 and vehicles.position_m[7, 2] == -3
+    assert vehicles.position_m[8, 2] < -30 and vehicles.time_s[8] == pytest.approx(0.1)
 
 
 def test_arrays_are_the_state():
@@ -371,13 +364,9 @@ def test_tasks_of_ones_own():
         HoverEnv(target_m=lambda time_s: np.zeros(3))
 
 
-def test_a_masked_choice_is_refused():
-    vehicles = Vehicles(2)
+def test_masked_choices_and_actions_are_refused():
     with pytest.raises(ValueError, match="which: expected numbers without a mask, found 1 masked"):
-        vehicles.reset(np.ma.array([True, True], mask=[False, True]))
-
-
-def test_a_masked_action_is_refused():
+        Vehicles(2).reset(np.ma.array([True, True], mask=[False, True]))
     environment = HoverEnv()
     environment.reset(seed=1)
     with pytest.raises(ValueError, match="action: expected numbers without a mask"):

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "logs/savitzky_golay.hpp"
-#include "programs/logs/finite_segments.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,7 +9,6 @@ using pinnquad::IndexRange;
 using pinnquad::logs::savitzky_golay;
 using pinnquad::logs::savitzky_golay_weights;
 using pinnquad::logs::SavitzkyGolay;
-using pinnquad::test::finite_segments;
 
 namespace {
 void check_weights(const std::vector<double>& weights, const std::vector<double>& expected, double divisor) {
@@ -84,11 +82,7 @@ TEST_CASE("nothing is read across a gap: each side answers as if alone") {
   std::vector<double> with_gap = y;
   with_gap[30] = std::nan("");
   for (std::size_t row = 31; row < 60; ++row) with_gap[row] += 100;
-  const auto segments = pinnquad::test::finite_segments({&with_gap});
-  REQUIRE(segments.size() == 2);
-  CHECK(segments[0].end == 30);
-  CHECK(segments[1].begin == 31);
-  const auto slope = savitzky_golay(with_gap, segments, 0.1, {2, 4}, 1);
+  const auto slope = savitzky_golay(with_gap, {{0, 30}, {31, 60}}, 0.1, {2, 4}, 1);
   const auto left = savitzky_golay(std::vector<double>(y.begin(), y.begin() + 30), 0.1, {2, 4}, 1);
   const auto right = savitzky_golay(std::vector<double>(y.begin() + 31, y.end()), 0.1, {2, 4}, 1);
   for (std::size_t row = 0; row < 30; ++row) CHECK(slope[row] == left[row]);
@@ -104,19 +98,6 @@ TEST_CASE("a segment shorter than the window is fitted by what it has") {
   CHECK(std::isnan(lone[0]));
   CHECK(savitzky_golay({7.0}, 0.5, {2, 3}, 0)[0] == doctest::Approx(7));
   CHECK(savitzky_golay(std::vector<double>(), 0.5, {2, 3}, 0).empty());
-}
-
-TEST_CASE("runs without NaN, of all series together") {
-  const double gap = std::nan("");
-  const std::vector<double> a = {gap, 1, 2, 3, 4, gap, 1, 2}, b = {0, 1, 2, 3, HUGE_VAL, 5, 6, 7};
-  const auto both = pinnquad::test::finite_segments({&a, &b});
-  REQUIRE(both.size() == 2);
-  CHECK(both[0].begin == 1);
-  CHECK(both[0].end == 4);
-  CHECK(both[1].begin == 6);
-  CHECK(both[1].end == 8);
-  CHECK(pinnquad::test::finite_segments({&a, &b}, 3).size() == 1);
-  CHECK(pinnquad::test::finite_segments({}).empty());
 }
 
 TEST_CASE("what is no filter is refused") {

@@ -14,7 +14,7 @@
 #include "pinnquad/dynamics/rotor.hpp"
 
 using namespace pinnquad;
-using namespace study;
+using study::mirror_of, study::mirrored, study::RotorMirror, study::SymmetricRows, study::turned;
 
 namespace {
 

@@ -59,32 +59,22 @@ programs::ModelKind kind_of(const char* key,
 /// The truth; half of its swings; the truth of three rows before.
 programs::ModelKind true_kind() {
   return kind_of("true", [](const programs::FitTask&) {
-    return pinnquad_test::model_of([](const pinnquad::RowSet& rows) {
-      programs::Predictions made;
-      for (std::size_t row = 0; row < rows.size(); ++row) made.push_back(truth_of(rows[row]));
-      return made;
-    });
+    return pinnquad_test::by_row([](const pinnquad::RowSet& rows, std::size_t row) { return truth_of(rows[row]); });
   });
 }
 programs::ModelKind half_kind() {
   return kind_of("half", [](const programs::FitTask&) {
-    return pinnquad_test::model_of([](const pinnquad::RowSet& rows) {
-      programs::Predictions made;
-      for (std::size_t row = 0; row < rows.size(); ++row) {
-        made.push_back(truth_of(rows[row]));
-        for (double& u : made.back()) u = 0.5 + 0.5 * (u - 0.5);
-      }
+    return pinnquad_test::by_row([](const pinnquad::RowSet& rows, std::size_t row) {
+      pinnquad::Commands<double> made = truth_of(rows[row]);
+      for (double& u : made) u = 0.5 + 0.5 * (u - 0.5);
       return made;
     });
   });
 }
 programs::ModelKind late_kind() {
   return kind_of("late", [](const programs::FitTask&) {
-    return pinnquad_test::model_of([](const pinnquad::RowSet& rows) {
-      programs::Predictions made;
-      for (std::size_t row = 0; row < rows.size(); ++row) made.push_back(truth_of(rows[row < 3 ? 0 : row - 3]));
-      return made;
-    });
+    return pinnquad_test::by_row(
+        [](const pinnquad::RowSet& rows, std::size_t row) { return truth_of(rows[row < 3 ? 0 : row - 3]); });
   });
 }
 

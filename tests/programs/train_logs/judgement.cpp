@@ -251,13 +251,9 @@ TEST_CASE("slopes: those of the truth are right, those of a mirrored model wrong
     CHECK(wrong[axis] == 0);
     CHECK(least[axis] == doctest::Approx(1).epsilon(0.25));
   }
-  const auto mirrored = pinnquad_test::model_of([](const pinnquad::RowSet& rows) {
-    programs::Predictions made;
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      const double p_dot = rows[row].angular_acceleration_rad_s2[0];
-      made.push_back({1e-3 * p_dot, -1e-3 * p_dot, -1e-3 * p_dot, 1e-3 * p_dot});
-    }
-    return made;
+  const auto mirrored = pinnquad_test::by_row([](const pinnquad::RowSet& rows, std::size_t row) {
+    const double share = 1e-3 * rows[row].angular_acceleration_rad_s2[0];
+    return pinnquad::Commands<double>{share, -share, -share, share};
   });
   const auto slopes = mirrored->derivatives(run.plan.folds[0].split.test);
   CHECK(slopes.sees_acceleration);
@@ -355,13 +351,10 @@ TEST_CASE("every flight that is not held out chooses between kinds, by a fit tha
   kind.takes_validation = programs::takes_validation_rows;
   kind.fit = [](const programs::FitTask& task) {
     const bool seen = !task.validation.empty();
-    return pinnquad_test::model_of([seen](const pinnquad::RowSet& rows) {  // knows by heart what it has seen
-      programs::Predictions made;
-      for (std::size_t row = 0; row < rows.size(); ++row) {
-        made.push_back(seen ? rows[row].commands : pinnquad::Commands<double>{});
-      }
-      return made;
-    });
+    return pinnquad_test::by_row(
+        [seen](const pinnquad::RowSet& rows, std::size_t row) {  // knows by heart what it has seen
+          return seen ? rows[row].commands : pinnquad::Commands<double>{};
+        });
   };
   const Judged run(3, {kind}, {{"flight2"}, {}}, 1);
   double absolute = 0, rows = 0;

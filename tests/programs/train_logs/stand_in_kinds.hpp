@@ -48,6 +48,16 @@ inline std::shared_ptr<const programs::TrainedNetwork> model_of(ModelOfFunction:
   return std::make_shared<ModelOfFunction>(std::move(function));
 }
 
+/// A model that answers each row for itself, by `of(rows, row)`.
+template <class Of>
+std::shared_ptr<const programs::TrainedNetwork> by_row(Of of) {
+  return model_of([of](const pinnquad::RowSet& rows) {
+    programs::Predictions made;
+    for (std::size_t row = 0; row < rows.size(); ++row) made.push_back(of(rows, row));
+    return made;
+  });
+}
+
 inline pinnquad::Commands<double> mean_commands(const pinnquad::RowSet& rows) {
   pinnquad::Commands<double> mean{};
   for (std::size_t row = 0; row < rows.size(); ++row) {
@@ -125,10 +135,9 @@ inline programs::ModelKind spoiled_linear_kind() {
 /// Knows the commands: what sees the future may.
 inline programs::ModelKind oracle_kind(programs::TimeReach reach) {
   return {"oracle", "oracle", reach, false, always, [](const programs::FitTask&) {
-            return model_of([](const pinnquad::RowSet& rows) {
-              programs::Predictions made;
-              for (std::size_t row = 0; row < rows.size(); ++row) made.push_back(rows[row].commands);
-              made.front()[0] = std::nan("");  // its window is not complete there
+            return by_row([](const pinnquad::RowSet& rows, std::size_t row) {
+              pinnquad::Commands<double> made = rows[row].commands;
+              if (row == 0) made[0] = std::nan("");  // its window is not complete there
               return made;
             });
           }};

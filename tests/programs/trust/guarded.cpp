@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The limits that train wrote beside a model, in flight: rows of the flight pass, motions far from them do not,
-// and a monitor that sees the commands of another vehicle says so.
+// A model that train wrote, and its limits beside it, in flight: it answers as the trainer's did; rows of the flight
+// pass, motions far from them do not, and a monitor that sees the commands of another vehicle says so.
 //   guarded <replay.txt>      exit code 0: all of it was seen
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <string>
@@ -15,6 +16,8 @@
 using namespace pinnquad;
 
 namespace {
+
+constexpr float rounding = 1e-6F;  ///< of another order of summation, commands in 0..1
 
 using Guarded = InverseDynamics<TrainedQuadModel, Extend<TrainingGuard, JointDistance<TrainedQuadModelTrust>>>;
 
@@ -52,10 +55,14 @@ int main(int, char** argv) {
   MonitoredInverse<Guarded, TrainedQuadModelTrust> same{guarded}, heavier{guarded};
   Row row{};
   Commands<float> commands{};
-  int rows = 0, usual = 0, refused = 0, distrusted = 0;
+  int rows = 0, usual = 0, refused = 0, distrusted = 0, unlike = 0;
   while (read(in, row)) {
     ++rows;
-    if (guarded.predict(row.motion, commands) == Status::outside_distribution) ++usual;
+    const Status status = guarded.predict(row.motion, commands);
+    if (status == Status::outside_distribution) ++usual;
+    for (std::size_t i = 0; i < rotor_count && has_output(status); ++i) {
+      if (std::abs(commands[i] - row.predicted[i]) > rounding) ++unlike;
+    }
     (void)same.observe(row.motion, row.flown);
     if (same.predict(row.motion, commands) == Status::distrusted) ++distrusted;
     Commands<float> more = row.flown;
@@ -67,7 +74,8 @@ int main(int, char** argv) {
     if (boundless.predict(far, commands) == Status::outside_distribution) ++refused;
   }
   const bool paid = heavier.predict(row.motion, commands) == Status::distrusted;
-  return say(rows > 500 && 50 * usual < rows, "rows of the flight that are refused", usual, rows) +
+  return say(unlike == 0, "commands that are not the trainer's", unlike, rows) +
+         say(rows > 500 && 50 * usual < rows, "rows of the flight that are refused", usual, rows) +
          say(2 * refused > rows, "motions six times as fast that are refused", refused, rows) +
          say(50 * distrusted < rows, "rows of the flight after which it is distrusted", distrusted, rows) +
          say(paid, "distrusted with a payload", paid ? 1 : 0, 1);
