@@ -367,19 +367,6 @@ TEST_CASE("without set points it holds the place where it was selected, not wher
   for (int i = 1; i < 4; ++i) CHECK(std::abs(world.last.control[i] - world.last.control[0]) < 0.02f);
 }
 
-TEST_CASE("on the ground the motors idle; told to go up, thrust comes over a second") {
-  Px4World world;
-  world.landed = true;
-  world.start_and_fly();
-  for (int i = 0; i < 4; ++i) CHECK(world.last.control[i] == doctest::Approx(0.02));
-  world.set_point.position[2] = -2;
-  world.run(300);
-  CHECK(world.last.control[0] < 0.35f);
-  CHECK(world.last.control[0] > 0.05f);
-  world.run(900);
-  CHECK(world.last.control[0] > 0.5f);
-}
-
 TEST_CASE("armed in the mode, hovering, landing: PX4's land detector says what is so, and PX4 disarms") {
   for (const bool range_finder : {false, true}) {
     for (const float height : {0.7f, 2.0f, 10.0f}) {
