@@ -17,6 +17,7 @@
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "support/guarded_inputs.hpp"
+#include "support/numbers_of.hpp"
 #include "support/small_model_variants.hpp"
 
 using namespace pinnquad;
@@ -84,20 +85,8 @@ class Hostility {
     }
     result.attitude = from_euler(EulerAngles<Scalar>{uniform(Scalar(0.7)), uniform(Scalar(0.7)), uniform(Scalar(3))});
     if (below(8) == 0) spoil_attitude(result.attitude);
-    for (std::uint64_t i = 0; i < spoiled; ++i) *number(result, below(16)) = value();
+    for (std::uint64_t i = 0; i < spoiled; ++i) *pinnquad::test::numbers_of(result)[below(16)] = value();
     return result;
-  }
-
-  static Scalar* number(MotionInputs<Scalar>& in, std::uint64_t index) {
-    const auto axis = static_cast<int>(index % 3);
-    Scalar* const attitude[] = {&in.attitude.w, &in.attitude.x, &in.attitude.y, &in.attitude.z};
-    switch (index / 3) {
-      case 0: return &in.linear_acceleration_m_s2[axis];
-      case 1: return &in.angular_acceleration_rad_s2[axis];
-      case 2: return &in.velocity_m_s[axis];
-      case 3: return &in.body_rates_rad_s[axis];
-      default: return attitude[index - 12];
-    }
   }
 
  private:
@@ -119,7 +108,7 @@ template <class Scalar>
 bool sound(const MotionInputs<Scalar>& inputs) {
   MotionInputs<Scalar> copy = inputs;
   bool finite = true;
-  for (std::uint64_t i = 0; i < 16; ++i) finite = finite && std::isfinite(*Hostility<Scalar>::number(copy, i));
+  for (const Scalar* number : pinnquad::test::numbers_of(copy)) finite = finite && std::isfinite(*number);
   return finite;
 }
 
