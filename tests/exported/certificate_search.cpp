@@ -97,8 +97,8 @@ class Composer {
   int below(int count) { return int(engine_() % std::uint64_t(count)); }
 
  private:
-  /// Places in any order, columns, a lone angular acceleration at times; `turning`: how likely it has all three in turn,
-  /// behind the first nine of PhysicsFeatures where it begins as these do.
+  /// Places in any order, columns, a lone angular acceleration at times; `turning`: how likely it has all three in
+  /// turn, behind the first nine of PhysicsFeatures where it begins as these do.
   std::vector<std::string> part(bool begins_as_physics, double turning) {
     std::vector<std::string> all, first;
     for (int left = 1 + below(8); left > 0; --left) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hostile inputs against every kind of guard, float and double: NaN, infinities, denormals, random bits, attitudes that are none. The rules are counted by code of their own
-// (std::isfinite, memcmp), not by the guard's.
+// Hostile inputs against every kind of guard, float and double: NaN, infinities, denormals, random bits, attitudes that
+// are none. The rules are counted by code of their own (std::isfinite, memcmp), not by the guard's.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // libFuzzer target over model blocks: whatever the bytes, open() reads none beyond the block and says why it refuses
-// one; an accepted block is looked at, asked and certified without a trap, and a program refuses it in one line or takes
-// it. A view of a known shape, which flies, is untouched unless it accepts, and then its numbers are sound. The mutator
-// makes most inputs pass checksum, counts, hash: chance would not. Build and run: scripts/heavy/fuzz.
+// one; an accepted block is looked at, asked and certified without a trap, and a program refuses it in one line or
+// takes it. A view of a known shape, which flies, is untouched unless it accepts, and then its numbers are sound. The
+// mutator makes most inputs pass checksum, counts, hash: chance would not. Build and run: scripts/heavy/fuzz.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

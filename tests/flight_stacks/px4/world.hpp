@@ -126,7 +126,7 @@ class Px4World {
     px4::parameter_values()[name] = value;
     update_pub.publish(parameter_update_s{});
   }
-  /// What the module published of its last step.
+  /// The record of the last step that the module published.
   pinnquad_record_s record() {
     pinnquad_record_s last_record{};
     REQUIRE(record_sub.copy(&last_record));
