@@ -42,22 +42,6 @@ TEST_CASE_TEMPLATE("what the running simulator prints", Scalar, float, double) {
         doctest::Approx(1.21071629).epsilon(printed_digits));
 }
 
-TEST_CASE_TEMPLATE("hydrostatic balance: the pressure's gradient carries the air's weight", Scalar, float, double) {
-  // d(rho R T)/dh = -rho g (r / (r + h))^2; the simulator's exponent and lapse rate meet it to four digits
-  using std::pow;
-  for (int altitude = 0; altitude <= 10000; altitude += 500) {
-    const auto pressure = [](double h) {
-      const double geopotential = 6356.766 * h / (6356.766 + h / 1000.0);
-      return static_cast<double>(standard_atmosphere_density_kg_m3(Scalar(h))) * 287.053 *
-             (288.15 - 6.5e-3 * geopotential);
-    };
-    const double h = altitude, step = 100.0;
-    const double gravity = 9.80665 * pow(6356766.0 / (6356766.0 + h), 2.0);
-    const double weight = static_cast<double>(standard_atmosphere_density_kg_m3(Scalar(h))) * gravity;
-    CHECK(-(pressure(h + step) - pressure(h - step)) / (2 * step) == doctest::Approx(weight).epsilon(1e-3));
-  }
-}
-
 TEST_CASE_TEMPLATE("the effect sets the density of its altitude and nothing else", Scalar, float, double) {
   pinnquad::Surroundings<Scalar> air;
   air.altitude_m = Scalar(1000);

@@ -48,17 +48,6 @@ TEST_CASE_TEMPLATE("each hub's force across its axis, summed about the centre of
   }
 }
 
-TEST_CASE_TEMPLATE("rotor drag takes energy, whatever the motion", Scalar, float, double) {
-  const auto airframe = pinnquad::PaperQuadrotor::value<Scalar>();
-  RandomStates random(121);
-  for (int draw = 0; draw < pinnquad::test::draws; ++draw) {
-    const RotorCondition<Scalar> c = condition<Scalar>(random);
-    const auto w = RotorDrag{}.wrench(c, airframe);
-    const Scalar power_W = w.force_N.dot(c.air_relative_velocity_m_s) + w.torque_N_m.dot(c.body_rates_rad_s);
-    CHECK(power_W < Scalar(0));
-  }
-}
-
 TEST_CASE("rotors that do not turn feel no rotor drag") {
   RandomStates random(122);
   RotorCondition<double> c = condition<double>(random);

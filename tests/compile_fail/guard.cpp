@@ -58,8 +58,6 @@ const auto in_gusts = by_formula<InGusts>()(MotionInputs<float>{}, PlaceAndTime<
 
 // CASE NO_OUTPUT_CHECK: pinnquad: a Guard needs FiniteOutputs: without it the NaN of a broken weight would reach a motor
 const auto status = guarded<Guard<FiniteInputs, TrainingEnvelope, ClipCommands<>>>();
-// CASE NO_GUARD_AT_ALL: pinnquad: a Guard needs FiniteOutputs
-const auto status = guarded<Guard<>>();
 // CASE NO_INPUT_CHECK: pinnquad: a Guard without FiniteInputs needs TrainingEnvelope
 const auto status = guarded<Guard<FiniteOutputs>>();
 // CASE TWICE: pinnquad: a policy of a Guard is named twice
@@ -72,8 +70,6 @@ const auto status = extended<int>();
 const auto status = extended<RefuseCommands<Reversed>>();
 // CASE CLIPS_TO_INFINITY: pinnquad: a Guard's command limits must be numbers
 const auto status = extended<ClipCommands<Limits<0, 2>>>();
-// CASE CLIPS_TO_NAN: pinnquad: a Guard's command limits must be numbers
-const auto status = extended<ClipCommands<Limits<3, 1>>>();
 // CASE REFUSES_INFINITY: pinnquad: a Guard's command limits must be numbers
 const auto status = extended<RefuseCommands<Limits<0, 2>>>();
 // CASE CLIPS_REVERSED: pinnquad: a Guard's lower command limit lies above the upper one
@@ -89,8 +85,6 @@ const auto status = extended<Fallback<MayThrow>>();
 const auto status = extended<JointDistance<Distribution<16, 2>>>();
 // CASE DISTRIBUTION_OF_FEWER: pinnquad: the distribution of a JointDistance has another size than the model's features
 const auto status = extended<JointDistance<Distribution<15, 1>>>();
-// CASE TWO_DISTRIBUTIONS: pinnquad: a policy of a Guard is named twice
-const auto status = extended<JointDistance<Distribution<16, 1>>, JointDistance<Distribution<15, 1>>>();
 // CASE DISTRIBUTION_OF_OTHER_DATA: pinnquad: the distribution of a JointDistance is that of other training data than the model's
 struct OtherData : Distribution<16, 1> {
   static constexpr std::uint64_t training_data_hash = 2;
@@ -116,7 +110,5 @@ const auto status = guarded<Policies>(Policies(by_formula<NearGround>()));
 // CASE GUST_WITHOUT_TIME: pinnquad: an effect of this vehicle depends on place or time, which these inputs don't say
 Commands<float> commands{};
 const auto status = by_formula<InGusts>()(MotionInputsWithAltitude<float>{}, commands);
-// CASE COMMANDS_OF_THREE: deleted.*predict
-const auto status = guarded<TrainingGuard, std::array<float, 3>>();
 // CASE COMMANDS_IN_DOUBLE: deleted.*predict
 const auto status = guarded<TrainingGuard, Commands<double>>();

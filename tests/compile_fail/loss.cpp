@@ -34,8 +34,6 @@ struct MayThrow {
 const double loss = evaluated<PhysicsInformed<Mse, Weighted<Monotone, MayThrow>>>();
 // CASE BASE_NOT_A_LOSS: pinnquad: PhysicsInformed's first argument is not a loss
 const double loss = evaluated<PhysicsInformed<Nothing, Weighted<Monotone, Constant>>>();
-// CASE ARGUMENTS_SWAPPED: pinnquad: Weighted's first argument is not a loss
-const double loss = evaluated<PhysicsInformed<Mse, Weighted<Constant, Monotone>>>();
 // CASE TERM_NOT_WEIGHTED: pinnquad: a term of PhysicsInformed is not Weighted
 const double loss = evaluated<PhysicsInformed<Mse, Monotone>>();
 // CASE CONTEXT_NOT_A_FEATURE_SET: pinnquad: Context's first argument is not a feature set

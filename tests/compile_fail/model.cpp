@@ -58,13 +58,6 @@ const auto statuses = {flown<Hashed<Optional>>(), flown<test::RecordedModel>()};
 // CASE NOT_A_MODEL: pinnquad: this type is not an exported model
 struct Nothing {};
 const auto status = flown<Nothing>();
-// CASE MEMBER_MISSING: pinnquad: this type is not an exported model
-struct Truncated {
-  using Scalar = float;
-  using Network = RecordedNumbers::Network;
-  using Features = RecordedNumbers::Features;
-};
-const auto status = flown<Truncated>();
 // CASE NEWER_FORMAT: pinnquad: the model's header has the format .found., .*: train and export again
 CHANGED(static constexpr int format_version = header_format_version + 1);
 // CASE OLDER_FORMAT: pinnquad: the model's header has the format .found., .*: train and export again

@@ -79,12 +79,6 @@ const auto status = stepped<Payload, QuadraticDrag>();
 const auto airframe = airframe_value<Nothing, double>();
 // CASE AIRFRAME_CANNOT_HOVER: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
 CHANGED(airframe.max_rotor_speed_rev_s = Scalar(95));  // thrust-to-weight 0.9
-// CASE AIRFRAME_WITHOUT_MASS: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
-CHANGED(airframe.mass_kg = Scalar(0));
-// CASE IMPOSSIBLE_INERTIA: pinnquad: this airframe has a non-positive mass, an impossible inertia or cannot hover
-CHANGED(airframe.inertia_kg_m2[2] = Scalar(0.1));  // more than Jx + Jy: no body has it
-// CASE ROTORS_IN_A_LINE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
-CHANGED(for (auto& rotor : airframe.rotors) rotor.y_m = Scalar(0));
 // CASE ALL_SPIN_ALIKE: pinnquad: this airframe's rotors can't make thrust and the three torques independently
 CHANGED(for (auto& rotor : airframe.rotors) rotor.spin = Spin::clockwise);
 // CASE FIFTH_ROTOR: pinnquad: this airframe.s value.. can.t be computed when compiled. An airframe has four rotors

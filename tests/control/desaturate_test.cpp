@@ -128,21 +128,6 @@ TEST_CASE("within a range: what torque can be had is had, in its direction, what
   }
 }
 
-TEST_CASE("a spread that no thrust carries: yaw gives way, then roll and pitch by one share, no further than needed") {
-  const pinnquad::Rotors<double> rotors(nose_heavy());
-  pinnquad::Wrench<double> rolling;
-  rolling.force_N[2] = -15;
-  rolling.torque_N_m = {3 * 1.0, 3 * 0.5, 0.1};  // more than the rotors have
-  const Commands<double> given = desaturate(rotors, rotors.commands(rolling, 1.0), turning_on);
-  const pinnquad::Wrench<double> made = rotors.wrench(given, 1.0);
-  CHECK(made.torque_N_m[0] == doctest::Approx(2 * made.torque_N_m[1]).epsilon(1e-9));
-  CHECK(std::abs(made.torque_N_m[2]) <= rounding);
-  double largest = 0, smallest = 1;
-  for (const double u : given) largest = std::max(largest, u), smallest = std::min(smallest, u);
-  CHECK(largest == doctest::Approx(1.0).epsilon(1e-9));  // both ends are reached: no more roll could be had
-  CHECK(smallest == doctest::Approx(0.02).epsilon(1e-9));
-}
-
 TEST_CASE("commands within the range stay, to the bit; a floor does not turn the vehicle") {
   const pinnquad::Airframe<double> a = nose_heavy();
   const pinnquad::Rotors<double> rotors(a);

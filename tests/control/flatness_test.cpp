@@ -75,22 +75,6 @@ TEST_CASE("hover: level, still, thrust balances gravity") {
   CHECK(motion.specific_thrust_m_s2 == 9.80665f);
 }
 
-TEST_CASE("mirror symmetry: east turned to west turns roll, yaw and their rates") {
-  FigureEight<double> right = agile_figure_eight();
-  FigureEight<double> left = right;
-  left.half_width_m = -right.half_width_m;
-  left.yaw_amplitude_rad = -right.yaw_amplitude_rad;
-  constexpr double rounding = 1e-12;
-  for (double t = 0; t < 11; t += 0.41) {
-    const FlatMotion<double> a = flat_at(right, t), b = flat_at(left, t);
-    const Vector3<double> sides(-1, 1, -1);
-    CHECK(a.specific_thrust_m_s2 == doctest::Approx(b.specific_thrust_m_s2).epsilon(rounding));
-    CHECK((a.body_rates_rad_s - sides.cwiseProduct(b.body_rates_rad_s)).norm() <= 100 * rounding);
-    CHECK((a.angular_acceleration_rad_s2 - sides.cwiseProduct(b.angular_acceleration_rad_s2)).norm() <=
-          1000 * rounding);
-  }
-}
-
 TEST_CASE("what has no attitude has a Status, and the output is left alone") {
   FlatMotion<double> motion;
   motion.specific_thrust_m_s2 = 42;

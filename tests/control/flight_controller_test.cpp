@@ -90,26 +90,6 @@ TEST_CASE("the velocity and the yaw rate wanted are reached from random states")
   }
 }
 
-TEST_CASE("mirror symmetry of the demand") {
-  const FlightController<double> controller;
-  State<double> state;
-  state.velocity_m_s = Vector3<double>(1, 2, -0.5);
-  state.attitude = from_euler<double>({0.3, -0.2, 0.9});
-  state.body_rates_rad_s = Vector3<double>(0.4, -0.6, 0.2);
-  State<double> mirrored = state;
-  mirrored.velocity_m_s[1] *= -1;
-  mirrored.attitude = from_euler<double>({-0.3, -0.2, -0.9});
-  mirrored.body_rates_rad_s = Vector3<double>(-0.4, -0.6, -0.2);
-  SetPoint<double> wanted{Vector3<double>(3, -1, 0.5), 0.4, Vector3<double>(0.1, 0.2, -0.1)};
-  SetPoint<double> mirror{Vector3<double>(3, 1, 0.5), -0.4, Vector3<double>(-0.1, 0.2, 0.1)};
-  Accelerations<double> a, b;
-  REQUIRE(controller(state, wanted, a) == Status::ok);
-  REQUIRE(controller(mirrored, mirror, b) == Status::ok);
-  constexpr double rounding = 1e-12;
-  CHECK((a.linear_m_s2 - Vector3<double>(1, -1, 1).cwiseProduct(b.linear_m_s2)).norm() <= rounding);
-  CHECK((a.angular_rad_s2 - Vector3<double>(-1, 1, -1).cwiseProduct(b.angular_rad_s2)).norm() <= 100 * rounding);
-}
-
 TEST_CASE("on the reference there is no feedback, and the demand is the motion of flatness, laterally at rest") {
   FigureEight<double> eight;
   eight.yaw_amplitude_rad = 0.8;
@@ -297,23 +277,6 @@ TEST_CASE(
                                   std::min(reach(hover, 1, roll), reach(hover, 1, -roll)));
     CHECK(std::abs(first) < 1e-12);
     CHECK(std::abs(std::min(reach(hover, 2, yaw), reach(hover, 2, -yaw))) < 1e-12);
-  }
-}
-
-TEST_CASE("limits of rotors that are uneven by next to nothing are those of even ones") {
-  Airframe<double> even = airframe_value<PaperQuadrotor, double>();
-  even.mass_kg *= 1.75;
-  Airframe<double> uneven = even;
-  uneven.rotors[2].thrust_scale = 1 - 1e-9;
-  REQUIRE(Rotors<double>(even).balanced());
-  REQUIRE(!Rotors<double>(uneven).balanced());
-  const FlightLimits<double> a = flight_limits(even, 0.95), b = flight_limits(uneven, 0.95);
-  for (const auto limit :
-       {&FlightLimits<double>::max_specific_force_m_s2, &FlightLimits<double>::max_horizontal_acceleration_m_s2,
-        &FlightLimits<double>::max_roll_pitch_acceleration_rad_s2,
-        &FlightLimits<double>::max_yaw_acceleration_rad_s2}) {
-    CHECK(a.*limit == doctest::Approx(b.*limit).epsilon(1e-7));
-    CHECK(a.*limit < FlightLimits<double>{}.*limit);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "pinnquad/core/types.hpp"
+#include "support/numbers_of.hpp"
 #include "support/random_states.hpp"
 
 TEST_CASE_TEMPLATE("is_finite knows every kind of value", Scalar, float, double) {
@@ -64,23 +65,6 @@ TEST_CASE_TEMPLATE("all_finite of a State looks at every component", Scalar, flo
   pinnquad::test::RandomStates random(2);
   const pinnquad::State<Scalar> good = random.state<Scalar>();
   CHECK(pinnquad::all_finite(good));
-  const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
-  for (int i = 0; i < 3; ++i) {
-    pinnquad::State<Scalar> bad = good;
-    bad.position_m[i] = nan;
-    CHECK_FALSE(pinnquad::all_finite(bad));
-    bad = good;
-    bad.velocity_m_s[i] = nan;
-    CHECK_FALSE(pinnquad::all_finite(bad));
-    bad = good;
-    bad.body_rates_rad_s[i] = nan;
-    CHECK_FALSE(pinnquad::all_finite(bad));
-  }
-  for (Scalar pinnquad::Quaternion<Scalar>::*part :
-       {&pinnquad::Quaternion<Scalar>::w, &pinnquad::Quaternion<Scalar>::x, &pinnquad::Quaternion<Scalar>::y,
-        &pinnquad::Quaternion<Scalar>::z}) {
-    pinnquad::State<Scalar> bad = good;
-    bad.attitude.*part = nan;
-    CHECK_FALSE(pinnquad::all_finite(bad));
-  }
+  pinnquad::test::with_each_number_bad<Scalar>(
+      good, [](const pinnquad::State<Scalar>& bad) { CHECK_FALSE(pinnquad::all_finite(bad)); });
 }

@@ -57,8 +57,7 @@ TEST_CASE("header, block and limits of trust are of one model") {
   const Material made(9000);
   const pinnquad_test::TemporaryFolder folder;
   const fs::path out = fs::path(folder.path()) / "new" / "model";
-  const Exported exported =
-      export_model(out.string(), "SomeModel", ground_model(made.model), made.split, made.from);
+  const Exported exported = export_model(out.string(), "SomeModel", ground_model(made.model), made.split, made.from);
   CHECK(exported.no_trust_because == "");
   CHECK(!exported.certificate);
   const auto golden = golden_features(made.model, made.split.train);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Each activation, norm and gate of the library is trained on a simulated flight, written as a block, read back to the
-// bit, and flies a figure-eight as flight code does.
+// Activations, norms and gates are trained on a simulated flight, written as a block, read back to the bit, and fly a
+// figure-eight as flight code does.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -34,14 +34,8 @@ template <class... Specs>
 struct Behind {
   using Net = Network<float, InputSize<16>, Dense<neurons>, Specs..., Dense<neurons>, Specs..., Dense<4>>;
 };
-template <class List>
-struct EachBehind;
-template <class... Spec>
-struct EachBehind<std::tuple<Spec...>> {
-  using type = std::tuple<Behind<Spec>..., Behind<LayerNorm<neurons>, Relu>, Behind<RmsNorm<neurons>, Relu>,
-                          Behind<Glu<neurons / 2>>>;
-};
-using Kinds = EachBehind<Activations>::type;
+using Kinds = std::tuple<Behind<Gelu>, Behind<Elu>, Behind<LayerNorm<neurons>, Relu>, Behind<RmsNorm<neurons>, Relu>,
+                         Behind<Glu<neurons / 2>>>;
 
 const Quadrotor<double>& quadrotor() {
   static const Quadrotor<double> made(airframe_value<PaperQuadrotor, double>(), paper_site<double>());

@@ -18,35 +18,24 @@
 #include "pinnquad/deploy/header_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 #include "support/block_bytes.hpp"
+#include "support/trained_of_header.hpp"
 
 namespace {
 
 using namespace pinnquad;
+using test::Trained;
+using test::trained_model;
 
 std::string text_of(const std::string& path) {
   std::ifstream file(std::string(PINNQUAD_TESTS_DIR) + "/" + path);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-template <class Header>
-using Trained = TrainedModel<typename Header::Network,
-                             Context<typename Header::Features, typename Header::Vehicle, typename Header::Outputs>>;
-
 /// The header's airframe as its trainer was given it.
 template <class Header>
 struct WithGivenAirframe : Header {
   using Vehicle = GivenAirframe;
 };
-
-template <class Header>
-Trained<Header> trained(Trained<Header> model = {}) {
-  model.network.parameters = Header::parameters;
-  model.input = Header::input;
-  model.output = Header::output;
-  model.envelope_lower = Header::envelope_lower;
-  model.envelope_upper = Header::envelope_upper;
-  return model;
-}
 
 template <class Header, class = void>
 struct HasVerdict : std::false_type {};
@@ -115,7 +104,7 @@ bool says_its_hash(const Trained<Written>& model) {
 template <class Header>
 double largest_golden_difference() {
   double largest = 0;
-  const Trained<Header> model = trained<Header>();
+  const Trained<Header> model = trained_model<Header>();
   for (std::size_t i = 0; i < Header::golden_features.size(); ++i) {
     const auto commands = model.predict(Header::golden_features[i]);
     for (std::size_t k = 0; k < commands.size(); ++k) {
@@ -128,7 +117,7 @@ double largest_golden_difference() {
 }  // namespace
 
 TEST_CASE("the demonstration's header is what the writer writes") {
-  CHECK(comparable(written<DemoQuadModel>(trained<DemoQuadModel>())) ==
+  CHECK(comparable(written<DemoQuadModel>(trained_model<DemoQuadModel>())) ==
         comparable(text_of("../examples/models/demo_quadrotor.hpp")));
   CHECK(largest_golden_difference<DemoQuadModel>() <= golden_tolerance);
 }
@@ -136,19 +125,19 @@ TEST_CASE("the demonstration's header is what the writer writes") {
 TEST_CASE("so is one in double, with a window, a column and an airframe that its trainer was given") {
   using Given = WithGivenAirframe<OwnRacer>;
   const GivenAirframe airframe(OwnRacerAirframe::name, OwnRacerAirframe::value<double>());
-  CHECK(comparable(written<Given>(trained<Given>({airframe}))) == comparable(text_of("models/own_racer.hpp")));
+  CHECK(comparable(written<Given>(trained_model<Given>({airframe}))) == comparable(text_of("models/own_racer.hpp")));
   CHECK(largest_golden_difference<OwnRacer>() <= 1e-12);
 }
 
 TEST_CASE("the hash that is written is the one that the compiler works out") {
-  CHECK(says_its_hash<DemoQuadModel>(trained<DemoQuadModel>()));
+  CHECK(says_its_hash<DemoQuadModel>(trained_model<DemoQuadModel>()));
   using Given = WithGivenAirframe<OwnRacer>;
   const GivenAirframe airframe(OwnRacerAirframe::name, OwnRacerAirframe::value<double>());
-  CHECK(says_its_hash<OwnRacer, Given>(trained<Given>({airframe})));
+  CHECK(says_its_hash<OwnRacer, Given>(trained_model<Given>({airframe})));
   auto other = OwnRacerAirframe::value<double>();
   other.mass_kg += 1e-15;
   const GivenAirframe heavier(OwnRacerAirframe::name, other);
-  CHECK_FALSE(says_its_hash<OwnRacer, Given>(trained<Given>({heavier})));
+  CHECK_FALSE(says_its_hash<OwnRacer, Given>(trained_model<Given>({heavier})));
 }
 
 namespace {
@@ -164,7 +153,7 @@ std::vector<unsigned char> without_hash(std::vector<unsigned char> block) {
 TEST_CASE_TEMPLATE("a header's block is the block of its training", Header, DemoQuadModel, OwnRacer) {
   const auto from_header = without_hash(model_block<Header>());
   const auto from_training =
-      without_hash(model_block(trained<Header>(), golden<Header>(), provenance<Header>(), Header::name));
+      without_hash(model_block(trained_model<Header>(), golden<Header>(), provenance<Header>(), Header::name));
   REQUIRE(from_header.size() == from_training.size());
   // up to the golden commands, which are computed anew
   const auto same =
@@ -183,7 +172,7 @@ TEST_CASE_TEMPLATE("header and block say one hash", Header, DemoQuadModel, OwnRa
 
 TEST_CASE_TEMPLATE("the block of a training says the hash of the header that is written beside it", Header,
                    DemoQuadModel, OwnRacer) {
-  const auto model = trained<Header>();
+  const auto model = trained_model<Header>();
   const BlockModel block("model.block", model_block(model, golden<Header>(), provenance<Header>(), Header::name));
   const std::string said = "contents_hash = " + hexadecimal(block.contents_hash()) + ";";
   CHECK(written<Header>(model).find(said) != std::string::npos);

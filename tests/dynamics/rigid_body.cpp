@@ -94,25 +94,6 @@ TEST_CASE_TEMPLATE("without torque angular momentum and energy keep still at tha
   }
 }
 
-TEST_CASE_TEMPLATE("required_wrench and accelerations are each other's inverse", Scalar, float, double) {
-  const Airframe<Scalar> airframe = pinnquad::PaperQuadrotor::value<Scalar>();
-  RandomStates random(44);
-  for (int draw = 0; draw < draws; ++draw) {
-    const State<Scalar> state = random.state<Scalar>();
-    const Wrench<Scalar> wrench = random_wrench<Scalar>(random);
-    const Scalar gravity = Scalar(9.80665);
-    const Wrench<Scalar> again =
-        pinnquad::required_wrench(airframe, state, pinnquad::accelerations(airframe, state, wrench, gravity), gravity);
-    CHECK(distance(again.force_N, wrench.force_N) <= largest_acceleration * evaluation_tolerance<Scalar>);
-    CHECK(distance(again.torque_N_m, wrench.torque_N_m) <= 2.0 * evaluation_tolerance<Scalar>);
-    const Accelerations<Scalar> motion = random.motion<Scalar>();
-    const Accelerations<Scalar> back =
-        pinnquad::accelerations(airframe, state, pinnquad::required_wrench(airframe, state, motion, gravity), gravity);
-    CHECK(distance(back.linear_m_s2, motion.linear_m_s2) <= largest_acceleration * evaluation_tolerance<Scalar>);
-    CHECK(distance(back.angular_rad_s2, motion.angular_rad_s2) <= largest_acceleration * evaluation_tolerance<Scalar>);
-  }
-}
-
 TEST_CASE_TEMPLATE("body_derivative and world_acceleration are each other's inverse", Scalar, float, double) {
   RandomStates random(45);
   for (int draw = 0; draw < draws; ++draw) {

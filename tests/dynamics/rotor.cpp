@@ -71,28 +71,6 @@ TEST_CASE("a rotor in the middle has no roll and pitch sign") {
   CHECK(pinnquad::allocation_signs(airframe, 2)[2] == -1.0);
 }
 
-TEST_CASE_TEMPLATE("what each rotor does to the body", Scalar, float, double) {
-  const Rotors<Scalar> rotors(pinnquad::PaperQuadrotor::value<Scalar>());
-  const auto torque = [&](std::size_t rotor) {
-    Commands<Scalar> u{};
-    u[rotor] = Scalar(1);
-    return rotors.wrench(u, Scalar(1)).torque_N_m;
-  };
-  // front right lifts: rolls left, pitches up, and its counter-clockwise rotor yaws the nose right
-  CHECK(torque(0)[0] < Scalar(0));
-  CHECK(torque(0)[1] > Scalar(0));
-  CHECK(torque(0)[2] > Scalar(0));
-  CHECK(torque(1)[0] > Scalar(0));  // rear left
-  CHECK(torque(1)[1] < Scalar(0));
-  CHECK(torque(1)[2] > Scalar(0));
-  CHECK(torque(2)[0] > Scalar(0));  // front left
-  CHECK(torque(2)[1] > Scalar(0));
-  CHECK(torque(2)[2] < Scalar(0));
-  CHECK(torque(3)[0] < Scalar(0));  // rear right
-  CHECK(torque(3)[1] < Scalar(0));
-  CHECK(torque(3)[2] < Scalar(0));
-}
-
 TEST_CASE_TEMPLATE("wrench against position x force, rotor by rotor", Scalar, float, double) {
   RandomStates random(30);
   for (int draw = 0; draw < draws; ++draw) {
@@ -112,18 +90,6 @@ TEST_CASE_TEMPLATE("wrench against position x force, rotor by rotor", Scalar, fl
     CHECK(pinnquad::test::relative_distance(wrench.force_N, force) <= pinnquad::test::evaluation_tolerance<Scalar>);
     CHECK(pinnquad::test::relative_distance(wrench.torque_N_m, torque, 1.0) <=
           pinnquad::test::evaluation_tolerance<Scalar>);
-  }
-}
-
-TEST_CASE_TEMPLATE("allocation times its inverse is the identity", Scalar, float, double) {
-  RandomStates random(31);
-  for (int draw = 0; draw < draws; ++draw) {
-    const AllocationMatrix<Scalar> matrix =
-        pinnquad::allocation(draw == 0 ? pinnquad::PaperQuadrotor::value<Scalar>() : lopsided<Scalar>(random));
-    AllocationMatrix<Scalar> inverse{};
-    REQUIRE(pinnquad::invert_allocation(matrix, inverse) == Status::ok);
-    CHECK(distance_to_identity(matrix, inverse) <= pinnquad::test::inverse_tolerance<Scalar>);
-    CHECK(distance_to_identity(inverse, matrix) <= pinnquad::test::inverse_tolerance<Scalar>);
   }
 }
 

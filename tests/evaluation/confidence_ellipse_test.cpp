@@ -138,15 +138,6 @@ TEST_CASE("k sigma enclose 1 - exp(-k^2 / 2) in the plane: 98.9 % for three") {
   }
 }
 
-TEST_CASE("the angle of a sampled cloud is the angle it was turned by") {
-  constexpr double four_sampling_errors_deg =
-      0.6;  // error of the angle: a b / (a^2 - b^2) / sqrt(n), here 0.12 degrees
-  for (int angle = -80; angle <= 80; angle += 20) {
-    const Cloud cloud = normal_cloud(40000, 3, 1, angle, 5);
-    CHECK(angle_difference_deg(confidence_ellipse(cloud.x, cloud.y).angle_deg, angle) < four_sampling_errors_deg);
-  }
-}
-
 TEST_CASE("the outline lies on the ellipse, begins at the tip and is closed") {
   const ConfidenceEllipse ellipse = covariance_ellipse(turned_moments(2, 0.5, 33));
   const auto outline = ellipse_outline(ellipse, 37);

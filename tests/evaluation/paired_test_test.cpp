@@ -149,24 +149,6 @@ TEST_CASE("lower is better: who wins, by how much") {
   CHECK(compare_paired({-3}, {-2}).relative_difference == -0.5);  // of the magnitude: below 0 is better
 }
 
-TEST_CASE("changing sides changes the signs and not the p-value") {
-  std::mt19937_64 engine(23);
-  for (int trial = 0; trial < 20; ++trial) {
-    Series a(20);
-    Series b(20);
-    for (double& value : a) value = pinnquad::standard_normal(engine);
-    for (double& value : b) value = pinnquad::standard_normal(engine) + 0.3;
-    const PairedComparison ab = compare_paired(a, b);
-    const PairedComparison ba = compare_paired(b, a);
-    CHECK(ab.p_value == ba.p_value);
-    CHECK(ab.wins == ba.losses);
-    CHECK(ab.rank_biserial == -ba.rank_biserial);
-    CHECK(ab.mean_difference == -ba.mean_difference);
-    CHECK(ab.p_value > 0);
-    CHECK(ab.p_value <= 1);
-  }
-}
-
 TEST_CASE("equal models: nothing is decided") {
   const PairedComparison result = compare_paired({1, 2, 3}, {1, 2, 3});
   CHECK(result.ties == 3);

@@ -240,17 +240,6 @@ TEST_CASE("a vehicle whose rotors have no exact mix has no proof") {
   for (const double command : u) CHECK(std::isnan(command));  // and its commands reach no motor
 }
 
-TEST_CASE("signed sums there and back") {
-  const auto mix = AxisCommandOutputs::prepare(PaperQuadrotor::value<double>());
-  const double u[4] = {0.3, 0.9, 0.1, 0.4};
-  double y[4], again[4];
-  AxisCommandOutputs::from_commands(static_cast<const double*>(nullptr), static_cast<const double*>(u), mix, y);
-  CHECK(y[0] == doctest::Approx(1.7));
-  for (std::size_t axis = 0; axis < 3; ++axis) CHECK(y[1 + axis] == doctest::Approx(sum_of(u, axis)));
-  AxisCommandOutputs::commands(static_cast<const double*>(nullptr), static_cast<const double*>(y), mix, again);
-  for (int i = 0; i < 4; ++i) CHECK(again[i] == doctest::Approx(u[i]).epsilon(1e-15));
-}
-
 TEST_CASE("a slope is proven above its floor, a share of the airframe's own, not above 0") {
   const auto airframe = airframe_in<float>(PaperQuadrotor::value<double>());
   const AxisSlopes own = hover_slopes(PaperQuadrotor::value<double>());  // of straight curves: the same at full command

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
-// More than a million hostile inputs (a fifth where nothing is optimised) against every kind of guard, float and
-// double: NaN, infinities, denormals, random bits, attitudes that are none. The rules are counted by code of their own
-// (std::isfinite, memcmp), not by the guard's.
+// Hostile inputs against every kind of guard, float and double: NaN, infinities, denormals, random bits, attitudes that
+// are none. The rules are counted by code of their own (std::isfinite, memcmp), not by the guard's.
 #include <doctest/doctest.h>
 
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <random>
-#include <string>
 
 #include "pinnquad/aero/air_density.hpp"
 #include "pinnquad/aero/drag.hpp"
@@ -20,21 +17,21 @@
 #include "pinnquad/inference/analytic_inverse.hpp"
 #include "pinnquad/inference/inverse_dynamics.hpp"
 #include "support/guarded_inputs.hpp"
+#include "support/numbers_of.hpp"
 #include "support/small_model_variants.hpp"
 
 using namespace pinnquad;
 using pinnquad::test::DoubleModel;
 using pinnquad::test::marked;
 using pinnquad::test::same_bits;
-using pinnquad::test::SmallInstance;
 using pinnquad::test::SmallModel;
 
 namespace {
 
 #if defined(__OPTIMIZE__)
-constexpr int inputs_per_guard = 60000, inputs_at_least = 1000000;
+constexpr int inputs_per_guard = 60000;
 #else
-constexpr int inputs_per_guard = 12000, inputs_at_least = 200000;
+constexpr int inputs_per_guard = 12000;
 #endif
 
 template <class Scalar>
@@ -88,20 +85,8 @@ class Hostility {
     }
     result.attitude = from_euler(EulerAngles<Scalar>{uniform(Scalar(0.7)), uniform(Scalar(0.7)), uniform(Scalar(3))});
     if (below(8) == 0) spoil_attitude(result.attitude);
-    for (std::uint64_t i = 0; i < spoiled; ++i) *number(result, below(16)) = value();
+    for (std::uint64_t i = 0; i < spoiled; ++i) *pinnquad::test::numbers_of(result)[below(16)] = value();
     return result;
-  }
-
-  static Scalar* number(MotionInputs<Scalar>& in, std::uint64_t index) {
-    const auto axis = static_cast<int>(index % 3);
-    Scalar* const attitude[] = {&in.attitude.w, &in.attitude.x, &in.attitude.y, &in.attitude.z};
-    switch (index / 3) {
-      case 0: return &in.linear_acceleration_m_s2[axis];
-      case 1: return &in.angular_acceleration_rad_s2[axis];
-      case 2: return &in.velocity_m_s[axis];
-      case 3: return &in.body_rates_rad_s[axis];
-      default: return attitude[index - 12];
-    }
   }
 
  private:
@@ -123,7 +108,7 @@ template <class Scalar>
 bool sound(const MotionInputs<Scalar>& inputs) {
   MotionInputs<Scalar> copy = inputs;
   bool finite = true;
-  for (std::uint64_t i = 0; i < 16; ++i) finite = finite && std::isfinite(*Hostility<Scalar>::number(copy, i));
+  for (const Scalar* number : pinnquad::test::numbers_of(copy)) finite = finite && std::isfinite(*number);
   return finite;
 }
 
@@ -224,19 +209,10 @@ struct Attack {
   }
 };
 
-int attacked = 0;
-
 template <class Guard, class Model>
-auto attack(const char* name, const InverseDynamics<Model, Guard>& inverse, std::uint64_t seed) {
+void attack(const char* name, const InverseDynamics<Model, Guard>& inverse, std::uint64_t seed) {
   Attack<InverseDynamics<Model, Guard>> result;
   result(inverse, seed);
-  attacked += inputs_per_guard;
-  std::string line = std::string(name) + (sizeof(typename Model::Scalar) == 4 ? ", float:" : ", double:");
-  for (int i = 0; i < status_count; ++i) {
-    const int count = result.by_status[static_cast<std::size_t>(i)];
-    if (count > 0) line += "  " + std::string(to_string(static_cast<Status>(i))) + " " + std::to_string(count);
-  }
-  MESSAGE(line);
   CAPTURE(name);
   CHECK(result.broken.not_finite_written == 0);
   CHECK(result.broken.touched == 0);
@@ -252,7 +228,6 @@ auto attack(const char* name, const InverseDynamics<Model, Guard>& inverse, std:
   CHECK((count(Status::not_unit_quaternion) > inputs_per_guard / 50) == Guard::checks_inputs);
   if (Guard::refuses_outside_envelope && !Guard::falls_back) CHECK(count(Status::outside_envelope) > 1000);
   if (Guard::falls_back && Guard::refuses_outside_envelope) CHECK(count(Status::fell_back) > 1000);
-  return result;
 }
 
 template <class Scalar>
@@ -272,70 +247,20 @@ void attack_all() {
   using GustyFallback = Fallback<AnalyticInverse<Gusty<Scalar>>>;
   using Unchecked = Guard<TrainingEnvelope, FiniteOutputs>;
   using Anywhere = Guard<FiniteInputs, FiniteOutputs>;
-  using Refusing = Extend<TrainingGuard, RefuseCommands<>>;
-  using Clipping = Extend<TrainingGuard, ClipCommands<>>;
-  using FallingBack = Extend<TrainingGuard, CalmFallback>;
   using UncheckedFallingBack = Extend<Unchecked, CalmFallback>;
   using Everything = Extend<TrainingGuard, RefuseCommands<WideCommands>, ClipCommands<>, GustyFallback>;
   const auto calm = by_formula<Calm<Scalar>, Scalar>();
   const auto gusty = by_formula<Gusty<Scalar>, Scalar>();
 
   attack("training guard", InverseDynamics<Model>{}, 1);
-  attack("inputs unchecked", InverseDynamics<Model, Unchecked>{}, 2);
-  attack("no envelope", InverseDynamics<Model, Anywhere>{}, 3);
-  attack("commands refused", InverseDynamics<Model, Refusing>{}, 5);
-  attack("commands clipped", InverseDynamics<Model, Clipping>{}, 6);
   attack("no envelope, clipped", InverseDynamics<Model, Extend<Anywhere, ClipCommands<>>>{}, 7);
-  attack("fallback", InverseDynamics<Model, FallingBack>(FallingBack(calm)), 8);
   attack("inputs unchecked, fallback", InverseDynamics<Model, UncheckedFallingBack>(UncheckedFallingBack(calm)), 9);
   attack("everything, gusty fallback", InverseDynamics<Model, Everything>(Everything(gusty)), 10);
 }
 
 }  // namespace
 
-TEST_CASE("hostile inputs, a million where optimised: no surprise") {
-  attacked = 0;
-  const auto start = std::chrono::steady_clock::now();
+TEST_CASE("hostile inputs: no surprise") {
   attack_all<SmallModel>();
   attack_all<DoubleModel>();
-  attack("an instance", InverseDynamics<SmallInstance>(SmallInstance{}), 12);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  MESSAGE(attacked, " inputs in ", seconds, " s");
-  CHECK(attacked >= inputs_at_least);
-}
-
-TEST_CASE("hostile weights: whatever bits are in flash, no command is NaN or infinite") {
-  Hostility<float> hostility(21);
-  using Clipping = Guard<FiniteInputs, FiniteOutputs, ClipCommands<>>;
-  int answered = 0, not_finite = 0, written = 0, touched = 0;
-  constexpr int models = 20000;
-  for (int i = 0; i < models; ++i) {
-    SmallInstance model;
-    for (std::uint64_t k = 1 + hostility.below(3); k > 0; --k) {
-      switch (hostility.below(4)) {
-        case 0: model.parameters[hostility.below(172)] = hostility.value(); break;
-        case 1: model.parameters[hostility.below(172)] *= 1e30F; break;
-        case 2: model.output.standard_deviation[hostility.below(4)] = hostility.value(); break;
-        default: model.input.standard_deviation[hostility.below(16)] = hostility.value();
-      }
-    }
-    const auto inputs = hostility.inputs(0);
-    const auto tried = [&](const auto& inverse) {
-      Commands<float> commands = marked<float>();
-      const Status status = inverse.predict(inputs, commands);
-      if (has_output(status)) ++answered;
-      if (status == Status::output_not_finite) ++not_finite;
-      if (!has_output(status) && !same_bits(commands, marked<float>())) ++touched;
-      for (const float u : commands) {
-        if (has_output(status) && !std::isfinite(u)) ++written;
-      }
-    };
-    tried(InverseDynamics<SmallInstance>(model));
-    tried(InverseDynamics<SmallInstance, Clipping>(model));
-  }
-  MESSAGE((2 * models), " predictions: answered ", answered, ", output not finite ", not_finite);
-  CHECK(written == 0);
-  CHECK(touched == 0);
-  CHECK(answered > models / 4);
-  CHECK(not_finite > models / 10);
 }

@@ -367,11 +367,9 @@ TEST_CASE_TEMPLATE("commands to the bit: the paper's network, each activation, d
                    ModelOf<Paper10, PaperFeatures>, Activated<Relu>, Activated<Tanh>, Activated<Gelu>, Activated<Silu>,
                    Activated<Softplus>, Activated<Sine>, Activated<Clip>, Activated<Elu>, Activated<LeakyRelu>,
                    Activated<GeluTanh>, Activated<HardSwish>, Activated<Mish>, Activated<Softsign>,
-                   ActivatedInDouble<Relu>, ActivatedInDouble<Tanh>, ActivatedInDouble<Gelu>, ActivatedInDouble<Silu>,
-                   ActivatedInDouble<Softplus>, ActivatedInDouble<Sine>, ActivatedInDouble<Clip>,
-                   ActivatedInDouble<Elu>, ActivatedInDouble<LeakyRelu>, ModelOf<WithoutBias, PaperFeatures>,
-                   ModelOf<Clipped, PaperFeatures>, ModelOf<Normed<float>, PaperFeatures>,
-                   ModelOf<Normed<double>, PaperFeatures>) {
+                   ActivatedInDouble<Tanh>, ActivatedInDouble<Gelu>, ActivatedInDouble<Elu>,
+                   ModelOf<WithoutBias, PaperFeatures>, ModelOf<Clipped, PaperFeatures>,
+                   ModelOf<Normed<float>, PaperFeatures>, ModelOf<Normed<double>, PaperFeatures>) {
   commands_are_the_same<Model>(1);
 }
 

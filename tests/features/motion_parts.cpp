@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "support/numbers_of.hpp"
 #include "support/random_states.hpp"
 
 using namespace pinnquad;
@@ -120,31 +121,19 @@ TEST_CASE("joined sets are their parts one after the other, with the angular acc
 }
 
 TEST_CASE("an input that is not finite is refused, and makes a feature that is not") {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   RandomStates random(7);
   const MotionInputs<double> sound = motion_inputs(random.state<double>(), random.motion<double>());
   CHECK(PhysicsFeatures::check(sound) == Status::ok);
-  for (int entry = 0; entry < 16; ++entry) {
-    for (const double bad : {nan, std::numeric_limits<double>::infinity()}) {
-      MotionInputs<double> in = sound;
-      if (entry < 3) in.linear_acceleration_m_s2[entry] = bad;
-      if (entry >= 3 && entry < 6) in.angular_acceleration_rad_s2[entry - 3] = bad;
-      if (entry >= 6 && entry < 9) in.velocity_m_s[entry - 6] = bad;
-      if (entry >= 9 && entry < 12) in.body_rates_rad_s[entry - 9] = bad;
-      if (entry == 12) in.attitude.w = bad;
-      if (entry == 13) in.attitude.x = bad;
-      if (entry == 14) in.attitude.y = bad;
-      if (entry == 15) in.attitude.z = bad;
-      CHECK(PhysicsFeatures::check(in) == Status::not_finite);
-      CHECK(PhysicsFeaturesWithoutVelocity::check(in) == Status::not_finite);
-      std::array<double, 21> x{};
-      std::array<double, 15> less{};
-      PhysicsFeatures::extract(in, x.data());
-      PhysicsFeaturesWithoutVelocity::extract(in, less.data());
-      CHECK_FALSE(all_finite(x));
-      CHECK_FALSE(all_finite(less));
-    }
-  }
+  test::with_each_number_bad<double>(sound, [](const MotionInputs<double>& in) {
+    CHECK(PhysicsFeatures::check(in) == Status::not_finite);
+    CHECK(PhysicsFeaturesWithoutVelocity::check(in) == Status::not_finite);
+    std::array<double, 21> x{};
+    std::array<double, 15> less{};
+    PhysicsFeatures::extract(in, x.data());
+    PhysicsFeaturesWithoutVelocity::extract(in, less.data());
+    CHECK_FALSE(all_finite(x));
+    CHECK_FALSE(all_finite(less));
+  });
   MotionInputs<double> long_quaternion = sound;
   long_quaternion.attitude.w += 1;
   CHECK(PhysicsFeatures::check(long_quaternion) == Status::not_unit_quaternion);

@@ -46,8 +46,8 @@ TEST_CASE("another tap shows the same, another unit or name nobody knows") {
   CHECK(of_feature("wdot_z[+1]", "rad/s^2") == ShownAcceleration::about_z);
   CHECK(of_feature("w_z[+1]", "rad/s") == ShownAcceleration::none);
   CHECK(of_feature("altitude", "m") == ShownAcceleration::none);
-  for (const auto& [name, unit] : {std::pair{"wdot_x", "deg/s^2"}, {"w_x", "rad/s^2"}, {"altitude", "ft"},
-                                   {"effort", "1"}, {"wdot", "rad/s^2"}}) {
+  for (const auto& [name, unit] :
+       {std::pair{"wdot_x", "deg/s^2"}, {"w_x", "rad/s^2"}, {"altitude", "ft"}, {"effort", "1"}, {"wdot", "rad/s^2"}}) {
     CHECK(of_feature(name, unit) == ShownAcceleration::unknown);
   }
 }

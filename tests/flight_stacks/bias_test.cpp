@@ -36,11 +36,8 @@ void carries(const char* what, const Target& target, FaultKind kind, double valu
   };
   const FlightFigures network = fly({}, own), analytic = fly({}, narrow), none = fly(without_bias(), own),
                       analytic_none = fly(without_bias(), narrow);
-  std::printf(
-      "%s, %s: RMSE from 8 s on %.2f cm, up to %.2f m off; analytic inverse %.2f cm; without biases %.2f cm, analytic "
-      "inverse %.2f cm\n",
-      Stack::name, what, 100 * network.late_rmse_m, network.max_error_m, 100 * analytic.late_rmse_m,
-      100 * none.late_rmse_m, 100 * analytic_none.late_rmse_m);
+  MESSAGE("RMSE from 8 s on, cm: ", 100 * network.late_rmse_m, ", analytic inverse ", 100 * analytic.late_rmse_m,
+          "; without biases ", 100 * none.late_rmse_m, ", ", 100 * analytic_none.late_rmse_m);
   for (const FlightFigures* flown : {&network, &analytic}) {
     CHECK_FALSE(flown->crashed);
     CHECK(flown->distrusted == 0);
@@ -143,9 +140,7 @@ TEST_CASE("a rotor at 85 % that the usual time constants lose is flown by those 
     return flight.fly(hover, duration_s, weak);
   };
   const FlightFigures own = fly({}), slow = fly(usual);
-  std::printf(
-      "a rotor at 85 %%: RMSE from 8 s on %.2f cm, up to %.2f m off; with the usual time constants %.2f, %.2f\n",
-      100 * own.late_rmse_m, own.max_error_m, 100 * slow.late_rmse_m, slow.max_error_m);
+  MESSAGE("up to ", own.max_error_m, " m off; with the usual time constants ", slow.max_error_m);
   CHECK_FALSE(own.crashed);
   CHECK(own.late_rmse_m < 0.03);
   CHECK(own.max_error_m < 0.3);

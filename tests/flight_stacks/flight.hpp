@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Software in the loop: a module flies a simulated vehicle through a fault script; what happened is a log and some
-// figures.
+// Software in the loop: a module flies a simulated vehicle through a fault script; what happened is some figures.
 #pragma once
 
 #include <algorithm>
-#include <cstdio>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "fault_script.hpp"
@@ -38,7 +35,6 @@ struct FlightFigures {
   std::vector<Reaction> worst;        ///< of each fault
   std::vector<int> fell_back, asked;  ///< ticks of each fault
   std::vector<Status> offered;        ///< what became of the models offered, in order
-  std::vector<std::string> log;
 };
 
 /// One flight. `Stack` is of stacks.hpp; `target(time_s)` gives the set point.
@@ -60,11 +56,8 @@ class FaultyFlight {
 
   /// Boot: a corrupt model is refused and the module stays out; then a sound one.
   bool boot() {
-    say("boot", "a corrupt model offered");
     offer(corrupt_);
     const bool stayed_out = !stack_.ready() && !stack_.run(0).has_commands;
-    say("module", stayed_out ? "not ready: does not register, gives no commands" : "READY ALL THE SAME");
-    say("boot", "a sound model offered");
     offer(sound_);
     return stayed_out && stack_.ready();
   }
@@ -92,7 +85,7 @@ class FaultyFlight {
         const bool on = time_s_ >= fault.start_s - 1e-9 && time_s_ < fault.start_s + fault.duration_s - 1e-9;
         if (on) active_.push_back(&fault);
         if (on && !began[i]) began[i] = true, begin(fault);
-        if (!on && began[i] && !ended[i]) ended[i] = true, end(fault, i);
+        if (!on && began[i] && !ended[i]) ended[i] = true, end(fault);
       }
       feed(ms, now_us, target(time_s_));
       stack_.fly_by_hand(faulty(FaultKind::flown_by_hand));
@@ -117,31 +110,15 @@ class FaultyFlight {
     figures_.module_share = static_cast<double>(by_module) / static_cast<double>(ticks);
     figures_.fallback_share = last_.fallback_share;
     figures_.refused_samples = last_.refused_samples;
-    char line[200];
-    std::snprintf(
-        line, sizeof line,
-        "%s; altitude from %.2f m, tilt up to %.1f deg, error up to %.2f m, RMSE %.3f m; analytic inverse %.2f %% "
-        "of the answers, %u samples refused",
-        figures_.crashed ? "CRASHED" : "in the air", figures_.min_altitude_m,
-        figures_.max_tilt_rad * pinnquad::degrees_per_radian, figures_.max_error_m, figures_.rmse_m,
-        100 * static_cast<double>(figures_.fallback_share), figures_.refused_samples);
-    say("end", line);
     return figures_;
   }
 
  private:
   static constexpr long boot_us = 5'000'000;
 
-  void say(const char* who, const std::string& what) {
-    char head[40];
-    std::snprintf(head, sizeof head, "%8.3f s  %-7s ", time_s_, who);
-    figures_.log.push_back(head + what);
-  }
-
   void offer(const Block& block) {
     const Status status = stack_.offer(block.data(), block.size());
     figures_.offered.push_back(status);
-    say("module", std::string(status == Status::ok ? "takes the model: " : "refuses the model: ") + to_string(status));
   }
 
   void start(const TrajectoryPoint<double>& at) {
@@ -155,7 +132,6 @@ class FaultyFlight {
   }
 
   void begin(const Fault& fault) {
-    say("fault", fault.text);
     switch (fault.kind) {
       case FaultKind::model_swapped: offer(other_); break;
       case FaultKind::model_corrupt: offer(corrupt_); break;
@@ -168,10 +144,7 @@ class FaultyFlight {
     }
   }
 
-  void end(const Fault& fault, std::size_t i) {
-    say("over", std::string(fault.text) + "; at worst the module " + to_string(figures_.worst[i]) + "; " +
-                    std::to_string(figures_.fell_back[i]) + " of " + std::to_string(figures_.asked[i]) +
-                    " answers by the analytic inverse");
+  void end(const Fault& fault) {
     if (fault.kind == FaultKind::payload) weigh(1);
     if (fault.kind == FaultKind::wind) blow(0);
     if (fault.kind == FaultKind::model_swapped || fault.kind == FaultKind::model_too_narrow) offer(sound_);
@@ -249,18 +222,6 @@ class FaultyFlight {
       if (answer.reaction <= Reaction::levels) ++figures_.asked[i];
       if (answer.reaction <= Reaction::levels && answer.status == Status::fell_back) ++figures_.fell_back[i];
     }
-    if (answer.reaction != last_.reaction || answer.stale_inputs != last_.stale_inputs) {
-      constexpr const char* names[5] = {"body rates", "attitude", "position", "set point", "battery voltage"};
-      std::string stale;
-      for (unsigned i = 0; i < 5; ++i) {
-        if (answer.stale_inputs >> i & 1u) stale += std::string(stale.empty() ? " (stale: " : ", ") + names[i];
-      }
-      std::string line = to_string(answer.reaction) + (stale.empty() ? "" : stale + ")");
-      if (answer.reaction <= Reaction::levels) {
-        line += std::string("; status: ") + to_string(answer.status) + "; network: " + to_string(answer.cause);
-      }
-      say("module", line);
-    }
     last_ = answer;
   }
 
@@ -273,12 +234,8 @@ class FaultyFlight {
       const pinnquad::Heading<double> heading = pinnquad::heading(body_.body.attitude);
       held_.yaw_rad = std::atan2(heading.sine, heading.cosine);
       ++figures_.takeovers;
-      say("stack", "its own controller takes over");
     }
-    if (own_flies_ && answer.has_commands && ms - own_since_ms_ >= 1000) {
-      own_flies_ = false;
-      say("stack", "the pilot selects the module again");
-    }
+    if (own_flies_ && answer.has_commands && ms - own_since_ms_ >= 1000) own_flies_ = false;  // selected again
     if (faulty(FaultKind::commands_lost)) return;
     if (!own_flies_) {
       commands_ = answer.commands;
@@ -316,10 +273,7 @@ class FaultyFlight {
       squares += error_m * error_m;
       ++counted;
     }
-    if (altitude_m <= 0) {
-      figures_.crashed = true;
-      say("ground", "the vehicle has hit the ground");
-    }
+    if (altitude_m <= 0) figures_.crashed = true;
   }
 
   const Block sound_ = sound_block<Model>(), other_ = other_block<Model>(), narrow_ = narrow_block<Model>(),

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Both example modules fly their airframe in the simulator, through the fault script: hover, figure-eight, random
-// places. Each flight's log of events is printed and written beside the test program.
+// places.
 #include <doctest/doctest.h>
-
-#include <fstream>
 
 #include "flight.hpp"
 #include "flight_paths.hpp"
@@ -24,15 +22,8 @@ void through_all_faults(const std::string& path, const Target& target, double fa
   FaultyFlight<Stack> flight;
   CHECK(flight.boot());
   const FlightFigures flown = flight.fly(target, duration_s, fault_script);
-  const std::string name = std::string("flight_stacks_") + Stack::name + "_" + path + ".log";
-  std::ofstream file(name);
-  std::printf("%s\n", name.c_str());
-  for (const std::string& line : flown.log) {
-    std::printf("%s\n", line.c_str());
-    file << line << '\n';
-  }
-  CHECK(file.good());
-  INFO(name);
+  INFO(Stack::name, " ", path);
+  MESSAGE("from ", flown.min_altitude_m, " m, tilt up to ", flown.max_tilt_rad, " rad");
   CHECK_FALSE(flown.crashed);
   CHECK(flown.min_altitude_m > lowest_m);
   CHECK(flown.max_tilt_rad < steepest_rad);
@@ -67,10 +58,7 @@ void calm(const std::string& path, const Target& target, double most_rmse_m, flo
   const FlightFigures flown = flight.fly(target, calm_duration_s, no_faults);
   const std::array<Fault, 1> narrow = {{{0.5, 100, FaultKind::model_too_narrow, 0, "", Reaction::flies}}};
   const FlightFigures analytic = by_analytic.fly(target, calm_duration_s, narrow);
-  std::printf(
-      "%s %s without faults: RMSE %.3f m, analytic inverse in %.2f %% of the answers; by the analytic inverse alone "
-      "%.3f m\n",
-      Stack::name, path.c_str(), flown.rmse_m, 100 * static_cast<double>(flown.fallback_share), analytic.rmse_m);
+  INFO(Stack::name, " ", path);
   CHECK_FALSE(flown.crashed);
   CHECK(flown.takeovers == 0);
   CHECK(flown.module_share == 1);
@@ -104,14 +92,7 @@ void carries_a_payload() {
     const bool late = (time_s > loaded_s + 6 && time_s < relieved_s) || time_s > relieved_s + 6;
     if (late) late_error_m = std::max(late_error_m, std::abs(below_m));
   });
-  std::printf(
-      "%s, half as heavy again under a model of too low commands: the analytic inverse flies from %.2f s after to %.2f "
-      "s "
-      "after the load is "
-      "gone; "
-      "%.2f m "
-      "too low at worst, %.3f m late\n",
-      Stack::name, handed_over_s - loaded_s, taken_back_s - relieved_s, deepest_m, late_error_m);
+  INFO(Stack::name);
   CHECK_FALSE(flown.crashed);
   CHECK(handed_over_s > loaded_s);
   CHECK(handed_over_s < loaded_s + 2);

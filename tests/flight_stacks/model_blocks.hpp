@@ -7,28 +7,15 @@
 #include <vector>
 
 #include "../support/block_bytes.hpp"
-#include "pinnquad/deploy/weight_file.hpp"
+#include "../support/trained_of_header.hpp"
 
 namespace pinnquad::autopilot::test {
 
 /// Aligned as a block must be: vectors of bytes come from the heap, which aligns by 16.
 using Block = std::vector<unsigned char>;
 
-template <class Model>
-using Trained =
-    pinnquad::TrainedModel<typename Model::Network, pinnquad::Context<typename Model::Features, typename Model::Vehicle,
-                                                                      typename Model::Outputs>>;
-
-template <class Model>
-Trained<Model> trained_model() {
-  Trained<Model> model;
-  model.network.parameters = Model::parameters;
-  model.input = Model::input;
-  model.output = Model::output;
-  model.envelope_lower = Model::envelope_lower;
-  model.envelope_upper = Model::envelope_upper;
-  return model;
-}
+using pinnquad::test::Trained;
+using pinnquad::test::trained_model;
 
 /// Limits of trust that go with a model, or void (trusting_stacks.hpp).
 template <class Model>

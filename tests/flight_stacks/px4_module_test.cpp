@@ -220,8 +220,7 @@ TEST_CASE("rotors that are not the model's: it does not arm, and says why in one
   set_px4_airframe(airframe);
   world.run(1000);
   CHECK_FALSE(world.can_arm);  // nobody has said so
-  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
-  update_pub.publish(parameter_update_s{});
+  world.set("CA_ROTOR_COUNT", 4);
   world.run(1000);
   CHECK(world.can_arm);
   CHECK(px4::complaints().size() == 1);
@@ -230,13 +229,11 @@ TEST_CASE("rotors that are not the model's: it does not arm, and says why in one
 TEST_CASE("a parameter that changes in flight takes nothing from it") {
   Px4World world;
   world.start_and_fly();
-  px4::parameter_values()["CA_ROTOR_COUNT"] = 6;
-  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
-  update_pub.publish(parameter_update_s{});
+  world.set("CA_ROTOR_COUNT", 6);
   world.run(1000);
   CHECK(world.can_arm);
   world.armed = false;
-  update_pub.publish(parameter_update_s{});
+  world.set("CA_ROTOR_COUNT", 6);
   world.run(1000);
   CHECK_FALSE(world.can_arm);
 }
@@ -367,19 +364,6 @@ TEST_CASE("without set points it holds the place where it was selected, not wher
   for (int i = 1; i < 4; ++i) CHECK(std::abs(world.last.control[i] - world.last.control[0]) < 0.02f);
 }
 
-TEST_CASE("on the ground the motors idle; told to go up, thrust comes over a second") {
-  Px4World world;
-  world.landed = true;
-  world.start_and_fly();
-  for (int i = 0; i < 4; ++i) CHECK(world.last.control[i] == doctest::Approx(0.02));
-  world.set_point.position[2] = -2;
-  world.run(300);
-  CHECK(world.last.control[0] < 0.35f);
-  CHECK(world.last.control[0] > 0.05f);
-  world.run(900);
-  CHECK(world.last.control[0] > 0.5f);
-}
-
 TEST_CASE("armed in the mode, hovering, landing: PX4's land detector says what is so, and PX4 disarms") {
   for (const bool range_finder : {false, true}) {
     for (const float height : {0.7f, 2.0f, 10.0f}) {
@@ -461,11 +445,9 @@ TEST_CASE("motors that are stronger than the model's: it sinks as it is told, an
     world.run(15'000);
     world.set_point.position[2] = NAN;
     world.set_point.velocity[2] = 0.4f;
-    uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
     for (int i = 0; i < 1500; ++i) {
       world.run(10);
-      pinnquad_record_s record{};
-      if (record_sub.update(&record)) REQUIRE(record.lift == 1);
+      REQUIRE(world.record().lift == 1);
       REQUIRE(world.local.vz < 0.8f);
     }
     CHECK(world.height_m() < 6);
@@ -596,9 +578,7 @@ TEST_CASE("one that goes beyond its range later: not armed, the ground station h
   REQUIRE(shell("start") == PX4_OK);
   world.run(1500);
   REQUIRE(world.can_arm);
-  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
-  px4::parameter_values()["PQ_V_XY"] = -3;
-  update_pub.publish(parameter_update_s{});
+  world.set("PQ_V_XY", -3);
   world.run(500);
   CHECK_FALSE(world.can_arm);
   REQUIRE(px4::ground_station().size() == 1);
@@ -608,8 +588,7 @@ TEST_CASE("one that goes beyond its range later: not armed, the ground station h
   world.nav_state = static_cast<uint8_t>(world.mode_id);  // a pilot who comes later hears it too
   world.run(500);
   CHECK(px4::ground_station().size() == 2);
-  px4::parameter_values()["PQ_V_XY"] = 5;
-  update_pub.publish(parameter_update_s{});
+  world.set("PQ_V_XY", 5);
   world.run(500);
   CHECK(world.can_arm);
   CHECK(px4::ground_station().size() == 2);
@@ -644,29 +623,17 @@ TEST_CASE("in flight the sticks' speeds change; what is beyond its range changes
   Px4World world;
   world.sends_set_points = false;
   world.start_and_fly();
-  uORB::Publication<manual_control_setpoint_s> sticks_pub{ORB_ID(manual_control_setpoint)};
-  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
-  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
-  pinnquad_record_s record{};
+  world.sends_sticks = world.sticks.valid = true;
+  world.sticks.pitch = 1;
   const auto forward_m_s = [&] {
-    manual_control_setpoint_s sticks{};
-    sticks.valid = true;
-    sticks.pitch = 1;
-    for (int i = 0; i < 10; ++i) {
-      sticks.timestamp = World::now_us;
-      sticks_pub.publish(sticks);
-      world.run(10);
-      static_cast<void>(record_sub.update(&record));
-    }
-    return record.wanted_velocity_m_s[0];
+    world.run(100);
+    return world.record().wanted_velocity_m_s[0];
   };
   CHECK(forward_m_s() == doctest::Approx(5));
-  px4::parameter_values()["PQ_STK_XY"] = 3;
-  update_pub.publish(parameter_update_s{});
-  CHECK(forward_m_s() == doctest::Approx(3));
-  px4::parameter_values()["PQ_STK_XY"] = 300;
-  update_pub.publish(parameter_update_s{});
-  CHECK(forward_m_s() == doctest::Approx(3));
+  for (const double asked : {3, 300}) {
+    world.set("PQ_STK_XY", asked);
+    CHECK(forward_m_s() == doctest::Approx(3));
+  }
   CHECK(world.can_arm);  // it keeps its mode
 }
 
@@ -723,21 +690,14 @@ TEST_CASE("each step's record is published, and the settings once a second: what
 TEST_CASE("the vehicle is learnt where the parameter asks for it, from one step to the next") {
   Px4World world;
   world.start_and_fly();
-  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
-  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
-  pinnquad_record_s record{};
   const auto asked_for = [&](double value) {
-    px4::parameter_values()["PQ_ONBOARD"] = value;
-    update_pub.publish(parameter_update_s{});
+    world.set("PQ_ONBOARD", value);
     world.run(1);
-    REQUIRE(record_sub.update(&record));
-    return record.learning;
+    return world.record().learning;
   };
-  world.run(1);
-  REQUIRE(record_sub.update(&record));
-  CHECK(record.learning == 0);
+  CHECK(world.record().learning == 0);
   CHECK(asked_for(1) == 1);
-  CHECK((record.learnt & pinnquad::autopilot::CoreRecord::seen_flight) != 0);
+  CHECK((world.record().learnt & pinnquad::autopilot::CoreRecord::seen_flight) != 0);
   CHECK(asked_for(2) == 2);
   CHECK(asked_for(3) == 3);
   CHECK(asked_for(4) == 3);  // beyond its range: what was stays
@@ -760,26 +720,18 @@ TEST_CASE("without a trajectory the sticks fly it along its heading; released, i
   world.sends_set_points = false;
   world.yaw = 0.5f;
   world.start_and_fly();
-  uORB::Publication<manual_control_setpoint_s> sticks_pub{ORB_ID(manual_control_setpoint)};
-  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
-  pinnquad_record_s record{};
-  manual_control_setpoint_s sticks{};
-  sticks.valid = true;
-  const auto fly_by = [&](int ms) {
-    for (int i = 0; i < ms; i += 10) {
-      sticks.timestamp = World::now_us;
-      sticks_pub.publish(sticks);
-      world.run(10);
-      static_cast<void>(record_sub.update(&record));
-    }
+  manual_control_setpoint_s& sticks = world.sticks;
+  world.sends_sticks = sticks.valid = true;
+  const auto flown_for = [&](int ms) {
+    world.run(ms);
+    return world.record();
   };
   constexpr uint8_t flies = 0, holds = 1;
-  fly_by(700);
-  CHECK(record.reaction == holds);  // centred sticks ask for nothing
+  CHECK(flown_for(700).reaction == holds);  // centred sticks ask for nothing
   const double full = px4::parameter_values()["PQ_STK_XY"];
   sticks.pitch = 1;
   sticks.yaw = -1;
-  fly_by(100);
+  pinnquad_record_s record = flown_for(100);
   CHECK(record.reaction == flies);
   CHECK(record.wanted_velocity_m_s[0] == doctest::Approx(full * std::cos(0.5)));
   CHECK(record.wanted_velocity_m_s[1] == doctest::Approx(full * std::sin(0.5)));
@@ -790,30 +742,27 @@ TEST_CASE("without a trajectory the sticks fly it along its heading; released, i
   sticks.roll = 1;
   sticks.throttle = 1;
   world.local.vx = 2;
-  fly_by(100);
+  record = flown_for(100);
   CHECK(record.wanted_velocity_m_s[0] == doctest::Approx(-full * std::sin(0.5)));
   CHECK(record.wanted_velocity_m_s[2] == doctest::Approx(-px4::parameter_values()["PQ_STK_Z"]));
   sticks.roll = sticks.throttle = 0.04f;  // within the dead zone: released
-  fly_by(700);
+  record = flown_for(700);
   CHECK(record.reaction == flies);  // brakes
   CHECK(record.wanted_velocity_m_s[0] == 0);
   world.local.vx = 0.1f;
-  fly_by(700);
-  CHECK(record.reaction == holds);
+  CHECK(flown_for(700).reaction == holds);
   sticks.throttle = 1;
   world.local.vz = -1;
-  fly_by(100);
+  world.run(100);
   sticks.throttle = 0;
-  fly_by(700);
+  record = flown_for(700);
   CHECK(record.reaction == flies);  // a climb is braked too
   CHECK(record.wanted_velocity_m_s[2] == 0);
   world.local.vz = 0;
-  fly_by(700);
-  CHECK(record.reaction == holds);
+  CHECK(flown_for(700).reaction == holds);
   sticks.pitch = 1;
   sticks.valid = false;
-  fly_by(100);
-  CHECK(record.reaction == holds);  // a radio that is lost flies nothing
+  CHECK(flown_for(100).reaction == holds);  // a radio that is lost flies nothing
 }
 
 TEST_CASE("a place to go to goes before the sticks, a trajectory before both") {
@@ -821,39 +770,31 @@ TEST_CASE("a place to go to goes before the sticks, a trajectory before both") {
   world.sends_set_points = false;
   world.start_and_fly();
   uORB::Publication<goto_setpoint_s> goto_pub{ORB_ID(goto_setpoint)};
-  uORB::Publication<manual_control_setpoint_s> sticks_pub{ORB_ID(manual_control_setpoint)};
-  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
-  pinnquad_record_s record{};
   goto_setpoint_s place{};
   place.position[0] = 3, place.position[2] = -1;
   place.flag_control_heading = true;
   place.heading = 0.25f;
-  manual_control_setpoint_s sticks{};
-  sticks.valid = true;
-  sticks.pitch = 1;
+  world.sends_sticks = world.sticks.valid = true;
+  world.sticks.pitch = 1;
   const auto run = [&](int ms, bool sends_places) {
     for (int i = 0; i < ms; i += 10) {
-      sticks.timestamp = place.timestamp = World::now_us;
-      sticks_pub.publish(sticks);
+      place.timestamp = World::now_us;
       if (sends_places) goto_pub.publish(place);
       world.run(10);
-      static_cast<void>(record_sub.update(&record));
     }
+    return world.record();
   };
-  run(100, true);
+  pinnquad_record_s record = run(100, true);
   CHECK(record.wanted_position_m[0] == 3);
   CHECK(record.wanted_yaw_rad == 0.25f);
   CHECK(std::isnan(record.wanted_velocity_m_s[0]));
   world.sends_set_points = true;
   world.set_point.position[0] = 1;
-  run(100, true);
-  CHECK(record.wanted_position_m[0] == 1);
+  CHECK(run(100, true).wanted_position_m[0] == 1);
   world.sends_set_points = false;
-  run(400, true);
-  CHECK(record.wanted_position_m[0] == 1);  // silent for less than half a second
-  run(200, true);
-  CHECK(record.wanted_position_m[0] == 3);
-  run(700, false);
+  CHECK(run(400, true).wanted_position_m[0] == 1);  // silent for less than half a second
+  CHECK(run(200, true).wanted_position_m[0] == 3);
+  record = run(700, false);
   CHECK(std::isnan(record.wanted_position_m[0]));
   CHECK(record.wanted_velocity_m_s[0] == doctest::Approx(px4::parameter_values()["PQ_STK_XY"]));
 }

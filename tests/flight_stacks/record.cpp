@@ -60,7 +60,6 @@ int record(const std::string& folder, const Target& target, const std::vector<Fa
   std::ofstream ticks = record_file<CoreRecord>(folder, "flight");
   const FlightFigures flown =
       flight.fly(target, duration_s, faults, [&](const CoreRecord& tick) { ticks << csv_row(tick); });
-  for (const std::string& line : flown.log) std::printf("%s\n", line.c_str());
   settings.close();
   ticks.close();
   return settings && ticks && !flown.crashed ? 0 : 1;

@@ -361,31 +361,6 @@ TEST_CASE("who flies level above its place, and is expected to fall, is borne by
   CHECK(lift_after_a_second(8) == 1);
 }
 
-TEST_CASE("the attitude of a flown window is the same, whichever of its two quaternions the estimator says") {
-  const pinnquad::FlownMotionSettings<float> settings{100'000, 0.01f, 0};
-  pinnquad::FlownMotion<float> one_sign(settings), both(settings);
-  pinnquad::State<float> state;
-  int windows = 0;
-  for (int tick = 0; tick < 400; ++tick) {
-    const auto now_us = static_cast<std::uint64_t>(1'000'000 + 2000 * tick);
-    const auto flown = [&](pinnquad::FlownMotion<float>& motion, float sign) {
-      const pinnquad::Quaternion<float> q =
-          pinnquad::from_euler<float>({0.03f * static_cast<float>(tick % 25), -0.2f, 1.0f});
-      state.attitude = {sign * q.w, sign * q.x, sign * q.y, sign * q.z};
-      motion.velocity(now_us, state.velocity_m_s);
-      motion.body_rates(now_us, state.body_rates_rad_s);
-      return motion.tick(now_us, true, state, {0.5f, 0.5f, 0.5f, 0.5f});
-    };
-    const bool complete = flown(one_sign, 1);
-    REQUIRE(flown(both, tick % 25 < 12 ? -1.0f : 1.0f) == complete);
-    if (!complete) continue;
-    ++windows;
-    const pinnquad::Quaternion<float>&a = one_sign.motion().attitude, &b = both.motion().attitude;
-    CHECK(std::abs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z) == doctest::Approx(1).epsilon(1e-5));
-  }
-  CHECK(windows >= 2);
-}
-
 TEST_CASE("the analytic inverse knows the effects that the vehicle is said to have") {
   using Dragging = pinnquad::Quadrotor<float, pinnquad::QuadraticDrag, pinnquad::RotorDrag>;
   using View = pinnquad::ModelView<DemoQuadModel>;

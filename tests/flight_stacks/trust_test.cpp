@@ -49,9 +49,6 @@ Trusted flown(const Target& target, double duration_s, const Faults& faults) {
 template <class Stack>
 void no_alarm(const char* path, const Trusted& flight) {
   INFO(Stack::name, ", ", path);
-  std::printf("%s %s: command residual up to %.4f, limit %.4f; %ld of %ld answers outside the distribution\n",
-              Stack::name, path, static_cast<double>(flight.most_residual),
-              StructuredQuadModelTrust::command_residual_limit, flight.far, flight.ticks);
   CHECK_FALSE(flight.figures.crashed);
   CHECK(flight.most_residual > 1e-4f);  // it was measured
   CHECK(flight.distrusted == 0);
@@ -63,9 +60,6 @@ template <class Stack, class Target>
 Trusted with_fault(const char* what, const Target& target, FaultKind kind, double value) {
   const std::vector<Fault> fault = {{6, 10, kind, value, what, Reaction::flies}};
   const Trusted flight = flown<Stack>(target, 22, fault);
-  std::printf("%s, %s: distrusted in %.1f %% of the flight, command residual up to %.4f, error up to %.2f m\n",
-              Stack::name, what, 100.0 * static_cast<double>(flight.distrusted) / static_cast<double>(flight.ticks),
-              static_cast<double>(flight.most_residual), flight.figures.max_error_m);
   CHECK_FALSE(flight.figures.crashed);
   CHECK(flight.by_analytic_while_distrusted == flight.distrusted);
   return flight;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// libFuzzer target over blocks that describe themselves: whatever the bytes, open() reads none beyond the block and
-// says why it refuses one; an accepted block is looked at, asked and certified without a trap, and a program refuses it
-// in one line or takes it. The mutator makes most inputs pass checksum, counts, hash: chance would not. Build and run:
-// scripts/heavy/fuzz.
+// libFuzzer target over model blocks: whatever the bytes, open() reads none beyond the block and says why it refuses
+// one; an accepted block is looked at, asked and certified without a trap, and a program refuses it in one line or
+// takes it. A view of a known shape, which flies, is untouched unless it accepts, and then its numbers are sound. The
+// mutator makes most inputs pass checksum, counts, hash: chance would not. Build and run: scripts/heavy/fuzz.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -14,7 +14,10 @@
 
 #include "fuzz/fuzzing.hpp"
 #include "pinnquad/deploy/block_model.hpp"
+#include "pinnquad/exported/model_view.hpp"
+#include "pinnquad/inference/self_test.hpp"
 #include "support/block_bytes.hpp"
+#include "support/small_model_variants.hpp"
 
 namespace {
 
@@ -84,6 +87,50 @@ void look(const Bytes& bytes) {
     model.has_affine_schema();
   } catch (const InputError& error) {
     expect(std::string(error.what()).find('\n') == std::string::npos, "a refusal is one line");
+  }
+}
+
+/// As flight code opens it: std::isfinite judges the numbers, and not the library's own test of the bits.
+template <class Shape>
+void fly(const unsigned char* block, std::size_t size) {
+  using View = ModelView<Shape>;
+  using Scalar = typename Shape::Scalar;
+  const auto all_finite = [](const auto& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [](Scalar value) { return bool(std::isfinite(value)); });
+  };
+  View view;
+  view.input.mean[0] = Scalar(77);
+  const Status status = View::open(block, size, view);
+  ++tally.count[std::string("view: ") + to_string(status)];
+  if (status != Status::ok) {
+    expect(view.parameters() == nullptr && view.input.mean[0] == Scalar(77), "a refusal leaves the view alone");
+    return;
+  }
+  const auto* weights = reinterpret_cast<const unsigned char*>(view.parameters());
+  expect(
+      weights >= block && weights + sizeof(typename Shape::Network::Parameters) + Header::checksum_size <= block + size,
+      "the weights lie in the block");
+  expect(all_finite(view.input.mean) && all_finite(view.output.mean), "means are finite");
+  for (std::size_t i = 0; i < view.input.mean.size(); ++i) {
+    expect(view.input.standard_deviation[i] > 0 && view.envelope_lower[i] <= view.envelope_upper[i],
+           "deviations and envelope are sound");
+  }
+  static typename View::Packed packed;
+  expect(View::open(block, size, view, packed) == Status::ok, "what opens is packed");
+  const InverseDynamics<View> inverse(view);
+  const Status tested = self_test(inverse);
+  for (std::size_t i = 0; i < std::min<std::size_t>(view.golden_features.size(), 8); ++i) {
+    auto x = view.golden_features[i];
+    expect(all_finite(x) && all_finite(view.golden_commands[i]), "golden vectors are finite");
+    const Scalar untouched = Scalar(-12345);
+    Commands<Scalar> u{untouched, untouched, untouched, untouched};
+    const Status answered = inverse.predict_features(x.data(), u);
+    for (const Scalar command : u) {
+      expect(answered == Status::ok ? bool(std::isfinite(command)) : command == untouched, "finite, or untouched");
+    }
+    expect(tested != Status::ok || answered == Status::ok, "what passes its self test answers its golden vectors");
+    x[i] = view.envelope_upper[i] + std::abs(view.envelope_upper[i]) + Scalar(1);
+    expect(inverse.predict_features(x.data(), u) == Status::outside_envelope, "the envelope holds");
   }
 }
 
@@ -234,6 +281,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const test::BlockBytes memory(bytes);  // exactly as long: the sanitizer sees a read past the end
   open<float>(memory.data(), memory.size());
   open<double>(memory.data(), memory.size());
+  fly<test::SmallModel>(memory.data(), memory.size());
+  fly<test::DoubleModel>(memory.data(), memory.size());
   look(bytes);
   return 0;
 }

@@ -7,6 +7,7 @@
 #include "pinnquad/outputs/rigid_body_base.hpp"
 #include "pinnquad/outputs/wrench_outputs.hpp"
 #include "support/drawn_model.hpp"
+#include "support/small_model_variants.hpp"
 
 namespace {
 
@@ -28,7 +29,9 @@ std::string block() {
 int main(int argument_count, char** arguments) {
   return pinnquad_test::write_seeds(
       argument_count, arguments,
-      {block<ModelOf<Network<float, InputSize<16>, Dense<3>, Gelu, Dense<4>>, PaperFeatures>>(),
+      {pinnquad_test::as_text(model_block<test::SmallModel>()),
+       pinnquad_test::as_text(model_block<test::DoubleModel>()),
+       block<ModelOf<Network<float, InputSize<16>, Dense<3>, Gelu, Dense<4>>, PaperFeatures>>(),
        block<ModelOf<Network<double, InputSize<Window::size>, DenseWithoutBias<4>>, Window, RotorSpeedOutputs>>(),
        block<ModelOf<Network<float, InputSize<16>, Clip, Dense<6>>, PaperFeatures, AccelerationOutputs>>(),
        block<ModelOf<MonotonePredictor<Physics, Residual>, Physics, AxisCommandOutputs>>(),

@@ -36,21 +36,6 @@ namespace {
 /// The commands are near 0.5; two layers of float sums and the scalers: some ten ulp of it.
 constexpr double float_tolerance = 2e-6;
 
-/// The features of a model, in double, through plain loops.
-std::vector<double> plain_commands(const float* x) {
-  std::vector<double> z(16);
-  for (std::size_t i = 0; i < 16; ++i) {
-    z[i] = (static_cast<double>(x[i]) - static_cast<double>(SmallModel::input.mean[i])) /
-           static_cast<double>(SmallModel::input.standard_deviation[i]);
-  }
-  auto y = plain::forward({{16, 8, 4}, plain::Activation::relu}, SmallModel::parameters, z).outputs;
-  for (std::size_t i = 0; i < 4; ++i) {
-    y[i] = y[i] * static_cast<double>(SmallModel::output.standard_deviation[i]) +
-           static_cast<double>(SmallModel::output.mean[i]);
-  }
-  return y;
-}
-
 template <class Model>
 void check_refused(const typename InverseDynamics<Model>::Inputs& inputs, Status expected) {
   Commands<float> commands = marked();
@@ -100,7 +85,7 @@ TEST_CASE("predict() agrees with plain loops in double") {
     REQUIRE(inverse.predict(inputs, commands) == Status::ok);
     float x[16] = {};
     PaperFeatures::extract(inputs, x);
-    const auto expected = plain_commands(x);
+    const auto expected = plain::commands(SmallModel{}, x);
     for (std::size_t k = 0; k < 4; ++k)
       CHECK(std::fabs(static_cast<double>(commands[k]) - expected[k]) <= float_tolerance);
     REQUIRE(inverse.predict_features(x, by_features) == Status::ok);
@@ -189,16 +174,4 @@ TEST_CASE("broken weights: output_not_finite, commands untouched") {
   check_refused<NanInFirstWeight>(inputs_of(random, 1), Status::output_not_finite);
   check_refused<NanInLastBias>(inputs_of(random, 1), Status::output_not_finite);
   check_refused<InfiniteSpread>(inputs_of(random, 1), Status::output_not_finite);
-}
-
-TEST_CASE("the vector unit's kernel and the portable one agree") {
-  RandomStates random(175);
-  for (int i = 0; i < 100; ++i) {
-    std::array<float, 16> z{};
-    for (float& v : z) v = random.scalar<float>(-2, 2);
-    std::array<float, 4> y{}, portable{};
-    InverseDynamics<SmallModel>{}.forward(z.data(), y.data());
-    SmallModel::Network::forward(SmallModel::parameters.data(), z.data(), portable.data());
-    for (std::size_t k = 0; k < 4; ++k) CHECK(std::fabs(static_cast<double>(y[k] - portable[k])) <= float_tolerance);
-  }
 }

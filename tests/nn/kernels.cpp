@@ -299,16 +299,3 @@ TEST_CASE_TEMPLATE("portable: each output has the bits of one plain chain, held 
     CHECK(without_bias == chain_without_bias);
   });
 }
-
-TEST_CASE("the portable kernel has one order of operations: bias first, inputs ascending") {
-  // 1e8 absorbs a 1 in float unless the 1e8 has gone before
-  const float weight[3] = {1.0F, 1.0F, 1.0F};
-  const float bias[1] = {1e8F};
-  const float x[3] = {-1e8F, 1.0F, 2.0F};
-  float y[1] = {};
-  pinnquad::multiply_row_major<1, 3>(weight, bias, x, y);
-  CHECK(y[0] == 3.0F);
-  const float reversed[3] = {2.0F, 1.0F, -1e8F};
-  pinnquad::multiply_row_major<1, 3>(weight, bias, reversed, y);
-  CHECK(y[0] == 0.0F);
-}

@@ -176,23 +176,6 @@ TEST_CASE_TEMPLATE("forward agrees with plain loops in double", Scalar, float, d
   compare(Network<Scalar, InputSize<1>, Dense<1>>{}, {{1, 1}, plain::Activation::none});
 }
 
-TEST_CASE_TEMPLATE("activations", Scalar, float, double) {
-  using ReluLayer = typename Relu::template Bind<Scalar, 1>;
-  using TanhLayer = typename Tanh::template Bind<Scalar, 1>;
-  const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
-  const Scalar infinity = std::numeric_limits<Scalar>::infinity();
-  CHECK(ReluLayer::activate(Scalar(-2)) == Scalar(0));
-  CHECK(ReluLayer::activate(Scalar(3)) == Scalar(3));
-  CHECK(ReluLayer::activate(Scalar(0)) == Scalar(0));
-  CHECK(ReluLayer::activate(-infinity) == Scalar(0));
-  CHECK(ReluLayer::activate(infinity) == infinity);
-  const Scalar through_relu = ReluLayer::activate(nan), through_tanh = TanhLayer::activate(nan);
-  CHECK(through_relu != through_relu);
-  CHECK(through_tanh != through_tanh);
-  CHECK(TanhLayer::activate(infinity) == Scalar(1));
-  CHECK(TanhLayer::activate(Scalar(-0.5)) == -TanhLayer::activate(Scalar(0.5)));
-}
-
 namespace {
 /// Layer by layer through Layer::forward, nothing fused or repeated.
 template <class Type, int Index = 0>
@@ -249,15 +232,4 @@ TEST_CASE_TEMPLATE("fused activations and loops over equal layers keep the bits 
   compare(Network<Scalar, InputSize<6>, D6, pinnquad::Elu, D6, pinnquad::Elu, D6, pinnquad::LeakyRelu, D6,
                   pinnquad::LeakyRelu, Dense<3>>{});
   compare(Network<Scalar, InputSize<70>, Dense<60>, Relu, Dense<60>, Relu, Dense<60>, Relu, Dense<2>>{});
-}
-
-TEST_CASE("a network is a value: a copy has its own parameters") {
-  Network<double, InputSize<2>, Dense<2>, Relu, Dense<1>> first;
-  first.parameters.fill(0.5);
-  auto second = first;
-  second.parameters.fill(0.0);
-  const double x[2] = {1, 1};
-  double y = 0;
-  first.forward(x, &y);
-  CHECK(y == doctest::Approx(2.0));
 }

@@ -10,6 +10,7 @@
 #include "pinnquad/dynamics/linearized.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "pinnquad/outputs/wrench_outputs.hpp"
+#include "support/slope_differences.hpp"
 
 using namespace pinnquad;
 
@@ -30,7 +31,6 @@ Airframe<double> crooked() {
 }
 
 constexpr std::array<double, rotor_count> some_commands = {0.31, 0.62, 0.44, 0.57};
-constexpr double step = 1e-6;
 
 }  // namespace
 
@@ -43,20 +43,9 @@ TEST_CASE_TEMPLATE("a vector schema on a crooked airframe: there and back, slope
   for (std::size_t i = 0; i < rotor_count; ++i) CHECK(u[i] == doctest::Approx(some_commands[i]).epsilon(1e-12));
 
   Schema::slopes(static_cast<const double*>(nullptr), static_cast<const double*>(y), setting, slopes);
-  for (int k = 0; k < Schema::size; ++k) {
-    double above[rotor_count], below[rotor_count];
-    const double kept = y[k];
-    y[k] = kept + step;
-    Schema::commands(static_cast<const double*>(nullptr), static_cast<const double*>(y), setting, above);
-    y[k] = kept - step;
-    Schema::commands(static_cast<const double*>(nullptr), static_cast<const double*>(y), setting, below);
-    y[k] = kept;
-    for (int i = 0; i < rotor_count; ++i) {
-      CAPTURE(i);
-      CAPTURE(k);
-      CHECK(slopes[i * Schema::size + k] == doctest::Approx((above[i] - below[i]) / (2 * step)).epsilon(1e-6));
-    }
-  }
+  test::check_slopes(static_cast<double*>(y), Schema::size, slopes, [&](const double* outputs, double* commands) {
+    Schema::commands(static_cast<const double*>(nullptr), outputs, setting, commands);
+  });
 }
 
 TEST_CASE("a wrench and accelerations on a crooked airframe are what its rotors and its inertia make of commands") {
@@ -95,18 +84,7 @@ TEST_CASE("the linearised inverse on a crooked airframe, of more features than i
   double x[features] = {0.3, -0.2, -1.1, 4.0, -3.0, 0.5, 1, 2, 3, 0.1, 0.2, 0.3, 0.05, -0.06, 0.6, 0.8, 1.5};
   double slopes[rotor_count * features] = {};
   LinearizedBase::slopes<features>(static_cast<const double*>(x), prepared, slopes);
-  for (int k = 0; k < features; ++k) {
-    double above[rotor_count], below[rotor_count];
-    const double kept = x[k];
-    x[k] = kept + step;
-    LinearizedBase::commands(static_cast<const double*>(x), prepared, above);
-    x[k] = kept - step;
-    LinearizedBase::commands(static_cast<const double*>(x), prepared, below);
-    x[k] = kept;
-    for (int i = 0; i < rotor_count; ++i) {
-      CAPTURE(i);
-      CAPTURE(k);
-      CHECK(slopes[i * features + k] == doctest::Approx((above[i] - below[i]) / (2 * step)).epsilon(1e-6));
-    }
-  }
+  test::check_slopes(static_cast<double*>(x), features, slopes, [&](const double* moved, double* commands) {
+    LinearizedBase::commands(moved, prepared, commands);
+  });
 }

@@ -9,40 +9,15 @@
 #include <vector>
 
 #include "pinnquad/inference/inverse_dynamics.hpp"
-#include "pinnquad/model/axis_aligned.hpp"
 
 namespace pinnquad::test {
-
-/// A predictor (model/predictor.hpp) in double.
-template <class Answer>
-struct InDouble {
-  using type = typename Answer::template Rebind<double>;
-};
-template <class Answer>
-using InDoubleOf = typename InDouble<Answer>::type;
-template <class First, class Second>
-struct InDouble<Sum<First, Second>> {
-  using type = Sum<InDoubleOf<First>, InDoubleOf<Second>>;
-};
-template <class Scalar, int FeatureCount, int... First>
-struct InDouble<AxisAligned<Scalar, FeatureCount, First...>> {
-  using type = AxisAligned<double, FeatureCount, First...>;
-};
-template <class Inner, int FeatureCount, int... First>
-struct InDouble<Masked<Inner, FeatureCount, First...>> {
-  using type = Masked<InDoubleOf<Inner>, FeatureCount, First...>;
-};
-template <class Inner>
-struct InDouble<Saturated<Inner>> {
-  using type = Saturated<InDoubleOf<Inner>>;
-};
 
 /// A header's numbers in double, in an instance.
 template <class Header>
 struct DoubleInstance {
   static constexpr ModelKind kind = ModelKind::instance;
   using Scalar = double;
-  using Network = InDoubleOf<typename Header::Network>;
+  using Network = typename Header::Network::template Rebind<double>;
   using Features = typename Header::Features;
   using Outputs = typename Header::Outputs;
   using Vehicle = typename Header::Vehicle;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace plain {
@@ -55,6 +56,25 @@ Pass forward(const Network& network, const Parameters& parameters, std::vector<d
   }
   pass.outputs = x;
   return pass;
+}
+
+/// Commands of the small model (support/small_model.hpp), or of one with other numbers, for features in physical units.
+template <class Model>
+std::vector<double> commands(const Model& model, const float* x) {
+  const auto scaled = [](const auto& scaler, std::size_t i) {
+    return std::pair(static_cast<double>(scaler.mean[i]), static_cast<double>(scaler.standard_deviation[i]));
+  };
+  std::vector<double> z(16);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const auto [mean, deviation] = scaled(model.input, i);
+    z[i] = (static_cast<double>(x[i]) - mean) / deviation;
+  }
+  auto y = forward({{16, 8, 4}, Activation::relu}, model.parameters, z).outputs;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const auto [mean, deviation] = scaled(model.output, i);
+    y[i] = y[i] * deviation + mean;
+  }
+  return y;
 }
 
 }  // namespace plain

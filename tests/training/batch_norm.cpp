@@ -165,8 +165,11 @@ TEST_CASE_TEMPLATE("gradient through the batch's statistics against central diff
                    Network<double, InputSize<5>, BatchNorm, Dense<6>, BatchNorm, Tanh, Dense<3>, BatchNorm>,
                    Network<double, InputSize<5>, Tanh, BatchNorm, BatchNorm, Relu, Dense<3>>,
                    Network<double, InputSize<5>, DenseWithoutBias<6>, BatchNorm, pinnquad::test::Softmax, Dense<3>>) {
-  SUBCASE("packs of 4") { check_gradient<Net, GenericPack<double, 4>>(); }
-  SUBCASE("packs of 3") { check_gradient<Net, GenericPack<double, 3>>(); }
+  check_gradient<Net, GenericPack<double, 4>>();
+}
+
+TEST_CASE("gradient through the batch's statistics in packs of 3") {
+  check_gradient<Network<double, InputSize<5>, Tanh, BatchNorm, BatchNorm, Relu, Dense<3>>, GenericPack<double, 3>>();
 }
 
 TEST_CASE_TEMPLATE("running statistics: 0.9 old + 0.1 of the batch, variance with divisor N - 1", Pack,
@@ -198,28 +201,6 @@ TEST_CASE_TEMPLATE("running statistics: 0.9 old + 0.1 of the batch, variance wit
     for (std::size_t i = 0; i < 20; ++i) {
       CHECK(std::fabs(static_cast<double>(net.parameters[i]) - expected.parameters[i]) <= rounding<Scalar>(100));
     }
-  }
-}
-
-TEST_CASE("prediction is the network with its running statistics, whatever the batch") {
-  std::mt19937_64 engine(163);
-  const auto net = random_batch_norm_network<Small>(engine);
-  auto gradient = std::make_unique<NetworkGradient<Small, 16>>();
-  gradient->load(net.parameters);
-  for (const int samples : {16, 1, 5}) {
-    Rows x(static_cast<std::size_t>(samples), std::vector<double>(16));
-    for (auto& row : x) fill_uniform(row, engine, 2.0);
-    put(*gradient, x);
-    gradient->predict(samples);
-    for (int i = 0; i < samples; ++i) {
-      double y[4] = {};
-      net.forward(x[static_cast<std::size_t>(i)].data(), y);
-      for (int k = 0; k < 4; ++k) CHECK(gradient->output(k, i) == doctest::Approx(y[k]).epsilon(1e-12));
-    }
-    gradient->follow_statistics();  // a prediction has nothing to follow
-    Small::Parameters after{};
-    gradient->store(after);
-    CHECK(after == net.parameters);
   }
 }
 

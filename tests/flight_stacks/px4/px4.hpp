@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "messages.hpp"
+#include "parameter_names.hpp"  // types of module.yaml's, by CMakeLists.txt
 #include "uorb.hpp"
 
 #define PX4_OK 0
@@ -170,14 +171,6 @@ using ParamFloat = Parameter<Name, float>;
 template <class Name>
 using ParamInt = Parameter<Name, int32_t>;
 
-#define PINNQUAD_TEST_NAME(NAME)               \
-  namespace px4 {                              \
-  namespace params {                           \
-  struct NAME {                                \
-    static constexpr const char* text = #NAME; \
-  };                                           \
-  }                                            \
-  }
 #define PINNQUAD_TEST_STRIP(...) __VA_ARGS__
 #define PINNQUAD_TEST_NAME_OF(...)
 #define PINNQUAD_TEST_MEMBER(declaration) PINNQUAD_TEST_STRIP declaration;
@@ -193,35 +186,6 @@ using ParamInt = Parameter<Name, int32_t>;
 #define DEFINE_PARAMETERS(...)                            \
   PINNQUAD_TEST_EACH28(PINNQUAD_TEST_MEMBER, __VA_ARGS__) \
   void updateParamsImpl() final { PINNQUAD_TEST_EACH28(PINNQUAD_TEST_UPDATE, __VA_ARGS__) }
-
-PINNQUAD_TEST_NAME(PQ_OUT_MIN)
-PINNQUAD_TEST_NAME(PQ_AGE_RATES)
-PINNQUAD_TEST_NAME(PQ_AGE_ATT)
-PINNQUAD_TEST_NAME(PQ_AGE_POS)
-PINNQUAD_TEST_NAME(PQ_AGE_SP)
-PINNQUAD_TEST_NAME(PQ_G_POS)
-PINNQUAD_TEST_NAME(PQ_G_VEL)
-PINNQUAD_TEST_NAME(PQ_G_TILT)
-PINNQUAD_TEST_NAME(PQ_G_YAW)
-PINNQUAD_TEST_NAME(PQ_G_RATE)
-PINNQUAD_TEST_NAME(PQ_G_YAWRATE)
-PINNQUAD_TEST_NAME(PQ_V_XY)
-PINNQUAD_TEST_NAME(PQ_V_UP)
-PINNQUAD_TEST_NAME(PQ_V_DN)
-PINNQUAD_TEST_NAME(PQ_TKO_T)
-PINNQUAD_TEST_NAME(PQ_BIAS_T)
-PINNQUAD_TEST_NAME(PQ_BIAS_T_ROT)
-PINNQUAD_TEST_NAME(PQ_BIAS_MAX)
-PINNQUAD_TEST_NAME(PQ_BIAS_ACC)
-PINNQUAD_TEST_NAME(PQ_BIAS_DELAY)
-PINNQUAD_TEST_NAME(PQ_RECORD)
-PINNQUAD_TEST_NAME(PQ_ONBOARD)
-PINNQUAD_TEST_NAME(PQ_STK_XY)
-PINNQUAD_TEST_NAME(PQ_STK_Z)
-PINNQUAD_TEST_NAME(PQ_STK_YAW)
-PINNQUAD_TEST_NAME(PQ_AIR_RHO)
-PINNQUAD_TEST_NAME(PQ_THR_CURVE)
-PINNQUAD_TEST_NAME(PQ_BAT_SCALE)
 
 /// The shell's side of a module: a stop waits 5 s for the module to go by itself, then takes it away. `Shell` says
 /// where the module is kept.

@@ -121,10 +121,26 @@ class Px4World {
     fly();
   }
 
+  /// A parameter, and that it changed.
+  void set(const char* name, double value) {
+    px4::parameter_values()[name] = value;
+    update_pub.publish(parameter_update_s{});
+  }
+  /// The record of the last step that the module published.
+  pinnquad_record_s record() {
+    pinnquad_record_s last_record{};
+    REQUIRE(record_sub.copy(&last_record));
+    return last_record;
+  }
+
   void run(int ms) {
     for (int i = 0; i < ms; ++i) {
       World::now_us += 1000;
       const uint64_t now = World::now_us;
+      if (sends_sticks && now % 10'000 == 0) {
+        sticks.timestamp = now;
+        sticks_pub.publish(sticks);
+      }
       if (moves) move();
       if (!attitude_stops && now % 4000 == 0) {
         vehicle_attitude_s m{};
@@ -181,6 +197,8 @@ class Px4World {
   vehicle_local_position_s local{};
   trajectory_setpoint_s set_point{};
   failsafe_flags_s flags{};
+  manual_control_setpoint_s sticks{};
+  bool sends_sticks = false;
   bool moves = false;         ///< up and down, as the motors say, over a ground
   bool detects = false;       ///< PX4's land detector says what is landed, its commander disarms after
   bool range_finder = false;  ///< that sees the height
@@ -309,6 +327,9 @@ class Px4World {
   uORB::Publication<vehicle_local_position_s> local_pub{ORB_ID(vehicle_local_position)};
   uORB::Publication<trajectory_setpoint_s> set_point_pub{ORB_ID(trajectory_setpoint)};
   uORB::Publication<vehicle_land_detected_s> land_pub{ORB_ID(vehicle_land_detected)};
+  uORB::Publication<parameter_update_s> update_pub{ORB_ID(parameter_update)};
+  uORB::Publication<manual_control_setpoint_s> sticks_pub{ORB_ID(manual_control_setpoint)};
+  uORB::Subscription record_sub{ORB_ID(pinnquad_record)};
   uORB::Publication<failsafe_flags_s> flags_pub{ORB_ID(failsafe_flags)};
   uORB::Publication<vehicle_status_s> status_pub{ORB_ID(vehicle_status)};
   uORB::Publication<register_ext_component_reply_s> reply_pub{ORB_ID(register_ext_component_reply)};

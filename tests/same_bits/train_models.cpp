@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
 // Flies the simulator, trains one model per output schema on that flight and writes the headers.
-//   train_outputs FOLDER
+//   train_models FOLDER
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <string>
 
-#include "own_outputs/setting.hpp"
+#include "pinnquad/aero/drag.hpp"
 #include "pinnquad/deploy/header_writer.hpp"
-#include "pinnquad/deploy/weight_file.hpp"
+#include "pinnquad/dynamics/airframes/paper_quadrotor.hpp"
 #include "pinnquad/evaluation/errors.hpp"
 #include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/loss/physics_informed.hpp"
 #include "pinnquad/nn/tanh.hpp"
+#include "pinnquad/outputs/residual_outputs.hpp"
+#include "pinnquad/outputs/wrench_outputs.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/flights.hpp"
 #include "pinnquad/training/initialization.hpp"
@@ -23,9 +25,10 @@ namespace {
 
 using namespace pinnquad;
 
-std::vector<std::array<float, 16>> golden_of(const Flight& flight) {
-  std::vector<std::array<float, 16>> golden;
-  for (std::size_t i = 0; i < 4; ++i) golden.push_back(sample_features<PaperFeatures, float>(flight[100 + 700 * i]));
+template <class Features>
+auto golden_of(const Flight& flight) {
+  std::vector<std::array<float, Features::size>> golden;
+  for (std::size_t i = 0; i < 4; ++i) golden.push_back(sample_features<Features, float>(flight[100 + 700 * i]));
   return golden;
 }
 
@@ -45,7 +48,7 @@ auto train(const Flight& flight, const std::string& folder, const std::string& f
   constexpr int epochs = 240;
   for (int epoch = 0; epoch < epochs; ++epoch) trainer->epoch(data, {epoch, epochs}, engine);
   auto model = make_trained_model(trainer->network(), context, rows);
-  write_model_header(folder + "/" + file, name, model, golden_of(flight),
+  write_model_header(folder + "/" + file, name, model, golden_of<PaperFeatures>(flight),
                      {"simulated flight", content_hash(flight), flight.size(), 5, epochs, "PaperLoss"});
   return model;
 }
@@ -69,44 +72,25 @@ void write_ridge(const Flight& flight, const Trained& envelope, const std::strin
   for (const double v : fit.intercept) model.network.parameters.at(at++) = float(v);
   model.envelope_lower = envelope.envelope_lower;
   model.envelope_upper = envelope.envelope_upper;
-  write_model_header(file, "RidgeModel", model, golden_of(flight),
+  write_model_header(file, "RidgeModel", model, golden_of<PaperFeatures>(flight),
                      {"simulated flight", content_hash(flight), flight.size(), 0, 0, "none"});
 }
 
 using Structured = Context<PhysicsFeatures, PaperQuadrotor, AxisCommandOutputs>;
 
-ResidualTraining short_training() {
-  ResidualTraining how;
-  how.epochs = 40;
-  return how;
-}
-
-template <class Answer>
-void write_structured(const Answer& answer, const Structured& context, const RowSet& rows, const Flight& flight,
-                      const std::string& file, const std::string& name) {
-  const auto model = make_trained_model(answer, context, rows);
-  using Model = std::decay_t<decltype(model)>;
-  std::vector<typename Model::FeatureVector> golden;
-  for (std::size_t i = 0; i < 4; ++i) {
-    golden.push_back(sample_features<PhysicsFeatures, float>(flight[100 + 700 * i]));
-  }
-  const Provenance provenance{"simulated flight",      content_hash(flight), rows.size(), 5,
-                              short_training().epochs, "structured"};
-  write_model_header(file + ".hpp", name, model, golden, provenance);
-  write_weight_file(file + ".block", model_block(model, golden, provenance, name));
-}
-
 /// Monotone by construction: a base in closed form and a residual, whether it helps here or not.
-void write_structured(const Flight& flight, const std::string& folder) {
+void write_structured(const Flight& flight, const std::string& file) {
   using Residual = Mlp<float, InputSize<residual_inputs<PhysicsFeatures>>, Hidden<2, 20>, OutputSize<4>, Tanh>;
   const RowSet training(flight, {0, flight.size() * 3 / 4}), validation(flight, {flight.size() * 3 / 4, flight.size()});
-  const auto on = [](int) { return true; };
-  std::mt19937_64 engine(5);
-
   const auto context = make_context<Structured>(training);
-  const AffineMap map = fit_monotone_base(context, training);
-  const auto fit = fit_monotone<Residual>(context, training, validation, map, short_training(), engine, on);
-  write_structured(fit.predictor, context, training, flight, folder + "/structured", "StructuredModel");
+  ResidualTraining how;
+  how.epochs = 40;
+  std::mt19937_64 engine(5);
+  const auto fit = fit_monotone<Residual>(context, training, validation, fit_monotone_base(context, training), how,
+                                          engine, [](int) { return true; });
+  write_model_header(file, "StructuredModel", make_trained_model(fit.predictor, context, training),
+                     golden_of<PhysicsFeatures>(flight),
+                     {"simulated flight", content_hash(flight), training.size(), 5, how.epochs, "structured"});
 }
 
 }  // namespace
@@ -114,7 +98,7 @@ void write_structured(const Flight& flight, const std::string& folder) {
 int main(int count, char** arguments) {
   if (count != 2) return 2;
   try {
-    const test::Flown vehicle = test::flown_vehicle();
+    const Quadrotor<double, QuadraticDrag> vehicle(airframe_value<PaperQuadrotor, double>(), paper_site<double>());
     FlightPlan plan;
     plan.samples = 4000;
     const RandomPilot<std::mt19937_64> pilot(std::mt19937_64(11), pilot_style(vehicle, plan.start_m),
@@ -127,10 +111,10 @@ int main(int count, char** arguments) {
     const auto residual =
         train<ResidualOutputs<LinearizedBase>>(recorded.flight, folder, "residual.hpp", "ResidualModel");
     train<CommandOutputs>(recorded.flight, folder, "direct.hpp", "DirectModel");
-    write_structured(recorded.flight, folder);
+    write_structured(recorded.flight, folder + "/structured.hpp");
     write_ridge(recorded.flight, residual, folder + "/ridge.hpp");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "train_outputs: %s\n", error.what());
+    std::fprintf(stderr, "train_models: %s\n", error.what());
     return 1;
   }
   return 0;
