@@ -24,14 +24,10 @@ target_compile_options(pinnquad_flags INTERFACE
   -ffp-contract=off)
 
 # gcc 12's straight-line vectoriser makes vfmaddsub of separate products and sums, whatever -ffp-contract says.
-# Its garbage it otherwise collects from 4 MiB on, again and again: an eighth of the time of a heavy translation unit.
-# From 1 GB on it does: the heaviest unit of the program takes 1.25 GB. Who installs the Python package may have less memory.
-set(collection --param=ggc-min-heapsize=1000000 --param=ggc-min-expand=10)
-if(PINNQUAD_BUILD_PYTHON AND NOT PINNQUAD_BUILD_TOOLS)
-  set(collection --param=ggc-min-heapsize=400000 --param=ggc-min-expand=30)
-endif()
+# Its garbage it collects from 400 MB on: from 4 MiB on, again and again, takes an eighth of the time of a heavy translation unit.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(pinnquad_flags INTERFACE -fno-tree-slp-vectorize ${collection})
+  target_compile_options(pinnquad_flags INTERFACE -fno-tree-slp-vectorize --param=ggc-min-heapsize=400000
+    --param=ggc-min-expand=30)
 endif()
 
 # gcc 16.2 dies at -O1 of the conjunction of lanes' truths in is_plain() (reassoc_stmt_dominates_stmt_p); of floating-point numbers

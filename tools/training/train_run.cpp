@@ -31,6 +31,7 @@
 #include "training/export_choice.hpp"
 #include "training/fit_store.hpp"
 #include "training/flown_vehicle.hpp"
+#include "training/given_vehicle.hpp"
 #include "training/inputs_code.hpp"
 #include "training/train_input.hpp"
 #include "training/training_page.hpp"
