@@ -100,7 +100,7 @@ PINNQUAD_ALWAYS_INLINE void multiply_lanes(const Scalar* a, const Scalar* b, int
         [&](auto r, auto v, Pack sum) PINNQUAD_INLINE_LAMBDA { return finish(first + r, v, sum); },
         c + first * c_stride, c_stride);
   };
-  if constexpr (sizeof(Pack) >= 64) {
+  if constexpr (has_32_registers) {
     in_even_tiles<Rows, 7>(tile);
   } else {
     in_full_tiles<Rows, 6>(tile);
