@@ -13,7 +13,7 @@
 namespace {
 using Net =
     pinnquad::Mlp<float, pinnquad::InputSize<16>, pinnquad::Hidden<10, 25>, pinnquad::OutputSize<4>, pinnquad::Relu>;
-constexpr int samples = 37;  // whole packs and a rest
+constexpr int samples = 37, more = 40;  // whole packs and a rest
 /// Of everything that is computed, one after the other.
 struct Results {
   int width;  // of a pack
@@ -34,7 +34,7 @@ extern "C" void by_256(Results& results) {
 extern "C" void by_512(Results& results) {
 #endif
   static Net::Parameters weights;
-  static float x[16 * samples];
+  static float x[16 * more];
   unsigned state = 12345;
   const auto draw = [&state] {
     state = state * 1664525u + 1013904223u;
@@ -50,12 +50,14 @@ extern "C" void by_512(Results& results) {
   pinnquad::BatchedNetwork<Net>::forward(weights.data(), x, results.batch.data(), samples);
   static pinnquad::detail::NetworkGradient<Net, 64> trained;
   trained.load(weights);
-  trained.put(x, samples);
-  trained.forward(samples);
-  for (int k = 0; k < 4; ++k) {
-    for (int i = 0; i < samples; ++i) trained.output_delta(k, i) = draw();
+  for (const int count : {more, samples}) {  // the first leaves its gradients behind the samples of the second
+    trained.put(x, count);
+    trained.forward(count);
+    for (int k = 0; k < 4; ++k) {
+      for (int i = 0; i < count; ++i) trained.output_delta(k, i) = draw();
+    }
+    trained.backward(count);
   }
-  trained.backward(samples);
   trained.store_gradient(results.gradient);
 }
 #else
