@@ -2,7 +2,7 @@
 // One prediction, batch 1: ours, what Eigen gives, and the time at which this machine's multiply-add units would be
 // full. Predict/* is latency (the output is fed into the next input), PredictThroughput/* independent inputs,
 // Dense/<in>x<out> the latency of one layer with ReLU, Shape/* that of other networks, each with its own Peak/* and
-// ShapeThroughput/*. Peak/read_64_kib reads what the nearest cache does not hold, as weights are read, and does no more.
+// ShapeThroughput/*. Peak/read_64_kib reads what the nearest cache does not hold, as weights are read, and no more.
 #include <benchmark/benchmark.h>
 
 #include <string>
