@@ -11,7 +11,7 @@
 #include <string_view>
 
 // Bits of the registers that kernels take of AVX-512's; lanes of vehicles take 512. Zen 4 works 512 bits as two halves:
-// a prediction is faster by 256, no kernel is slower (docs/benchmarks.md). Compilers before it take it for a Zen 3 with
+// predictions and training are faster by 256 (docs/benchmarks.md). Compilers before it take it for a Zen 3 with
 // AVX-512. -DPINNQUAD_KERNEL_BITS=256 or 512 chooses otherwise.
 #if !defined(PINNQUAD_KERNEL_BITS)
 #if defined(__znver4__) || defined(__znver3__)
