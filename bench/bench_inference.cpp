@@ -2,7 +2,7 @@
 // One prediction, batch 1: ours, what Eigen gives, and the time at which this machine's multiply-add units would be
 // full. Predict/* is latency (the output is fed into the next input), PredictThroughput/* independent inputs,
 // Dense/<in>x<out> the latency of one layer with ReLU, Shape/* that of other networks, each with its own Peak/* and
-// ShapeThroughput/*.
+// ShapeThroughput/*. Peak/read_64_kib reads what the nearest cache does not hold, as weights are read, and no more.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -109,6 +109,21 @@ void register_shape(const std::string& name) {
   benchmark::RegisterBenchmark(("Peak/" + name).c_str(), fma_peak<NativePack<float>, multiply_adds>);
 }
 
+void read_64_kib(benchmark::State& state) {
+  using Pack = NativePack<float>;
+  static std::array<float, 65536 / sizeof(float)> weights;
+  weights.fill(0.1F);
+  Pack sum[8];
+  for (Pack& s : sum) s = Pack::broadcast(0.0F);
+  for (auto _ : state) {
+    for (const float* w = weights.data(); w < weights.data() + weights.size(); w += 8 * Pack::width) {
+      unroll<8>([&](auto v) PINNQUAD_INLINE_LAMBDA { sum[v] = sum[v] + Pack::load(w + v * Pack::width); });
+    }
+    benchmark::ClobberMemory();
+  }
+  for (const Pack& s : sum) s.store(weights.data());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -135,5 +150,6 @@ int main(int argc, char** argv) {
   benchmark::RegisterBenchmark("Peak/2x32_structured", fma_peak<NativePack<float>, structured_multiply_adds>);
   benchmark::RegisterBenchmark("Peak/fma", fma_peak<NativePack<float>, paper_multiply_adds>);
   benchmark::RegisterBenchmark("Peak/fma_double", fma_peak<NativePack<double>, paper_multiply_adds>);
+  benchmark::RegisterBenchmark("Peak/read_64_kib", read_64_kib);
   return run_benchmarks(argc, argv);
 }

@@ -11,6 +11,7 @@ import sys
 
 PROGRAMS = ["bench_inference", "bench_rollout", "bench_model", "bench_training", "bench_fit", "bench_simulation",
             "bench_peers", "bench_torch"]
+READ = "Peak/read_64_kib"
 OURS = {"Predict": "Predict/paper_network", "TrainEpoch": "TrainEpoch/vanilla"}  # in bench_peers, beside the peers
 
 
@@ -105,7 +106,10 @@ def against_limits(runs, machines):
             peak = found[limit]["median"]
             over = found[time]["median"] / peak
             free = found[throughput]["median"] / peak if throughput in found else None
-            cells.append(f"{over:.2f} {limited_by(over, free, weights, nearest_cache(context), limit)}")
+            limiting = limited_by(over, free, weights, nearest_cache(context), limit)
+            if limiting == "memory" and READ in found:
+                limiting += f" ({found[time]['median'] / (found[READ]['median'] * weights / 65536):.2f})"
+            cells.append(f"{over:.2f} {limiting}")
         yield what, cells
 
 
@@ -136,7 +140,7 @@ def main():
 
     print("Over the multiply-adds alone, or over what is named, each within one run, and what limits it: units (the limit "
           "itself,\nwithin a quarter), divisions (the same), latency (independent inputs are faster), memory (weights "
-          "exceed the nearest\ncache), others (instructions beside those that are counted).\n\n" + head)
+          "exceed the nearest\ncache; over reading them alone), others (instructions beside those that are counted).\n\n" + head)
     for what, cells in against_limits(runs, machines):
         if any(cells):
             print(f"| {what} | " + " | ".join(cells) + " |")

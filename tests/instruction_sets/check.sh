@@ -3,8 +3,9 @@
 #
 # check.sh <what> <compiler> <include folder> <Eigen's include folder> <work folder> <flags...>
 #   gate   every weak symbol of an object names its instruction set: the linker takes none for that of another object
+#   bits   256 and 512 bits of AVX-512, in one program, agree
 #   names  flags of another vector unit, rounding or fast maths have another name
-# Returns 77 where a compiler flag is missing.
+# Returns 77 where a compiler flag or AVX-512 is missing.
 set -u
 what=$1 compiler=$2 include=$3 eigen=$4 work=$5
 shift 5
@@ -33,7 +34,7 @@ done
 case $what in
   names)
     declare -A meaning=()
-    for flags in "" -mfma -march=x86-64-v3 -march=x86-64-v4 -ffast-math "-march=x86-64-v3 -ffast-math"; do
+    for flags in "" -mfma -march=x86-64-v3 -march=x86-64-v4 "-march=x86-64-v4 -DPINNQUAD_KERNEL_BITS=256" -ffast-math "-march=x86-64-v3 -ffast-math"; do
       # shellcheck disable=SC2086
       name=$(space_of $flags)
       [ -z "${meaning[$name]-}" ] || fail "one name for two: $name, '$flags' and '${meaning[$name]}'"
@@ -51,6 +52,14 @@ case $what in
       nm -C --defined-only prediction.o | grep -qE "^[0-9a-f]+ [Ww] .*::$space::" || fail "no weak symbol of $level: nothing was looked at"
       foreign=$(foreign_symbols prediction.o "$space") && fail "weak symbols of $level: $foreign"
     done
+    ;;
+  bits)
+    grep -qw avx512vl /proc/cpuinfo || skip "a processor without AVX-512"
+    for part in PINNQUAD_KERNEL_BITS=256 PINNQUAD_KERNEL_BITS=512 MAIN; do
+      "$compiler" -std=c++17 -DNDEBUG -I"$include" -isystem "$eigen" "$@" -march=x86-64-v4 "-D$part" \
+        -c "$here/kernel_bits.cpp" -o "$part.o" || fail "kernel_bits.cpp $part"
+    done
+    if ! "$compiler" PINNQUAD_KERNEL_BITS=*.o MAIN.o -o kernel_bits || ! ./kernel_bits; then fail "256 and 512 bits"; fi
     ;;
   *) fail "unknown: $what" ;;
 esac

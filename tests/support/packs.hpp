@@ -4,6 +4,9 @@
 
 #include "pinnquad/nn/kernel/pack.hpp"
 
+#if defined(__AVX512F__)
+#include "pinnquad/nn/kernel/pack_avx512.hpp"
+#endif
 #if defined(__SSE2__)
 #include "pinnquad/nn/kernel/pack_sse2.hpp"
 #endif

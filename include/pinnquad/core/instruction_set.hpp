@@ -10,9 +10,24 @@
 
 #include <string_view>
 
+// Bits of the registers that kernels take of AVX-512's; lanes of vehicles take 512. Zen 4 works 512 bits as two halves:
+// predictions and training are faster by 256 (docs/benchmarks.md). Compilers before it take it for a Zen 3 with
+// AVX-512. -DPINNQUAD_KERNEL_BITS=256 or 512 chooses otherwise.
+#if !defined(PINNQUAD_KERNEL_BITS)
+#if defined(__znver4__) || defined(__znver3__)
+#define PINNQUAD_KERNEL_BITS 256
+#else
+#define PINNQUAD_KERNEL_BITS 512
+#endif
+#endif
+
 #if defined(__AVX512F__)
 #define PINNQUAD_UNIT_AVX512
+#if PINNQUAD_KERNEL_BITS == 512
 #define PINNQUAD_SET_UNIT avx512_
+#else
+#define PINNQUAD_SET_UNIT avx512_by_256_
+#endif
 #elif defined(__AVX2__) && defined(__FMA__)
 #define PINNQUAD_UNIT_AVX2
 #define PINNQUAD_SET_UNIT avx2_
@@ -55,9 +70,9 @@ namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 inline constexpr VectorUnit vector_unit =
-#if defined(PINNQUAD_UNIT_AVX512)
+#if defined(PINNQUAD_UNIT_AVX512) && PINNQUAD_KERNEL_BITS == 512
     VectorUnit::avx512;
-#elif defined(PINNQUAD_UNIT_AVX2)
+#elif defined(PINNQUAD_UNIT_AVX512) || defined(PINNQUAD_UNIT_AVX2)
     VectorUnit::avx2;
 #elif defined(PINNQUAD_UNIT_SSE2)
     VectorUnit::sse2;
@@ -65,6 +80,14 @@ inline constexpr VectorUnit vector_unit =
     VectorUnit::neon;
 #else
     VectorUnit::none;
+#endif
+
+/// AVX-512 has 32 registers of any width.
+inline constexpr bool has_32_registers =
+#if defined(PINNQUAD_UNIT_AVX512)
+    true;
+#else
+    false;
 #endif
 
 /// True where the hardware rounds a * b + c once. Elsewhere it would take a library call, and is rounded twice.

@@ -26,7 +26,13 @@ namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 /// Bytes of one register.
 inline constexpr int register_bytes =
-    vector_unit == VectorUnit::avx512 ? 64 : (vector_unit == VectorUnit::avx2 ? 32 : 16);
+#if defined(PINNQUAD_UNIT_AVX512)
+    64;
+#elif defined(PINNQUAD_UNIT_AVX2)
+    32;
+#else
+    16;
+#endif
 
 /// The compiler's own vectors: + - * /, comparisons and ?: on them are instructions.
 template <class Scalar>

@@ -15,6 +15,7 @@
 
 #include "pinnquad/core/detected.hpp"
 #include "pinnquad/nn/dense.hpp"
+#include "pinnquad/nn/kernel/register_layer.hpp"
 #include "pinnquad/nn/kernel/tile.hpp"
 #include "pinnquad/nn/kernel/transpose.hpp"
 #include "pinnquad/nn/layer.hpp"
@@ -46,6 +47,23 @@ using BackwardOf = std::bool_constant<noexcept(BackwardRule<Layer>::backward(
     std::declval<const typename Layer::Scalar*>(), std::declval<const typename Layer::Scalar*>(),
     std::declval<const typename Layer::Scalar*>(), std::declval<const typename Layer::Scalar*>(),
     std::declval<typename Layer::Scalar*>(), std::declval<typename Layer::Scalar*>()))>;
+
+/// The sum of a pack's lanes: those of a block of rows, added as a layer in registers adds them.
+template <class Pack>
+PINNQUAD_ALWAYS_INLINE typename Pack::Scalar sum_of_lanes(const Pack& v) noexcept {
+  if constexpr (keeps_layers_in_registers<Pack>) {
+    Pack blocks[Pack::blocks_per_register];
+    for (Pack& block : blocks) block = Pack::broadcast(typename Pack::Scalar(0));
+    blocks[0] = v;
+    return Pack::collect(blocks).sum_of_values().first_value();
+  } else {
+    alignas(64) typename Pack::Scalar lane[Pack::width];
+    v.store(lane);
+    typename Pack::Scalar sum = lane[0];
+    for (int i = 1; i < Pack::width; ++i) sum += lane[i];
+    return sum;
+  }
+}
 
 /// Packs of samples that run at once.
 template <class Pack, int BatchSize>
@@ -128,13 +146,17 @@ struct BatchLayer : BatchParameters<typename Layer::Scalar, padded<Pack>(Layer::
 
 /// Dense: dx = W^T dy, dW = dy x^T, db = dy, by register tiles. A row of `stored` is that of an output: its weights,
 /// its bias, padding. The gradient is the product of dy with the samples' inputs, transposed, each with a 1 for the
-/// bias behind.
+/// bias behind. Where at most one input is left over from wide packs, its column and the bias' are sums over lanes of
+/// samples instead: a pack of columns for them would be padding for the most part.
 template <class Scalar, int In, int Out, bool HasBias, class Pack, int BatchSize>
 struct BatchDense : BatchParameters<Scalar, Out * padded<Pack>(In + (HasBias ? 1 : 0))> {
   static constexpr bool fuses_activation = true;
   static constexpr bool fuses_slope = true;
   static constexpr int row = padded<Pack>(In + (HasBias ? 1 : 0));
   static constexpr int stride = batch_capacity<Pack, BatchSize>;
+  static constexpr bool sums_behind = HasBias && Pack::width >= 8 && In >= Pack::width && In % Pack::width <= 1;
+  /// Columns of the gradient that are a product of matrices.
+  static constexpr int product_columns = sums_behind ? In / Pack::width * Pack::width : row;
 
   void load(const Scalar* parameters) noexcept {
     for (int out = 0; out < Out; ++out) {
@@ -159,15 +181,18 @@ struct BatchDense : BatchParameters<Scalar, Out * padded<Pack>(In + (HasBias ? 1
   template <class Scale>
   PINNQUAD_NOINLINE void backward(const Scalar* x, const Scalar* delta, Scalar* previous, int samples,
                                   const Scale& scale) noexcept {
-    alignas(64) Scalar by_sample[static_cast<std::size_t>(stride * row)];
-    if constexpr (row > In) {
+    constexpr int columns = product_columns;
+    alignas(64) Scalar by_sample[static_cast<std::size_t>(stride * columns)];
+    if constexpr (sums_behind) {
+      sum_columns_behind(x, delta, samples);
+    } else if constexpr (row > In) {
       constexpr int last = row - Pack::width;
       Scalar behind[Pack::width] = {};
       if (HasBias) behind[In - last] = Scalar(1);
       for (int i = 0; i < samples; ++i) Pack::load(behind).store(by_sample + i * row + last);
     }
-    transpose<Pack>(x, stride, In, samples, by_sample, row);
-    multiply_matrices<Pack, Out, stride, row>(delta, by_sample, samples, this->gradient);
+    transpose<Pack>(x, stride, columns < In ? columns : In, samples, by_sample, columns);
+    multiply_matrices<Pack, Out, stride, columns, row>(delta, by_sample, samples, this->gradient);
     if (previous == nullptr) return;
     for (int i = 0; i < samples; i += block) {
       multiply_lanes<Pack, vectors, In, 1, row>(
@@ -181,6 +206,27 @@ struct BatchDense : BatchParameters<Scalar, Out * padded<Pack>(In + (HasBias ? 1
  private:
   static constexpr int vectors = packs_in_block<Pack, BatchSize>;
   static constexpr int block = vectors * Pack::width;
+
+  /// The gradient by the weights of the input behind the product's, if there is one, and by the biases.
+  void sum_columns_behind(const Scalar* x, const Scalar* delta, int samples) noexcept {
+    constexpr bool left_over = product_columns < In;
+    const int whole = samples / Pack::width * Pack::width;
+    alignas(64) Scalar used[Pack::width] = {};  // of the last pack: 1 for a sample, else 0
+    for (int i = 0; i < samples - whole; ++i) used[i] = Scalar(1);
+    const Pack counts = Pack::load(used);
+    for (int out = 0; out < Out; ++out) {
+      Pack weight = Pack::broadcast(Scalar(0)), bias = weight;
+      const auto add = [&](int i, const Pack& dy) PINNQUAD_INLINE_LAMBDA {
+        if constexpr (left_over) weight = Pack::multiply_add(dy, Pack::load(x + product_columns * stride + i), weight);
+        bias = bias + dy;
+      };
+      const Scalar* const by_output = delta + out * stride;
+      for (int i = 0; i < whole; i += Pack::width) add(i, Pack::load(by_output + i));
+      if (samples > whole) add(whole, Pack::where_positive(counts, Pack::load(by_output + whole)));
+      if constexpr (left_over) this->gradient[out * row + product_columns] = sum_of_lanes(weight);
+      this->gradient[out * row + In] = sum_of_lanes(bias);
+    }
+  }
 
   static void gather(const Scalar* from, Scalar* parameters) noexcept {
     for (int out = 0; out < Out; ++out) {

@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "pinnquad/nn/batch_norm.hpp"
-#include "pinnquad/nn/kernel/register_layer.hpp"
 #include "pinnquad/training/backward.hpp"
 
 namespace pinnquad {
@@ -15,23 +14,6 @@ namespace pinnquad {
 inline constexpr double batch_norm_momentum = 0.1;
 
 namespace detail {
-
-/// The sum of a pack's lanes: those of a block of rows, added as a layer in registers adds them.
-template <class Pack>
-PINNQUAD_ALWAYS_INLINE typename Pack::Scalar sum_of_lanes(const Pack& v) noexcept {
-  if constexpr (keeps_layers_in_registers<Pack>) {
-    Pack blocks[Pack::blocks_per_register];
-    for (Pack& block : blocks) block = Pack::broadcast(typename Pack::Scalar(0));
-    blocks[0] = v;
-    return Pack::collect(blocks).sum_of_values().first_value();
-  } else {
-    alignas(64) typename Pack::Scalar lane[Pack::width];
-    v.store(lane);
-    typename Pack::Scalar sum = lane[0];
-    for (int i = 1; i < Pack::width; ++i) sum += lane[i];
-    return sum;
-  }
-}
 
 /// Forward: xhat = (x - mean) / sqrt(var + 1e-5), y = gamma xhat + beta; mean and var (divisor N) of the N samples.
 /// Backward: dbeta = sum dy, dgamma = sum dy xhat, dx = gamma / sqrt(var + 1e-5) (dy - dbeta / N - xhat dgamma / N).

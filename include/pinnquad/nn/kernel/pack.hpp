@@ -7,11 +7,11 @@
 #include "pinnquad/nn/kernel/pack_contract.hpp"
 #include "pinnquad/nn/kernel/pack_generic.hpp"
 
-#if defined(PINNQUAD_UNIT_AVX512)
+#if defined(PINNQUAD_UNIT_AVX512) && PINNQUAD_KERNEL_BITS == 512
 #include "pinnquad/nn/kernel/pack_avx512.hpp"
 #define PINNQUAD_FLOAT_PACK PackAvx512
 #define PINNQUAD_DOUBLE_PACK PackAvx512Double
-#elif defined(PINNQUAD_UNIT_AVX2)
+#elif defined(PINNQUAD_UNIT_AVX512) || defined(PINNQUAD_UNIT_AVX2)
 #include "pinnquad/nn/kernel/pack_avx2.hpp"
 #define PINNQUAD_FLOAT_PACK PackAvx2
 #define PINNQUAD_DOUBLE_PACK PackAvx2Double
@@ -52,7 +52,7 @@ static_assert(NativePack<float>::type::unit == vector_unit && NativePack<double>
 }  // namespace PINNQUAD_INSTRUCTION_SET
 }  // namespace detail
 
-/// The widest pack that this translation unit may use.
+/// The fastest pack that this translation unit may use.
 template <class Scalar>
 using NativePack = typename detail::NativePack<Scalar>::type;
 

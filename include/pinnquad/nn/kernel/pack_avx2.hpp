@@ -112,7 +112,7 @@ struct PackAvx2 {
     return {_mm256_castps128_ps256(_mm_add_ps(two, _mm_movehdup_ps(two)))};
   }
   /// Is worked out here: the compiler may not put it off to where it is used.
-  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+x"(value)); }
+  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+v"(value)); }
   PINNQUAD_ALWAYS_INLINE float first_value() const noexcept { return _mm256_cvtss_f32(value); }
   /// y[0, Count) and nothing behind.
   template <int Count>
@@ -174,7 +174,7 @@ struct PackAvx2Double : OneColumn<PackAvx2Double, double, 4> {
     const __m128d two = _mm_add_pd(_mm256_castpd256_pd128(value), _mm256_extractf128_pd(value, 1));
     return {_mm256_castpd128_pd256(_mm_add_pd(two, _mm_unpackhi_pd(two, two)))};
   }
-  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+x"(value)); }
+  PINNQUAD_ALWAYS_INLINE void settle() noexcept { __asm__("" : "+v"(value)); }
 };
 
 }  // namespace PINNQUAD_INSTRUCTION_SET

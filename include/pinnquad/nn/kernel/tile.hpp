@@ -100,7 +100,7 @@ PINNQUAD_ALWAYS_INLINE void multiply_lanes(const Scalar* a, const Scalar* b, int
         [&](auto r, auto v, Pack sum) PINNQUAD_INLINE_LAMBDA { return finish(first + r, v, sum); },
         c + first * c_stride, c_stride);
   };
-  if constexpr (sizeof(Pack) >= 64) {
+  if constexpr (has_32_registers) {
     in_even_tiles<Rows, 7>(tile);
   } else {
     in_full_tiles<Rows, 6>(tile);
@@ -108,31 +108,33 @@ PINNQUAD_ALWAYS_INLINE void multiply_lanes(const Scalar* a, const Scalar* b, int
 }
 
 /// One tile of rows over all columns.
-template <class Pack, int Rows, int AStride, int Columns>
+template <class Pack, int Rows, int AStride, int Columns, int CStride>
 PINNQUAD_ALWAYS_INLINE void multiply_rows(const typename Pack::Scalar* a, const typename Pack::Scalar* b, int depth,
                                           typename Pack::Scalar* c) noexcept {
   constexpr int vectors = Columns / Pack::width;
-  constexpr int block = vectors < Pack::tile_vectors ? vectors : Pack::tile_vectors;
+  constexpr int block = vectors <= Pack::tile_vectors + 1 ? vectors : Pack::tile_vectors;
   constexpr int blocks = vectors / block;
   constexpr int rest = vectors % block;
   const auto tile = [&](auto count, int offset) PINNQUAD_INLINE_LAMBDA {
     multiply_tile<Consecutive<Pack, decltype(count)::value>, Rows, AStride, 1>(
         a, b + offset, Columns, depth,
         [](auto, auto) PINNQUAD_INLINE_LAMBDA { return Pack::broadcast(typename Pack::Scalar(0)); },
-        [](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum; }, c + offset, Columns);
+        [](auto, auto, Pack sum) PINNQUAD_INLINE_LAMBDA { return sum; }, c + offset, CStride);
   };
   for (int i = 0; i < blocks; ++i) tile(Index<block>{}, i * block * Pack::width);
   if constexpr (rest > 0) tile(Index<rest>{}, blocks * block * Pack::width);
 }
 
 /// C = A B, cut into tiles of nearly equal height. A: Rows x depth, row-major with stride AStride. B: depth x Columns,
-/// C: Rows x Columns, both with stride Columns (a multiple of the pack).
-template <class Pack, int Rows, int AStride, int Columns>
+/// C: Rows x Columns with strides Columns (a multiple of the pack) and CStride. Three packs of columns make one tile.
+template <class Pack, int Rows, int AStride, int Columns, int CStride = Columns>
 PINNQUAD_ALWAYS_INLINE void multiply_matrices(const typename Pack::Scalar* a, const typename Pack::Scalar* b, int depth,
                                               typename Pack::Scalar* c) noexcept {
-  constexpr int largest = Pack::tile_rows + Pack::tile_rows / 4;
+  constexpr bool as_one = Columns / Pack::width == Pack::tile_vectors + 1;
+  constexpr int largest = Pack::tile_rows + (as_one ? 0 : Pack::tile_rows / 4);
   in_even_tiles<Rows, largest>([&](auto first, auto rows) PINNQUAD_INLINE_LAMBDA {
-    multiply_rows<Pack, decltype(rows)::value, AStride, Columns>(a + first * AStride, b, depth, c + first * Columns);
+    multiply_rows<Pack, decltype(rows)::value, AStride, Columns, CStride>(a + first * AStride, b, depth,
+                                                                          c + first * CStride);
   });
 }
 
