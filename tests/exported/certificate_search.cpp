@@ -178,9 +178,8 @@ class Maker {
     test::BlockBytes first(detail::block_of(model_));
     first.seal();
     const auto read = std::make_unique<RunTimeModel<Scalar>>();
-    BlockFault fault;
-    const Status status = RunTimeModel<Scalar>::open(first.data(), first.size(), *read, fault);
-    INFO("expected " << (fault.expected == nullptr ? "" : fault.expected));
+    const Status status = RunTimeModel<Scalar>::open(first.data(), first.size(), *read);
+    INFO("expected " << (read->fault().expected == nullptr ? "" : read->fault().expected));
     INFO(model_.answer);
     REQUIRE(status == Status::ok);
     std::vector<Scalar> work(read->workspace());

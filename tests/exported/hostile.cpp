@@ -270,8 +270,8 @@ void attack_all() {
   using Scalar = typename Model::Scalar;
   using CalmFallback = Fallback<AnalyticInverse<Calm<Scalar>>>;
   using GustyFallback = Fallback<AnalyticInverse<Gusty<Scalar>>>;
-  using Unchecked = Guard<TrainingEnvelope, FiniteOutputs>;
-  using Anywhere = Guard<FiniteInputs, FiniteOutputs>;
+  using Unchecked = Guard<TrainingEnvelope>;
+  using Anywhere = Guard<FiniteInputs>;
   using Refusing = Extend<TrainingGuard, RefuseCommands<>>;
   using Clipping = Extend<TrainingGuard, ClipCommands<>>;
   using FallingBack = Extend<TrainingGuard, CalmFallback>;
@@ -306,7 +306,7 @@ TEST_CASE("hostile inputs, a million where optimised: no surprise") {
 
 TEST_CASE("hostile weights: whatever bits are in flash, no command is NaN or infinite") {
   Hostility<float> hostility(21);
-  using Clipping = Guard<FiniteInputs, FiniteOutputs, ClipCommands<>>;
+  using Clipping = Guard<FiniteInputs, ClipCommands<>>;
   int answered = 0, not_finite = 0, written = 0, touched = 0;
   constexpr int models = 20000;
   for (int i = 0; i < models; ++i) {

@@ -21,7 +21,7 @@ namespace {
 using namespace pinnquad;
 using pinnquad::test::DoubleModel;
 using pinnquad::test::SmallModel;
-using Header = ModelBlockHeader;
+using Header = detail::ModelBlockHeader;
 
 using pinnquad_test::expect;
 pinnquad_test::Tally tally;
@@ -68,7 +68,7 @@ std::uint32_t plain_crc32(const unsigned char* bytes, std::size_t length) {
 
 /// Bytes between header and scalars, by the counts that the block states.
 std::size_t record_bytes(const unsigned char* block) {
-  return ModelBlockHeader::record_counts + detail::read_u32(block + Header::size + 4);
+  return detail::ModelBlockHeader::record_counts + detail::read_u32(block + Header::size + 4);
 }
 
 /// An accepted block, looked at again and flown.

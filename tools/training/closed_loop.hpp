@@ -161,7 +161,7 @@ inline nlohmann::json fly_logged(const pinnquad::BlockModel& model, const pinnqu
     return pinnquad::track(vehicle, world, path, controller, feed_forward, plan, trace.observer(plan.duration_s));
   };
   const AnyTrajectory path{[&eight](double time_s) { return eight->sample(time_s); }};
-  const AnyTrajectory no_jerk{[&eight](double time_s) { return pinnquad::WithoutJerk{*eight}.sample(time_s); }};
+  const AnyTrajectory no_jerk{[&eight](double time_s) { return without_jerk(eight->sample(time_s)); }};
   const auto alone = fly({{vehicle}}, no_jerk, AnyFeedForward(analytic), traces.without);
   nlohmann::json result = {{"trajectory", "figure-eight"},
                            {"half_length_m", eight->half_length_m},
