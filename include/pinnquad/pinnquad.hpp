@@ -38,7 +38,6 @@
 #include "pinnquad/regression/identification.hpp"
 #include "pinnquad/regression/identified_airframe.hpp"
 #include "pinnquad/regression/ridge.hpp"
-#include "pinnquad/regression/rotation_fit.hpp"
 #include "pinnquad/regression/smoothed_flights.hpp"
 #include "pinnquad/schedule/schedule.hpp"
 #include "pinnquad/simulation/flights.hpp"

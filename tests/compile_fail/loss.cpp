@@ -42,10 +42,8 @@ const double loss = evaluated<Sound, Context<Nothing, PaperQuadrotor>>();
 const double loss = evaluated<Sound, Context<PaperFeatures, Nothing>>();
 // CASE CONTEXT_NOT_A_SCHEMA: pinnquad: Context's third argument is not an output schema
 const double loss = evaluated<Sound, Context<PaperFeatures, PaperQuadrotor, Nothing>>();
-// CASE FORM_AS_STEP: pinnquad: LocalMonotonicity's second argument is not a step function
-const double loss = evaluated<PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll, Literal>, Constant>>>();
-// CASE NOT_A_FORM: pinnquad: LocalMonotonicity's third argument is not a form
-const double loss = evaluated<PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll, TanhStep, Nothing>, Constant>>>();
+// CASE NOT_A_FORM: pinnquad: LocalMonotonicity's second argument is not a form
+const double loss = evaluated<PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll, Nothing>, Constant>>>();
 // CASE NO_ANGULAR_ACCELERATION: pinnquad: LocalMonotonicity and PearsonCorrelation need a feature set that holds the angular accelerations
 struct VelocitiesOnly : PaperFeatures {
   static constexpr int angular_acceleration = -1;

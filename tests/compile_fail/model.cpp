@@ -112,13 +112,30 @@ struct ThrowingFeatures : PaperFeatures {
 };
 CHANGED(using Features = ThrowingFeatures);
 // CASE OUTPUTS_MAY_THROW: pinnquad: an output schema's functions must be noexcept
-struct ThrowingOutputs : CommandOutputs {
+struct ThrowingOutputs : EachRotor<ThrowingOutputs> {
+  static constexpr auto names = CommandOutputs::names, units = CommandOutputs::units;
   template <class Scalar>
-  static constexpr Scalar command(Scalar output, const Airframe<Scalar>&) {
+  static constexpr Scalar from_command(Scalar command, const Airframe<Scalar>&, std::size_t) noexcept {
+    return command;
+  }
+  template <class Scalar>
+  static constexpr Scalar command(Scalar output, const Airframe<Scalar>&, std::size_t) {
     return output;
+  }
+  template <class Scalar>
+  static constexpr Scalar command_slope(Scalar, const Airframe<Scalar>&, std::size_t) noexcept {
+    return Scalar(1);
   }
 };
 CHANGED(using Outputs = ThrowingOutputs);
+// CASE OUTPUTS_OF_ANOTHER: pinnquad: this output schema derives from another one
+struct HalvedOutputs : CommandOutputs {
+  template <class Scalar>
+  static constexpr Scalar command(Scalar output, const Airframe<Scalar>&, std::size_t) noexcept {
+    return output / 2;
+  }
+};
+CHANGED(using Outputs = HalvedOutputs);
 // CASE SCALAR_DIFFERS: pinnquad: the model's Scalar is not that of its Network
 CHANGED(using Scalar = double);
 // CASE NO_COMMAND_RANGE: pinnquad: the range of the model's commands is none

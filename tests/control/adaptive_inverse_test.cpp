@@ -28,7 +28,7 @@ namespace {
 using Vehicle = Quadrotor<double, StandardAtmosphere, ConstantWind, QuadraticDrag>;
 using Analytic = AnalyticInverse<Vehicle>;
 using RigidBody = AnalyticInverse<Quadrotor<double>>;
-using Structured = NetworkInverse<InverseDynamics<StructuredQuadModel, Guard<FiniteInputs, FiniteOutputs>>>;
+using Structured = NetworkInverse<InverseDynamics<StructuredQuadModel, Guard<FiniteInputs>>>;
 
 Airframe<double> airframe() { return airframe_value<StructuredQuadModelAirframe, double>(); }
 Vehicle known() { return Vehicle(airframe(), paper_site<double>(), {}, {}, {}); }
@@ -106,14 +106,10 @@ double rmse_cm(const Policy& policy, const Conditions& conditions) {
 /// With the lag and the delay that the vehicle has: both are known.
 template <class Inverse>
 AdaptiveInverse<double, Inverse> adaptive(const Inverse& inverse, const Conditions& conditions) {
-  FlownMotionSettings<double> motion;
-  motion.rotor_lag_s = conditions.rotor_lag_s > 0 ? conditions.rotor_lag_s : airframe().rotor_time_constant_s;
-  motion.delay_s = 0.002 * conditions.late_ticks;
-  return {inverse, airframe(), {}, FlownMotion<double>(motion)};
+  const double lag_s = conditions.rotor_lag_s > 0 ? conditions.rotor_lag_s : airframe().rotor_time_constant_s;
+  return {inverse, airframe(), {}, FlownMotion<double>(25'000, lag_s, 0.002 * conditions.late_ticks)};
 }
-Structured structured() {
-  return Structured{InverseDynamics<StructuredQuadModel, Guard<FiniteInputs, FiniteOutputs>>{}};
-}
+Structured structured() { return Structured{InverseDynamics<StructuredQuadModel, Guard<FiniteInputs>>{}}; }
 
 using Indi = AdaptiveInverse<double, RigidBody, FilteredMotion<double>>;
 Indi indi() {
@@ -122,7 +118,7 @@ Indi indi() {
   settings.across_time_constant_s = 0;
   settings.most_across_m_s2 = 9;
   return {RigidBody(without_air()), airframe(), settings,
-          FilteredMotion<double>({75.0, airframe().rotor_time_constant_s})};
+          FilteredMotion<double>(75.0, airframe().rotor_time_constant_s)};
 }
 
 }  // namespace
@@ -165,9 +161,8 @@ TEST_CASE("stable with a rotor lag of 50 ms, and with states 40 ms late that are
   BiasSettings<double> quick;
   quick.time_constants_s = {0.05, 0.06, 0.06, 0.06};
   const auto rate = [&](double delay_s) {
-    const FlownMotionSettings<double> motion{25'000, airframe().rotor_time_constant_s, delay_s};
-    return rmse_cm(AdaptiveInverse<double, Analytic>(Analytic(known()), airframe(), quick, FlownMotion<double>(motion)),
-                   late);
+    const FlownMotion<double> motion(25'000, airframe().rotor_time_constant_s, delay_s);
+    return rmse_cm(AdaptiveInverse<double, Analytic>(Analytic(known()), airframe(), quick, motion), late);
   };
   CHECK(rate(late_s) <= 1.1 * without_cm);
   CHECK(rate(0) >= 2 * rate(late_s));  // measured: 29.1 and 13.4
@@ -259,7 +254,7 @@ TEST_CASE_TEMPLATE("what did not fly, or has no answer of the inverse's own, is 
     hover(policy, 0.35, 5, now_us);
     CHECK((policy.bias().status() == Status::ok) == (status == Status::ok));
     CHECK(policy.bias().sums()[0] == doctest::Approx(status == Status::ok ? 0.4 : 0.0).epsilon(1e-6));
-    if (status != Status::ok) CHECK(policy.bias().waited_s() == doctest::Approx(5).epsilon(0.01));
+    if (status != Status::ok) CHECK(policy.bias().learnt().waited_s == doctest::Approx(5).epsilon(0.01));
   }
   Policy policy({}, airframe());
   std::uint64_t now_us = 1'000'000;

@@ -16,7 +16,7 @@ using namespace pinnquad;
 
 namespace {
 
-using Answering = InverseDynamics<test::SmallModel, Guard<FiniteInputs, FiniteOutputs>>;
+using Answering = InverseDynamics<test::SmallModel, Guard<FiniteInputs>>;
 using Declining = InverseDynamics<test::NowhereTrained>;
 
 constexpr Commands<double> earlier = {0.11, 0.22, 0.33, 0.44};

@@ -101,7 +101,7 @@ TEST_CASE("commands are behind the rotors' lag: a step's closed form under the t
   // 1 - exp(-t / lag) under a triangle of two periods that begins with the step
   for (const double lag_s : {0.005, 0.02, 0.05}) {
     constexpr std::uint64_t fine_us = 100;
-    Flown flown({period_us, lag_s, 0.0});
+    Flown flown(period_us, lag_s, 0.0);
     int motions = 0;
     for (std::uint64_t now_us = 950'000; now_us <= 1'050'000; now_us += fine_us) {
       Commands<double> commands{};
@@ -118,7 +118,7 @@ TEST_CASE("commands are behind the rotors' lag: a step's closed form under the t
 
 TEST_CASE("a state that comes late is paired with the commands of its own time") {
   for (const std::uint64_t delay_us : {0u, 5'000u, 20'000u, 40'000u}) {
-    Flown flown({period_us, 0.0, seconds(delay_us)});
+    Flown flown(period_us, 0.0, seconds(delay_us));
     int motions = 0;
     for (std::uint64_t now_us = 1'000'000; now_us <= 3'000'000; now_us += tick_us) {
       const Commands<double> commands = following(swinging(seconds(now_us)));
@@ -143,7 +143,7 @@ TEST_CASE("a state that comes late is paired with the commands of its own time")
 TEST_CASE("between the ticks of a delay the commands kept are no further away than their spacing") {
   // 3.7 ms ticks and 40 ms: neither is a multiple of the other, and what is kept is spaced by 1.8 ms at least
   constexpr std::uint64_t odd_us = 3'700;
-  Flown flown({50'000, 0.0, 0.04});
+  Flown flown(50'000, 0.0, 0.04);
   int motions = 0;
   for (std::uint64_t now_us = 1'000'000; now_us <= 3'000'000; now_us += odd_us) {
     const double t = seconds(now_us);

@@ -14,7 +14,7 @@ using namespace pinnquad;
 
 namespace {
 
-using Bias = MotionBias<double>;
+using Bias = detail::MotionBias<double>;
 constexpr double period_s = 0.025, rounding = 1e-12;
 const double no_number = std::numeric_limits<double>::quiet_NaN();
 const double infinity = std::numeric_limits<double>::infinity();
@@ -82,7 +82,7 @@ TEST_CASE("the settings of a model: its own time constants, else the usual ones;
   CHECK(own.time_constants_s == SignedSums<double>{0.25, 0.5, 1, infinity});
   CHECK(own.most == usual.most);
   CHECK(bias_settings<Telling>().time_constants_s[0] == 0.25f);
-  ModelFacts facts;
+  detail::ModelFacts facts;
   CHECK(bias_settings<double>(facts).time_constants_s == usual.time_constants_s);
   facts.has_bias = true;
   for (double& time_s : facts.bias_time_constants_s) time_s = 2;
@@ -105,8 +105,8 @@ TEST_CASE("noise makes the time constants of roll, pitch and across longer, to a
   const auto share = [](double time_s) { return period_s / (period_s + time_s); };
   Bias bias(airframe, quick);
   for (int i = 0; i < 2000; ++i) REQUIRE(bias.learn({0.1, 0.05, -0.05, 0}, {1, 0, 0}, period_s) == Status::ok);
-  CHECK(bias.noise().roll_pitch <= 1e-9);
-  CHECK(bias.noise().across_m_s2 <= 1e-9);
+  CHECK(bias.learnt().roll_pitch_noise <= 1e-9);
+  CHECK(bias.learnt().across_noise_m_s2 <= 1e-9);
   // from a residual that stands, one step: what it takes of it is the share of its time constant
   const auto step_after = [&](double noise) {
     Bias noisy(airframe, quick);
@@ -115,7 +115,7 @@ TEST_CASE("noise makes the time constants of roll, pitch and across longer, to a
       static_cast<void>(noisy.learn({now, now, now, now}, {100 * now, 0, 0}, period_s));
     }
     Bias next(airframe, quick);
-    next.resume({}, none, none, noisy.noise(), 0, Status::ok);
+    next.resume({{}, none, none, noisy.learnt().roll_pitch_noise, noisy.learnt().across_noise_m_s2, 0, Status::ok});
     REQUIRE(next.learn({0.1, 0.1, 0.1, 0.1}, {1, 0, 0}, period_s) == Status::ok);
     CHECK(next.sums()[0] == doctest::Approx(0.1 * share(0.0025)));
     CHECK(next.sums()[3] == doctest::Approx(0.1 * share(0.05)));
@@ -142,13 +142,13 @@ TEST_CASE(
     static_cast<void>(swinging.learn({0, swing, 0, 0}, across, period_s));
   }
   const auto lead = [](const Bias& of) { return (of.across_ahead_m_s2() - of.across_m_s2())[0]; };
-  CHECK(bias.across_rate_m_s3()[0] == doctest::Approx(0.5).epsilon(0.02));
+  CHECK(bias.learnt().across_rate_m_s3[0] == doctest::Approx(0.5).epsilon(0.02));
   CHECK(lead(bias) == doctest::Approx(0.5 * quick.across_lead_s).epsilon(0.02));
   CHECK(lead(swinging) < 0.5 * lead(bias));
   CHECK(lead(swinging) > 0);
-  CHECK(bias.across_rate_m_s3()[2] == doctest::Approx(0));  // the thrust's to answer
+  CHECK(bias.learnt().across_rate_m_s3[2] == doctest::Approx(0));  // the thrust's to answer
   CHECK(plain.across_ahead_m_s2() == plain.across_m_s2());
-  bias.resume({}, {2.9, 0, 0}, {50, 0, 0}, {}, 0, Status::ok);
+  bias.resume({{}, {2.9, 0, 0}, {50, 0, 0}});
   CHECK(bias.across_ahead_m_s2()[0] == doctest::Approx(quick.most_across_m_s2));
   bias.reset();
   CHECK(bias.across_ahead_m_s2() == none);
@@ -198,15 +198,15 @@ TEST_CASE("without a residual it holds, then fades; a residual ends the waiting"
   CHECK(bias.sums()[0] == doctest::Approx(before * kept).epsilon(0.01));
   CHECK(bias.sums()[1] == doctest::Approx(0.1 * kept).epsilon(0.01));
   CHECK(bias.across_m_s2()[0] == doctest::Approx(kept).epsilon(0.01));
-  CHECK(bias.waited_s() == doctest::Approx(waited_s));
+  CHECK(bias.learnt().waited_s == doctest::Approx(waited_s));
   CHECK(bias.learn({0.3, 0.1, 0, 0}, none, period_s) == Status::ok);
-  CHECK(bias.waited_s() == 0);
+  CHECK(bias.learnt().waited_s == 0);
   const double held = bias.sums()[0];
   bias.wait(0.4);
   CHECK(bias.sums()[0] == held);
   // steps that are none
   for (const double step : {0.0, -1.0, no_number}) bias.wait(step);
-  CHECK(bias.waited_s() == doctest::Approx(0.4));
+  CHECK(bias.learnt().waited_s == doctest::Approx(0.4));
   bias.freeze();
   const double frozen = bias.sums()[0];
   bias.wait(0.4);
@@ -237,14 +237,13 @@ TEST_CASE("it goes on from what was logged, to the bit, refuses what is no numbe
     if (i % 25 == 24) bias.wait(0.8);
   };
   for (int i = 0; i < 50; ++i) next(flown, i);
-  replayed.resume(flown.sums(), flown.across_m_s2(), flown.across_rate_m_s3(), flown.noise(), flown.waited_s(),
-                  flown.status());
-  replayed.resume({no_number, 0, 0, 0}, none, none, {}, 0, Status::ok);
-  replayed.resume({}, {no_number, 0, 0}, none, {}, 0, Status::ok);
-  replayed.resume({}, none, {0, no_number, 0}, {}, 0, Status::ok);
-  replayed.resume({}, none, none, {no_number, 0}, 0, Status::ok);
-  replayed.resume({}, none, none, {0, infinity}, 0, Status::ok);
-  replayed.resume({}, none, none, {}, no_number, Status::ok);
+  replayed.resume(flown.learnt());
+  replayed.resume({{no_number, 0, 0, 0}});
+  replayed.resume({{}, {no_number, 0, 0}});
+  replayed.resume({{}, none, {0, no_number, 0}});
+  replayed.resume({{}, none, none, no_number});
+  replayed.resume({{}, none, none, 0, infinity});
+  replayed.resume({{}, none, none, 0, 0, no_number});
   for (int i = 50; i < 100; ++i) {
     next(flown, i);
     next(replayed, i);

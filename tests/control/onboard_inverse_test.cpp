@@ -43,7 +43,7 @@ struct Axes {
   std::mt19937_64 random{7}, wind{11};
 
   explicit Axes(const std::array<double, 4>& over_start) {
-    const ForwardModel<double> model = forward_model(start);
+    const auto model = forward_model(start);
     for (std::size_t k = 0; k < 4; ++k) slopes[k] = over_start[k] * model[k].slope();
     followed = detail::LagBank<double>::sums_of(commands, detail::signed_mix(start));
   }
@@ -96,12 +96,12 @@ const auto as_measured = [](double, State<double>&, bool&, Commands<double>&) {}
 
 bool proven(const OnboardInverse<double>& policy) {
   bool any = false;
-  for (const OnboardSum<double>& sum : policy.certificate()) any = any || sum.proven;
+  for (const auto& sum : policy.certificate()) any = any || sum.proven;
   return any;
 }
 std::string refusals(const OnboardInverse<double>& policy) {
   std::string said;
-  for (const OnboardSum<double>& sum : policy.certificate()) said += std::string(to_string(sum.refused_last)) + " ";
+  for (const auto& sum : policy.certificate()) said += std::string(to_string(sum.refused_last)) + " ";
   return said;
 }
 
@@ -114,7 +114,7 @@ TEST_CASE("after ten seconds of sines every sum flies within its interval, and t
     policy.excite(true);
     fly(axes, policy, 12, as_measured);
     for (std::size_t k = 0; k < 4; ++k) {
-      const OnboardSum<double>& sum = policy.certificate()[k];
+      const auto& sum = policy.certificate()[k];
       CAPTURE(k);
       CAPTURE(sum.forward.slope() / axes.slopes[k]);
       CAPTURE(std::string(to_string(sum.refused_last)));
@@ -124,7 +124,7 @@ TEST_CASE("after ten seconds of sines every sum flies within its interval, and t
       CHECK(std::abs(policy.certificate()[k].forward.slope() / axes.slopes[k] - 1) < 0.05);
     }
     // and the airframe for limits has these slopes
-    const ForwardModel<double> flown = forward_model(policy.airframe());
+    const auto flown = forward_model(policy.airframe());
     for (std::size_t k = 0; k < 4; ++k) {
       CHECK(std::abs(flown[k].slope() / policy.certificate()[k].forward.slope() - 1) < 1e-12);
     }
@@ -153,7 +153,7 @@ TEST_CASE("before anything is proven the start flies: sums of the airframe's own
   Commands<double> commands{};
   REQUIRE(policy({}, wanted, 1'000'000, commands) == Status::ok);
   const SignedSums<double> sums = detail::LagBank<double>::sums_of(commands, detail::signed_mix(start));
-  const ForwardModel<double> model = forward_model(start);
+  const auto model = forward_model(start);
   CHECK(std::abs(model[0].slope() * sums[0] - (-1 - standard_gravity_m_s2<double>)) < 1e-9);
   for (std::size_t k = 1; k < 4; ++k) {
     CHECK(std::abs(model[k].slope() * sums[k] - wanted.angular_rad_s2[static_cast<int>(k) - 1]) < 1e-9);
@@ -186,7 +186,7 @@ TEST_CASE("a propeller on wrong turns the sum's sign: refused as impossible") {
   OnboardInverse<double> policy(start, settings);
   policy.excite(true);
   fly(axes, policy, 4, [&](double, State<double>& state, bool&, Commands<double>&) { static_cast<void>(state); });
-  const OnboardSum<double>& yaw = policy.certificate()[3];
+  const auto& yaw = policy.certificate()[3];
   CHECK_FALSE(yaw.proven);
   CAPTURE(refusals(policy));
   CHECK((yaw.refused_last == OnboardRule::slope_impossible || yaw.refused_last == OnboardRule::few_rows));
@@ -214,7 +214,7 @@ TEST_CASE("samples that are frozen, no numbers or not known, and rotors that are
     // and it learns as soon as they come
     fly(axes, policy, learns_within_s, as_measured);
     CHECK(policy.certificate()[1].proven);
-    const OnboardSum<double>& roll = policy.certificate()[1];
+    const auto& roll = policy.certificate()[1];
     CHECK(std::abs(roll.forward.slope() - axes.slopes[1]) <= roll.half_width);
   };
   SUBCASE("frozen") { never(frozen); }
@@ -245,7 +245,7 @@ TEST_CASE("a wind that feedback answers hides no slope: thrust flies within its 
   OnboardInverse<double> policy(start);
   policy.excite(true);
   fly(axes, policy, 16, as_measured);
-  const OnboardSum<double>& thrust = policy.certificate()[0];
+  const auto& thrust = policy.certificate()[0];
   CAPTURE(thrust.forward.slope() / axes.slopes[0]);
   CAPTURE(refusals(policy));
   CHECK(thrust.proven);
@@ -266,7 +266,7 @@ TEST_CASE("gyro noise as in PX4's simulation, 0.07 rad/s at 250 Hz, hides no slo
     CAPTURE(seed);
     CAPTURE(refusals(policy));
     for (std::size_t k = 0; k < 4; ++k) {
-      const OnboardSum<double>& sum = policy.certificate()[k];
+      const auto& sum = policy.certificate()[k];
       CAPTURE(k);
       CAPTURE(sum.forward.slope() / axes.slopes[k]);
       CAPTURE(sum.half_width / axes.slopes[k]);
@@ -285,7 +285,7 @@ TEST_CASE("a gap of no numbers in flight changes no proven sum") {
   OnboardInverse<double> policy(start);
   policy.excite(true);
   fly(axes, policy, 12, as_measured);
-  const OnboardCertificate<double> before = policy.certificate();
+  const auto before = policy.certificate();
   const std::uint32_t rows = policy.rows();
   fly(axes, policy, 0.3, [&](double, State<double>& state, bool&, Commands<double>&) {
     state.velocity_m_s[0] = std::numeric_limits<double>::infinity();
@@ -302,7 +302,7 @@ TEST_CASE("frozen, nothing is swapped; without sines and without noise of a flig
     policy.freeze(true);
     fly(axes, policy, 12, as_measured);
     CHECK_FALSE(proven(policy));
-    for (const OnboardSum<double>& sum : policy.certificate()) CHECK(sum.refused_last == OnboardRule::frozen);
+    for (const auto& sum : policy.certificate()) CHECK(sum.refused_last == OnboardRule::frozen);
     CHECK(policy.rows() > 500);
   }
   SUBCASE("no sines") {

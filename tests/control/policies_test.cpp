@@ -89,8 +89,8 @@ TEST_CASE("the integral takes a steady error away, is bounded, and stands still 
                           IntegralInverse<double, AnalyticInverse<Body>>(inverse), plan, observer));
   CHECK(last_m < 1e-4);
 
-  IntegralInverse<double, Scripted> policy({});
-  const IntegralSettings<double> settings;
+  using Policy = IntegralInverse<double, Scripted>;
+  Policy policy({});
   const Accelerations<double> error{{2, 0, -1}, {0, 5, 0}};
   std::uint64_t now_us = 1'000'000;
   const auto ticks = [&](int count, bool known) {  // commands off their ends
@@ -104,15 +104,15 @@ TEST_CASE("the integral takes a steady error away, is bounded, and stands still 
   ticks(1, true);  // of the first tick no time is known
   const Vector3<double> first = policy.across_m_s2({});
   ticks(500, true);
-  CHECK((first - policy.across_m_s2({}) - Vector3<double>(2, 0, -1) * settings.linear_1_s).norm() <= 1e-9);
+  CHECK((first - policy.across_m_s2({}) - Vector3<double>(2, 0, -1) * Policy::linear_1_s).norm() <= 1e-9);
   const Vector3<double> before = policy.across_m_s2({});
   ticks(500, false);
   CHECK(policy.across_m_s2({}) == before);
   ticks(10'000, true);
-  CHECK(policy.across_m_s2({})[0] == doctest::Approx(-settings.most_m_s2));
+  CHECK(policy.across_m_s2({})[0] == doctest::Approx(-Policy::most_m_s2));
   policy.learn(now_us + 2000, true, State<double>{}, {0.5, 0.5, 0.5, 0.5});
   policy.integrate({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {0, 0, 0}});
-  CHECK(policy.across_m_s2({})[0] == doctest::Approx(-settings.most_m_s2));
+  CHECK(policy.across_m_s2({})[0] == doctest::Approx(-Policy::most_m_s2));
 }
 
 TEST_CASE("policies around each other both learn") {
@@ -211,13 +211,13 @@ TEST_CASE(
   CHECK(answer_of(none, 0, status) == 0.0);
   CHECK(status == Status::outside_envelope);
   hover(none, 0.65, 5, now_us);
-  CHECK(none.bias().waited_s() > 4);
-  CHECK(none.learner().last().waited_s() > 4);
+  CHECK(none.bias().learnt().waited_s > 4);
+  CHECK(none.learner().last().learnt().waited_s > 4);
 }
 
 TEST_CASE(
     "on the ground the biases are forgotten, where a tick freezes they stay, out of flight the first answers again") {
-  using Learner = BiasLearner<double, 2>;
+  using Learner = detail::BiasLearner<double, 2>;
   Learner learner(airframe(), narrow(0.4), FlownMotion<double>{});
   Learner::Tick tick;
   tick.now_us = 1'000'000;
@@ -256,7 +256,7 @@ TEST_CASE(
 
 TEST_CASE("rotors follow: 1 - (lag / (lag + h))^n of a step, a delay later, at ticks that are not even") {
   for (const double delay_s : {0.0, 0.007, 0.04}) {
-    RotorFollower<double> rotors(0.05, delay_s);
+    detail::RotorFollower<double> rotors(0.05, delay_s);
     rotors.restart({0.2, 0.2, 0.2, 0.2});
     std::uint64_t now_us = 5'000'000;
     double expected = 0.2;

@@ -39,7 +39,7 @@ using Loop = pinnquad::TrackingController<float, Adaptive>;
 Loop made() noexcept {
   const auto airframe = pinnquad::airframe_value<MODEL::Vehicle, float>();
   const Adaptive adaptive(Inverse{{}}, airframe, pinnquad::bias_settings<MODEL>(),
-                          pinnquad::FlownMotion<float>({25'000, airframe.rotor_time_constant_s, 0.0F}));
+                          pinnquad::FlownMotion<float>(25'000, airframe.rotor_time_constant_s));
   return Loop(airframe, pinnquad::FlightController<float>({}, pinnquad::flight_limits(airframe, 1.0F)), adaptive);
 }
 #elif defined(ONBOARD)
@@ -74,7 +74,7 @@ unsigned char pinnquad_loop_tick(std::uint32_t now_us, const LoopSample* sample,
 }
 
 unsigned char pinnquad_loop_bias(float* sums) {
-  const pinnquad::MotionBias<float>& bias = loop->feed_forward().bias();
+  const pinnquad::detail::MotionBias<float>& bias = loop->feed_forward().bias();
   for (std::size_t k = 0; k < 4; ++k) sums[k] = bias.sums()[k];
   return static_cast<unsigned char>(bias.status());
 }

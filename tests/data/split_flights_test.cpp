@@ -38,7 +38,7 @@ std::string names(const RowSet& rows) {
 }
 
 std::string names(const Dataset& dataset, RowSet RowSplit::*block,
-                  const pinnquad::Split<double>& shares = pinnquad::usual_shares) {
+                  const pinnquad::detail::Split<double>& shares = pinnquad::usual_shares) {
   return names(split_by_flight(dataset, shares).*block);
 }
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
-using pinnquad::Split;
 using pinnquad::split_contiguous;
+using pinnquad::detail::Split;
 
 TEST_CASE("the paper's flight splits into 9000, 3000 and 3000 rows") {
   const auto split = split_contiguous(15000);

@@ -94,8 +94,7 @@ TEST_CASE_TEMPLATE_DEFINE("trained, written, read back to the bit, flown", Kind,
   ModelView<Model> view;
   REQUIRE(ModelView<Model>::open(block.data(), block.size(), view) == Status::ok);
   auto run_time = std::make_unique<RunTimeModel<float>>();
-  BlockFault fault;
-  REQUIRE(RunTimeModel<float>::open(block.data(), block.size(), *run_time, fault) == Status::ok);
+  REQUIRE(RunTimeModel<float>::open(block.data(), block.size(), *run_time) == Status::ok);
   CHECK(std::memcmp(run_time->parameters(), model.network.parameters.data(), sizeof model.network.parameters) == 0);
 
   NetworkInverse<InverseDynamics<ModelView<Model>>> inverse{InverseDynamics<ModelView<Model>>(view)};

@@ -144,7 +144,7 @@ namespace {
 
 /// The block with hashes 0: golden commands are computed anew.
 std::vector<unsigned char> without_hash(std::vector<unsigned char> block) {
-  std::fill_n(block.begin() + ModelBlockHeader::contents_hash, 16, 0);
+  std::fill_n(block.begin() + detail::ModelBlockHeader::contents_hash, 16, 0);
   return block;
 }
 

@@ -145,8 +145,7 @@ void check_export(const Fitted& fitted, const Answer& answer, const std::string&
     CHECK(status == Status::ok);
     for (std::size_t i = 0; i < 4; ++i) CHECK(at_once[i] == doctest::Approx(double(at_edge[i])).epsilon(1e-6));
     const auto opened = std::make_unique<RunTimeModel<float>>();
-    BlockFault fault{};
-    REQUIRE(RunTimeModel<float>::open(bytes.data(), bytes.size(), *opened, fault) == Status::ok);
+    REQUIRE(RunTimeModel<float>::open(bytes.data(), bytes.size(), *opened) == Status::ok);
     CHECK(opened->inside_envelope(x.data()));
     std::vector<float> work(opened->workspace());
     opened->commands(x.data(), at_run_time.data(), work.data());

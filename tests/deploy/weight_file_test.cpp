@@ -79,7 +79,7 @@ TEST_CASE_TEMPLATE("what a training writes is what a view reads, bit for bit", M
     const auto golden = some_golden<Model>(1 + 6 * seed, seed);
     const BlockBytes block(model_block(model, golden, some_provenance()));
     using Layout = ModelBlockLayout<Model>;
-    CHECK(block.size() == Layout::length(golden.size()) + block.scalars() - ModelBlockHeader::size);
+    CHECK(block.size() == Layout::length(golden.size()) + block.scalars() - detail::ModelBlockHeader::size);
     CHECK(block.size() <= Layout::length(golden.size()) + Layout::most_record_bytes());
     ModelView<Model> view;
     REQUIRE(ModelView<Model>::open(block.data(), block.size(), view) == Status::ok);
@@ -110,7 +110,7 @@ TEST_CASE_TEMPLATE("what a training writes is what a view reads, bit for bit", M
 TEST_CASE("the bytes of a block are fixed") {
   const std::vector<unsigned char> block = model_block<SmallModel>();
   std::vector<unsigned char> begin(block.begin(), block.begin() + 128);
-  std::fill_n(begin.begin() + ModelBlockHeader::own_hash, 8, 0);  // it is over the version of the library too
+  std::fill_n(begin.begin() + detail::ModelBlockHeader::own_hash, 8, 0);  // it is over the version of the library too
   const std::vector<unsigned char> expected = {
       'P',  'I',  'N',  'N',  'Q',  'U',  'A',  'D',               // magic
       5,    0,    0,    0,                                         // version
@@ -134,7 +134,7 @@ TEST_CASE("the bytes of a block are fixed") {
   CHECK(crc32(block.data(), block.size()) == 0x2144df1cu);  // of anything that ends in its own CRC-32
   // of the records up to the last one, which says the version of the library, and of the scalars
   CHECK(crc32(block.data() + 80, 1312 - 80) == 0x67c9dc88u);
-  CHECK(detail::read_u32(block.data() + 1312) == static_cast<std::uint32_t>(BlockRecord::provenance));
+  CHECK(detail::read_u32(block.data() + 1312) == static_cast<std::uint32_t>(detail::BlockRecord::provenance));
   CHECK(crc32(block.data() + 1560, 3020 - 4 - 1560) == 0x2d309b64u);
   // the block's own hash, word by word
   std::uint64_t hash = 0xcbf29ce484222325u;

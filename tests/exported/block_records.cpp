@@ -87,9 +87,9 @@ TEST_CASE("a block of other terms than its header's does not open; a shape witho
   CHECK(opened<RecordedModel>(described) == Status::block_incompatible);
   const auto with_commands = [&](CommandMeaning meaning, std::uint32_t period_ns) {
     auto records = records_of(bytes);
-    find(records, BlockRecord::commands).bytes[0] = static_cast<unsigned char>(meaning);
+    find(records, detail::BlockRecord::commands).bytes[0] = static_cast<unsigned char>(meaning);
     for (std::size_t i = 0; i < 4; ++i) {
-      find(records, BlockRecord::clock).bytes[i] = static_cast<unsigned char>(period_ns >> (8 * i));
+      find(records, detail::BlockRecord::clock).bytes[i] = static_cast<unsigned char>(period_ns >> (8 * i));
     }
     return with_records(bytes, records);
   };
@@ -105,7 +105,7 @@ TEST_CASE("what a shape's hash does not cover can't be left unsaid, and nothing 
   // commands, clock, window, allocation; answer, features, outputs, vehicle, provenance
   REQUIRE(sound.size() == 9);
   for (std::size_t i = 0; i < sound.size(); ++i) {
-    CHECK((sound[i].type >= mandatory_record) == (i < 8));
+    CHECK((sound[i].type >= detail::mandatory_record) == (i < 8));
     auto records = sound;
     records.erase(records.begin() + static_cast<std::ptrdiff_t>(i));
     CHECK(opened<RecordedModel>(with_records(block, records)) == (i < 8 ? Status::block_incompatible : Status::ok));
@@ -120,11 +120,11 @@ namespace {
 /// Of a record that is a few bytes longer or shorter than it should be. Texts have no length of their own: a shape says
 /// the predictor, and its hash says names and units.
 Status with_other_length(unsigned type) {
-  switch (static_cast<BlockRecord>(type & 0x7fffu)) {
-    case BlockRecord::answer: return Status::block_incompatible;
-    case BlockRecord::features:
-    case BlockRecord::outputs:
-    case BlockRecord::vehicle: return Status::ok;
+  switch (static_cast<detail::BlockRecord>(type & 0x7fffu)) {
+    case detail::BlockRecord::answer: return Status::block_incompatible;
+    case detail::BlockRecord::features:
+    case detail::BlockRecord::outputs:
+    case detail::BlockRecord::vehicle: return Status::ok;
     default: return Status::block_corrupt;
   }
 }
@@ -142,10 +142,10 @@ TEST_CASE("a record of another length is corrupt, and so are counts that do not 
   }
   for (const std::size_t length : {std::size_t{0}, std::size_t{8}, airframe_number_count * (8 + sizeof(float))}) {
     auto records = records_of(block);
-    find(records, BlockRecord::vehicle).bytes.resize(length);  // without all of its name
+    find(records, detail::BlockRecord::vehicle).bytes.resize(length);  // without all of its name
     CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_corrupt);
   }
-  const std::size_t counts = ModelBlockHeader::size;
+  const std::size_t counts = detail::ModelBlockHeader::size;
   const auto changed = [&](std::size_t offset, std::uint32_t value) {
     BlockBytes other(block);
     other.set_u32(offset, value);
@@ -177,27 +177,28 @@ TEST_CASE("a record of another length is corrupt, and so are counts that do not 
 
 TEST_CASE("a record that says another thing than the shape is refused") {
   const Bytes block = model_block<RecordedModel>();
-  const auto changed = [&](BlockRecord type, std::size_t at, const auto value) {
+  const auto changed = [&](detail::BlockRecord type, std::size_t at, const auto value) {
     auto records = records_of(block);
     std::memcpy(find(records, type).bytes.data() + at, &value, sizeof value);
     return opened<RecordedModel>(with_records(block, records));
   };
-  CHECK(changed(BlockRecord::commands, 0, std::uint32_t{0}) == Status::ok);
-  CHECK(changed(BlockRecord::commands, 0, std::uint32_t{1}) == Status::block_incompatible);
-  CHECK(changed(BlockRecord::commands, 0, std::uint32_t{3}) == Status::block_incompatible);
-  CHECK(changed(BlockRecord::clock, 0, std::uint32_t{5000000}) == Status::block_incompatible);
-  CHECK(changed(BlockRecord::clock, 4, std::uint32_t{0}) == Status::ok);  // no shape has a lag
-  CHECK(changed(BlockRecord::window, 0, std::uint32_t{2}) == Status::block_incompatible);
-  CHECK(changed(BlockRecord::window, 4, std::uint32_t{0}) == Status::block_incompatible);
+  CHECK(changed(detail::BlockRecord::commands, 0, std::uint32_t{0}) == Status::ok);
+  CHECK(changed(detail::BlockRecord::commands, 0, std::uint32_t{1}) == Status::block_incompatible);
+  CHECK(changed(detail::BlockRecord::commands, 0, std::uint32_t{3}) == Status::block_incompatible);
+  CHECK(changed(detail::BlockRecord::clock, 0, std::uint32_t{5000000}) == Status::block_incompatible);
+  CHECK(changed(detail::BlockRecord::clock, 4, std::uint32_t{0}) == Status::ok);  // no shape has a lag
+  CHECK(changed(detail::BlockRecord::window, 0, std::uint32_t{2}) == Status::block_incompatible);
+  CHECK(changed(detail::BlockRecord::window, 4, std::uint32_t{0}) == Status::block_incompatible);
   for (std::size_t i = 0; i < 16; ++i) {
-    CHECK(changed(BlockRecord::allocation, 4 * i, 0.5f) == Status::block_incompatible);
-    CHECK(changed(BlockRecord::allocation, 4 * i, std::numeric_limits<float>::quiet_NaN()) ==
+    CHECK(changed(detail::BlockRecord::allocation, 4 * i, 0.5f) == Status::block_incompatible);
+    CHECK(changed(detail::BlockRecord::allocation, 4 * i, std::numeric_limits<float>::quiet_NaN()) ==
           Status::block_incompatible);
   }
   auto records = records_of(block);
-  records.push_back({static_cast<unsigned>(BlockRecord::columns) | mandatory_record, Bytes{'n', '1', 0, 's', 0}});
+  records.push_back(
+      {static_cast<unsigned>(detail::BlockRecord::columns) | detail::mandatory_record, Bytes{'n', '1', 0, 's', 0}});
   CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_incompatible);
-  records.back() = {static_cast<unsigned>(BlockRecord::base) | mandatory_record, Bytes{'b'}};
+  records.back() = {static_cast<unsigned>(detail::BlockRecord::base) | detail::mandatory_record, Bytes{'b'}};
   CHECK(opened<RecordedModel>(with_records(block, records)) == Status::block_incompatible);
   records.back().bytes.clear();  // no base is none
   CHECK(opened<RecordedModel>(with_records(block, records)) == Status::ok);
@@ -230,16 +231,16 @@ TEST_CASE("window, columns and period of a feature set with a past are records")
   REQUIRE(opened(BlockBytes(block), view) == Status::ok);
   CHECK(view.facts.sample_period_s == 0.01);
   auto records = records_of(block);
-  CHECK(detail::read_u32(find(records, BlockRecord::window).bytes.data()) == 2);
+  CHECK(detail::read_u32(find(records, detail::BlockRecord::window).bytes.data()) == 2);
   const std::string columns = std::string("battery_voltage") + '\0' + "V" + '\0';
-  CHECK(find(records, BlockRecord::columns).bytes == Bytes(columns.begin(), columns.end()));
+  CHECK(find(records, detail::BlockRecord::columns).bytes == Bytes(columns.begin(), columns.end()));
   for (std::size_t i = 0; i < columns.size(); ++i) {
     auto others = records;
-    unsigned char& letter = find(others, BlockRecord::columns).bytes[i];
+    unsigned char& letter = find(others, detail::BlockRecord::columns).bytes[i];
     letter = static_cast<unsigned char>(letter ^ 1u);
     CHECK(opened<Shape>(with_records(block, others)) == Status::block_incompatible);
   }
-  find(records, BlockRecord::columns).bytes.pop_back();
+  find(records, detail::BlockRecord::columns).bytes.pop_back();
   CHECK(opened<Shape>(with_records(block, records)) == Status::block_incompatible);
   Provenance from;
   from.sample_period_s = 0.02;
@@ -267,8 +268,8 @@ TEST_CASE("a residual on another base does not open, though its outputs have the
   CHECK(opened<ResidualModel<OtherInverse>>(BlockBytes(block)) == Status::block_incompatible);
   auto records = records_of(block);
   const std::string base = "pinnquad::LinearizedInverse";
-  CHECK(find(records, BlockRecord::base).bytes == Bytes(base.begin(), base.end()));
-  records.erase(records.begin() + (&find(records, BlockRecord::base) - records.data()));
+  CHECK(find(records, detail::BlockRecord::base).bytes == Bytes(base.begin(), base.end()));
+  records.erase(records.begin() + (&find(records, detail::BlockRecord::base) - records.data()));
   CHECK(opened<ResidualModel<LinearizedBase>>(with_records(block, records)) == Status::block_incompatible);
 }
 
@@ -293,7 +294,7 @@ TEST_CASE("a verdict and a bias go along where they are given") {
   CHECK(bias_settings<float>(view.facts).time_constants_s[1] == 0.5f);
   // without it the block is the same but for the record
   auto without = records_of(block);
-  without.erase(without.begin() + (&find(without, BlockRecord::bias) - without.data()));
+  without.erase(without.begin() + (&find(without, detail::BlockRecord::bias) - without.data()));
   Provenance silent = from;
   silent.bias_time_constants_s.reset();
   ModelView<Model> other;
@@ -307,10 +308,10 @@ TEST_CASE("a verdict and a bias go along where they are given") {
 
   for (const Record& record : records_of(block)) {
     const unsigned type = record.type & 0x7fffu;
-    const bool optional = type == static_cast<unsigned>(BlockRecord::verdict) ||
-                          type == static_cast<unsigned>(BlockRecord::provenance) ||
-                          type == static_cast<unsigned>(BlockRecord::bias);
-    CHECK((record.type < mandatory_record) == optional);
+    const bool optional = type == static_cast<unsigned>(detail::BlockRecord::verdict) ||
+                          type == static_cast<unsigned>(detail::BlockRecord::provenance) ||
+                          type == static_cast<unsigned>(detail::BlockRecord::bias);
+    CHECK((record.type < detail::mandatory_record) == optional);
   }
   from.bias_time_constants_s = {0.25, 0.5, -1, 1};
   CHECK_THROWS_WITH_AS(model_block(model, golden, from),

@@ -161,9 +161,8 @@ class Maker {
     test::BlockBytes first(detail::block_of(model_));
     first.seal();
     const auto read = std::make_unique<RunTimeModel<double>>();
-    BlockFault fault;
-    const Status status = RunTimeModel<double>::open(first.data(), first.size(), *read, fault);
-    INFO("expected " << (fault.expected == nullptr ? "" : fault.expected));
+    const Status status = RunTimeModel<double>::open(first.data(), first.size(), *read);
+    INFO("expected " << (read->fault().expected == nullptr ? "" : read->fault().expected));
     INFO(model_.answer);
     REQUIRE(status == Status::ok);
     std::vector<double> work(read->workspace());
@@ -431,8 +430,7 @@ TEST_CASE("a search over random feature sets, structures and weights refutes no 
     ++proven;
     const test::BlockBytes aligned(bytes);
     const auto own = std::make_unique<RunTimeModel<double>>();
-    BlockFault fault;
-    REQUIRE(RunTimeModel<double>::open(aligned.data(), aligned.size(), *own, fault) == Status::ok);
+    REQUIRE(RunTimeModel<double>::open(aligned.data(), aligned.size(), *own) == Status::ok);
     const Refuted found = search_of(*own, *proof, pairs, engine);
     all.pairs += found.pairs;
     all.fell += found.fell;

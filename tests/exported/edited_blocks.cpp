@@ -51,7 +51,7 @@ Bytes whole() {
   const float times_s[4] = {0.2f, 0.3f, 0, 0.3f};
   Bytes bias(sizeof times_s);
   std::memcpy(bias.data(), times_s, sizeof times_s);
-  records.push_back({static_cast<unsigned>(BlockRecord::bias), bias});
+  records.push_back({static_cast<unsigned>(detail::BlockRecord::bias), bias});
   const BlockBytes made = with_records(block, records);
   return {made.data(), made.data() + made.size()};
 }
@@ -71,7 +71,7 @@ std::string refusal(const BlockBytes& block) {
 }
 
 template <class Value>
-BlockBytes edited(const Bytes& block, BlockRecord type, std::size_t at, Value value) {
+BlockBytes edited(const Bytes& block, detail::BlockRecord type, std::size_t at, Value value) {
   auto records = records_of(block);
   std::memcpy(find(records, type).bytes.data() + at, &value, sizeof value);
   BlockBytes made = with_records(block, records);
@@ -93,28 +93,28 @@ TEST_CASE("a number of a record that no quadrotor has is refused by its name, th
     CHECK(line.find('\n') == std::string::npos);
   };
   for (const float value : {float(nan), float(infinity), -3.0f, 5.0f}) {
-    said(edited(block, BlockRecord::commands, 8, value), "record commands");
-    said(edited(block, BlockRecord::commands, 12, value), "record commands");
+    said(edited(block, detail::BlockRecord::commands, 8, value), "record commands");
+    said(edited(block, detail::BlockRecord::commands, 12, value), "record commands");
   }
-  said(edited(block, BlockRecord::clock, 0, std::uint32_t{1}), "record clock");
-  said(edited(block, BlockRecord::clock, 4, std::uint32_t{3999999999u}), "lag_removed_s");
-  said(edited(block, BlockRecord::window, 0, std::uint32_t{0}), "record window");
-  said(edited(block, BlockRecord::window, 4, std::uint32_t{2}), "record window");
-  said(edited(block, BlockRecord::verdict, 0, std::uint32_t{4}), "record verdict");
-  said(edited(block, BlockRecord::verdict, 0, std::uint32_t{3}), "R^2 bear out");
+  said(edited(block, detail::BlockRecord::clock, 0, std::uint32_t{1}), "record clock");
+  said(edited(block, detail::BlockRecord::clock, 4, std::uint32_t{3999999999u}), "lag_removed_s");
+  said(edited(block, detail::BlockRecord::window, 0, std::uint32_t{0}), "record window");
+  said(edited(block, detail::BlockRecord::window, 4, std::uint32_t{2}), "record window");
+  said(edited(block, detail::BlockRecord::verdict, 0, std::uint32_t{4}), "record verdict");
+  said(edited(block, detail::BlockRecord::verdict, 0, std::uint32_t{3}), "R^2 bear out");
   const char* limits[] = {"squared_distance_limit", "command_residual_factor", "command_residual_limit",
                           "command_residual_cleared", "update_period_s"};
   for (std::size_t i = 0; i < 5; ++i) {
     for (const double value : {nan, infinity, -1.0, 0.0, 1e30}) {
-      said(edited(block, BlockRecord::trust, 8 * i, value), limits[i]);
+      said(edited(block, detail::BlockRecord::trust, 8 * i, value), limits[i]);
     }
   }
   for (std::size_t i = 0; i < 19 + 190; ++i) {
-    said(edited(block, BlockRecord::trust, 40 + 4 * i, float(nan)), "record trust");
+    said(edited(block, detail::BlockRecord::trust, 40 + 4 * i, float(nan)), "record trust");
   }
   for (std::size_t i = 0; i < 4; ++i) {
     for (const float value : {float(nan), float(infinity), -0.2f, 0.0001f, 61.0f}) {
-      said(edited(block, BlockRecord::bias, 4 * i, value), "record bias");
+      said(edited(block, detail::BlockRecord::bias, 4 * i, value), "record bias");
     }
   }
 }
@@ -122,7 +122,7 @@ TEST_CASE("a number of a record that no quadrotor has is refused by its name, th
 /// Record and offset of each byte that a reader takes when a bit of it is another and the checksum was made again.
 template <class Shape>
 std::string taken(const Bytes& block) {
-  using Header = ModelBlockHeader;
+  using Header = detail::ModelBlockHeader;
   using Scalar = typename Shape::Scalar;
   std::string all;
   std::size_t record = 0, behind = Header::size + Header::record_counts;
@@ -137,10 +137,9 @@ std::string taken(const Bytes& block) {
     other[i] = static_cast<unsigned char>(block[i] ^ 1u << i % 8);
     other.seal_checksum();
     ModelView<Shape> view;
-    BlockFault fault;
     std::string readers;
     if (ModelView<Shape>::open(other.data(), other.size(), view) == Status::ok) readers += " view";
-    if (RunTimeModel<Scalar>::open(other.data(), other.size(), *model, fault) == Status::ok) readers += " run time";
+    if (RunTimeModel<Scalar>::open(other.data(), other.size(), *model) == Status::ok) readers += " run time";
     try {
       const BlockModel ground("edited.block", Bytes(other.data(), other.data() + other.size()));
       readers += " ground";

@@ -70,7 +70,7 @@ TEST_CASE("the block of the header is the golden one, but for the library's vers
   const std::vector<unsigned char> golden(block.data(), block.data() + block.size());
   const auto bare = [](const std::vector<unsigned char>& bytes) {
     auto records = test::records_of(bytes);
-    test::find(records, BlockRecord::provenance).bytes.clear();
+    test::find(records, detail::BlockRecord::provenance).bytes.clear();
     const test::BlockBytes without = test::with_records(bytes, records);
     return std::vector<unsigned char>(without.data(), without.data() + without.size());
   };

@@ -245,8 +245,8 @@ void attack_all() {
   using Scalar = typename Model::Scalar;
   using CalmFallback = Fallback<AnalyticInverse<Calm<Scalar>>>;
   using GustyFallback = Fallback<AnalyticInverse<Gusty<Scalar>>>;
-  using Unchecked = Guard<TrainingEnvelope, FiniteOutputs>;
-  using Anywhere = Guard<FiniteInputs, FiniteOutputs>;
+  using Unchecked = Guard<TrainingEnvelope>;
+  using Anywhere = Guard<FiniteInputs>;
   using UncheckedFallingBack = Extend<Unchecked, CalmFallback>;
   using Everything = Extend<TrainingGuard, RefuseCommands<WideCommands>, ClipCommands<>, GustyFallback>;
   const auto calm = by_formula<Calm<Scalar>, Scalar>();

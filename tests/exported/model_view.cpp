@@ -196,7 +196,7 @@ TEST_CASE("a block that is not aligned is refused, not read") {
 }
 
 TEST_CASE("another magic, version or shape is incompatible, whatever the checksum says") {
-  using Header = ModelBlockHeader;
+  using Header = detail::ModelBlockHeader;
   for (std::size_t i = 0; i < 8; ++i) {
     CHECK(changed([&](BlockBytes& block) { block[i] ^= 0x20; }) == Status::block_incompatible);
   }
@@ -224,7 +224,7 @@ TEST_CASE("another magic, version or shape is incompatible, whatever the checksu
 }
 
 TEST_CASE("a count of golden vectors that its length does not have is corrupt, however large") {
-  using Header = ModelBlockHeader;
+  using Header = detail::ModelBlockHeader;
   for (const std::uint32_t golden : {0u, 5u, 7u, 0x7fffffffu, 0x80000000u, 0xffffffffu}) {
     CHECK(changed([&](BlockBytes& block) { block.set_u32(Header::golden_vectors, golden); }) == Status::block_corrupt);
   }

@@ -47,9 +47,8 @@ GivenAirframe uneven() { return {"uneven", test::uneven_airframe<double>()}; }
 template <class Scalar>
 std::unique_ptr<RunTimeModel<Scalar>> opened(const BlockBytes& block) {
   auto model = std::make_unique<RunTimeModel<Scalar>>();
-  BlockFault fault;
-  const Status status = RunTimeModel<Scalar>::open(block.data(), block.size(), *model, fault);
-  INFO("expected " << (fault.expected == nullptr ? "" : fault.expected));
+  const Status status = RunTimeModel<Scalar>::open(block.data(), block.size(), *model);
+  INFO("expected " << (model->fault().expected == nullptr ? "" : model->fault().expected));
   REQUIRE(status == Status::ok);
   return model;
 }

@@ -29,7 +29,7 @@ using pinnquad::test::with_records;
 namespace {
 
 using Bytes = std::vector<unsigned char>;
-using Header = ModelBlockHeader;
+using Header = detail::ModelBlockHeader;
 
 /// The Status, the words of a refusal, and what a program says on the ground.
 struct Answer {
@@ -41,9 +41,8 @@ struct Answer {
 template <class Scalar = float>
 Answer opened(const BlockBytes& block) {
   const auto model = std::make_unique<RunTimeModel<Scalar>>();
-  BlockFault fault;
-  Answer answer{RunTimeModel<Scalar>::open(block.data(), block.size(), *model, fault), "", ""};
-  if (answer.status != Status::ok) answer.words = std::string(fault.expected) + " | " + fault.found;
+  Answer answer{RunTimeModel<Scalar>::open(block.data(), block.size(), *model), "", ""};
+  if (answer.status != Status::ok) answer.words = std::string(model->fault().expected) + " | " + model->fault().found;
   try {
     const BlockModel ground("some.block", Bytes(block.data(), block.data() + block.size()));
   } catch (const InputError& error) {
@@ -77,23 +76,23 @@ void incompatible(const BlockBytes& block, const std::string& keyword) {
 std::string text_of(const Record& record) { return {record.bytes.begin(), record.bytes.end()}; }
 
 /// The block with one record changed.
-BlockBytes changed(const Bytes& block, BlockRecord type, const std::function<void(Bytes&)>& change) {
+BlockBytes changed(const Bytes& block, detail::BlockRecord type, const std::function<void(Bytes&)>& change) {
   auto records = records_of(block);
   change(find(records, type).bytes);
   return with_records(block, records);
 }
-BlockBytes with_text(const Bytes& block, BlockRecord type, const std::string& text) {
+BlockBytes with_text(const Bytes& block, detail::BlockRecord type, const std::string& text) {
   return changed(block, type, [&](Bytes& bytes) { bytes.assign(text.begin(), text.end()); });
 }
 /// With `now` in place of `before` in a text.
-BlockBytes replaced(const Bytes& block, BlockRecord type, const std::string& before, const std::string& now) {
+BlockBytes replaced(const Bytes& block, detail::BlockRecord type, const std::string& before, const std::string& now) {
   auto records = records_of(block);
   std::string text = text_of(find(records, type));
   REQUIRE(text.find(before) != std::string::npos);
   return with_text(block, type, text.replace(text.find(before), before.size(), now));
 }
 template <class Value>
-BlockBytes with_value(const Bytes& block, BlockRecord type, std::size_t at, Value value) {
+BlockBytes with_value(const Bytes& block, detail::BlockRecord type, std::size_t at, Value value) {
   return changed(block, type, [&](Bytes& bytes) { std::memcpy(bytes.data() + at, &value, sizeof value); });
 }
 BlockBytes with_u32(const Bytes& block, std::size_t at, std::uint32_t value) {
@@ -193,24 +192,27 @@ TEST_CASE("counts of any size are refused where they do not fit") {
 }
 
 TEST_CASE("every mandatory record is asked for; what is unknown is refused if it is mandatory") {
-  for (const BlockRecord type :
-       {BlockRecord::commands, BlockRecord::clock, BlockRecord::window, BlockRecord::allocation, BlockRecord::answer,
-        BlockRecord::features, BlockRecord::outputs, BlockRecord::vehicle}) {
+  for (const detail::BlockRecord type :
+       {detail::BlockRecord::commands, detail::BlockRecord::clock, detail::BlockRecord::window,
+        detail::BlockRecord::allocation, detail::BlockRecord::answer, detail::BlockRecord::features,
+        detail::BlockRecord::outputs, detail::BlockRecord::vehicle}) {
     auto records = records_of(recorded());
     records.erase(records.begin() + (&find(records, type) - records.data()));
     corrupt(with_records(recorded(), records), "all records");
   }
   auto records = records_of(recorded());
-  records.erase(records.begin() + (&find(records, BlockRecord::provenance) - records.data()));
+  records.erase(records.begin() + (&find(records, detail::BlockRecord::provenance) - records.data()));
   CHECK(opened(with_records(recorded(), records)).line == "");
   records.push_back({detail::block_record_types + 1, Bytes(13, 1)});
   CHECK(opened(with_records(recorded(), records)).line == "");
-  records.back().type |= mandatory_record;
+  records.back().type |= detail::mandatory_record;
   incompatible(with_records(recorded(), records), "records that are known");
 }
 
 TEST_CASE("a description of a predictor that is too deep, too long, too wide or of anything else") {
-  const auto described = [](const std::string& text) { return with_text(recorded(), BlockRecord::answer, text); };
+  const auto described = [](const std::string& text) {
+    return with_text(recorded(), detail::BlockRecord::answer, text);
+  };
   const std::string network =
       "pinnquad::Network<float, pinnquad::Inputs<16>, pinnquad::Dense<8>, pinnquad::Relu, "
       "pinnquad::Dense<4>>";
@@ -265,12 +267,12 @@ TEST_CASE("a description of a predictor that is too deep, too long, too wide or 
     corrupt(described(text), "inputs, outputs and parameters");
   }
   // as many numbers, in another order
-  corrupt(replaced(recorded(), BlockRecord::answer, "Relu", "Tanh"), "hash");
+  corrupt(replaced(recorded(), detail::BlockRecord::answer, "Relu", "Tanh"), "hash");
 }
 
 TEST_CASE("features that are no list, that no window has, or other ones") {
   const auto with = [](const std::string& before, const std::string& now) {
-    return replaced(recorded(), BlockRecord::features, before, now);
+    return replaced(recorded(), detail::BlockRecord::features, before, now);
   };
   const std::string end(1, '\0');
   corrupt(with("roll" + end + "rad", "roll" + end + "deg"), "names and units of its features");
@@ -283,19 +285,19 @@ TEST_CASE("features that are no list, that no window has, or other ones") {
   corrupt(with("roll", "rolling"), "hash");  // a column, for all that is known
   std::string many;
   for (int i = 0; i < 100000; ++i) many += "n" + std::to_string(i) + end + "1" + end;
-  corrupt(with_text(recorded(), BlockRecord::features, many), "names and units of its features");
+  corrupt(with_text(recorded(), detail::BlockRecord::features, many), "names and units of its features");
   many.clear();
   for (int i = 0; i < 16; ++i) many += "n" + std::to_string(i) + end + "1" + end;
-  corrupt(with_text(recorded(), BlockRecord::features, many), "hash");
+  corrupt(with_text(recorded(), detail::BlockRecord::features, many), "hash");
   for (const std::string& text : {std::string(), many.substr(0, many.size() - 1), many + end, end + many}) {
-    corrupt(with_text(recorded(), BlockRecord::features, text), "names and units of its features");
+    corrupt(with_text(recorded(), detail::BlockRecord::features, text), "names and units of its features");
   }
 }
 
 TEST_CASE("a window that its features do not have, without a period, or centred about no instant; another column") {
   const Bytes block = centred();
   const auto window = [&](std::uint32_t taps, std::uint32_t causal) {
-    return changed(block, BlockRecord::window, [&](Bytes& bytes) {
+    return changed(block, detail::BlockRecord::window, [&](Bytes& bytes) {
       std::memcpy(bytes.data(), &taps, 4);
       std::memcpy(bytes.data() + 4, &causal, 4);
     });
@@ -306,43 +308,47 @@ TEST_CASE("a window that its features do not have, without a period, or centred 
   }
   corrupt<double>(window(3, 1), "names and units of its features");  // [+1] is not in a causal one
   corrupt<double>(window(4, 0), "odd");
-  corrupt<double>(with_value(block, BlockRecord::clock, 0, std::uint32_t{0}), "period");
-  corrupt<double>(replaced(block, BlockRecord::features, "roll[+1]", "roll[+2]"), "names and units of its features");
-  incompatible<double>(replaced(block, BlockRecord::columns, "battery_voltage", "battery_current"), "columns");
-  incompatible<double>(with_text(block, BlockRecord::columns, "battery_voltage"), "columns");
+  corrupt<double>(with_value(block, detail::BlockRecord::clock, 0, std::uint32_t{0}), "period");
+  corrupt<double>(replaced(block, detail::BlockRecord::features, "roll[+1]", "roll[+2]"),
+                  "names and units of its features");
+  incompatible<double>(replaced(block, detail::BlockRecord::columns, "battery_voltage", "battery_current"), "columns");
+  incompatible<double>(with_text(block, detail::BlockRecord::columns, "battery_voltage"), "columns");
   // a measured value by the name of one that is worked out
   auto records = records_of(recorded());
   const std::string column = std::string("roll") + '\0' + "rad" + '\0';
-  records.push_back({static_cast<unsigned>(BlockRecord::columns) | mandatory_record, {column.begin(), column.end()}});
+  records.push_back(
+      {static_cast<unsigned>(detail::BlockRecord::columns) | detail::mandatory_record, {column.begin(), column.end()}});
   incompatible(with_records(recorded(), records), "columns");
 }
 
 TEST_CASE("outputs that no library has, or that are other ones than those that they are called") {
-  incompatible(replaced(recorded(), BlockRecord::outputs, "CommandOutputs", "OtherOutputs"), "output schema");
-  incompatible(replaced(recorded(), BlockRecord::outputs, "CommandOutputs", "RotorSpeedOutputs"), "output schema");
-  incompatible(replaced(recorded(), BlockRecord::outputs, "u3", "u5"), "output schema");
-  incompatible(replaced(recorded(), BlockRecord::outputs, "u3", "u3" + std::string(1, '\0')), "output schema");
-  incompatible(with_text(recorded(), BlockRecord::outputs, ""), "output schema");
+  incompatible(replaced(recorded(), detail::BlockRecord::outputs, "CommandOutputs", "OtherOutputs"), "output schema");
+  incompatible(replaced(recorded(), detail::BlockRecord::outputs, "CommandOutputs", "RotorSpeedOutputs"),
+               "output schema");
+  incompatible(replaced(recorded(), detail::BlockRecord::outputs, "u3", "u5"), "output schema");
+  incompatible(replaced(recorded(), detail::BlockRecord::outputs, "u3", "u3" + std::string(1, '\0')), "output schema");
+  incompatible(with_text(recorded(), detail::BlockRecord::outputs, ""), "output schema");
   auto records = records_of(recorded());
   const std::string base = "pinnquad::LinearizedInverse";
-  records.push_back({static_cast<unsigned>(BlockRecord::base) | mandatory_record, {base.begin(), base.end()}});
+  records.push_back(
+      {static_cast<unsigned>(detail::BlockRecord::base) | detail::mandatory_record, {base.begin(), base.end()}});
   incompatible(with_records(recorded(), records), "output schema");
   // more outputs than the schema of the library has names
   const auto own = records_of(five());
-  const std::string text = text_of(find(records = own, BlockRecord::outputs));
+  const std::string text = text_of(find(records = own, detail::BlockRecord::outputs));
   const std::string called = "pinnquad::CommandOutputs" + text.substr(text.find('\0'));
-  incompatible(with_text(five(), BlockRecord::outputs, called), "output schema");
+  incompatible(with_text(five(), detail::BlockRecord::outputs, called), "output schema");
   records = own;
-  records.erase(records.begin() + (&find(records, BlockRecord::affine) - records.data()));
+  records.erase(records.begin() + (&find(records, detail::BlockRecord::affine) - records.data()));
   incompatible(with_records(five(), records), "output schema");
-  corrupt(with_value(five(), BlockRecord::affine, 0, std::numeric_limits<float>::quiet_NaN()), "record affine");
-  corrupt(replaced(five(), BlockRecord::outputs, "u5", "u6"), "hash");
+  corrupt(with_value(five(), detail::BlockRecord::affine, 0, std::numeric_limits<float>::quiet_NaN()), "record affine");
+  corrupt(replaced(five(), detail::BlockRecord::outputs, "u5", "u6"), "hash");
 }
 
 TEST_CASE("an airframe that can't fly, that is said twice in two ways, or has another allocation or name") {
   constexpr std::size_t flown = 8 * airframe_number_count;
   const auto airframe = [&](std::size_t number, double value) {
-    return changed(recorded(), BlockRecord::vehicle, [&](Bytes& bytes) {
+    return changed(recorded(), detail::BlockRecord::vehicle, [&](Bytes& bytes) {
       const auto as_flown = static_cast<float>(value);
       std::memcpy(bytes.data() + 8 * number, &value, sizeof value);
       std::memcpy(bytes.data() + flown + 4 * number, &as_flown, sizeof as_flown);
@@ -355,11 +361,12 @@ TEST_CASE("an airframe that can't fly, that is said twice in two ways, or has an
   }
   corrupt(airframe(spin_of_first, 0.5), "airframe");
   corrupt(airframe(x_of_first, 0.3), "allocation");
-  corrupt(with_value(recorded(), BlockRecord::vehicle, 0, 1.6), "airframe");
-  corrupt(with_value(recorded(), BlockRecord::vehicle, flown, 1.6f), "airframe");
-  corrupt(with_value(recorded(), BlockRecord::allocation, 12, 7.0f), "allocation");
-  corrupt(with_value(recorded(), BlockRecord::allocation, 12, std::numeric_limits<float>::quiet_NaN()), "allocation");
-  corrupt(replaced(recorded(), BlockRecord::vehicle, "paper_quadrotor", "paper_hexarotor"), "hash");
+  corrupt(with_value(recorded(), detail::BlockRecord::vehicle, 0, 1.6), "airframe");
+  corrupt(with_value(recorded(), detail::BlockRecord::vehicle, flown, 1.6f), "airframe");
+  corrupt(with_value(recorded(), detail::BlockRecord::allocation, 12, 7.0f), "allocation");
+  corrupt(with_value(recorded(), detail::BlockRecord::allocation, 12, std::numeric_limits<float>::quiet_NaN()),
+          "allocation");
+  corrupt(replaced(recorded(), detail::BlockRecord::vehicle, "paper_quadrotor", "paper_hexarotor"), "hash");
   corrupt(with_u32(recorded(), Header::shape_hash, 1), "hash");
 }
 
@@ -393,8 +400,7 @@ TEST_CASE("a monotone model whose numbers prove nothing") {
   other.seal();
   CHECK(opened(other).line.find("golden commands") != std::string::npos);
   const auto model = std::make_unique<RunTimeModel<float>>();
-  BlockFault fault;
-  REQUIRE(RunTimeModel<float>::open(other.data(), other.size(), *model, fault) == Status::ok);
+  REQUIRE(RunTimeModel<float>::open(other.data(), other.size(), *model) == Status::ok);
   std::vector<float> work(model->workspace());
   Commands<float> made[golden];
   for (std::size_t i = 0; i < golden; ++i) model->commands(model->golden_features(int(i)), made[i].data(), work.data());

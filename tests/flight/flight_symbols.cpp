@@ -147,8 +147,7 @@ struct RunTimeAsked {
 template <class Scalar>
 unsigned char predict_at_run_time(const void* block, unsigned long length, RunTimeAsked<Scalar>& asked) {
   auto& model = asked.model;
-  pinnquad::BlockFault fault;
-  Status status = pinnquad::RunTimeModel<Scalar>::open(block, length, model, fault);
+  Status status = pinnquad::RunTimeModel<Scalar>::open(block, length, model);
   if (status == Status::ok && model.workspace() > 256) status = Status::block_incompatible;
   if (status == Status::ok) status = model.features().check(asked.taps);
   if (status != Status::ok) return static_cast<unsigned char>(status);
@@ -360,7 +359,7 @@ unsigned char pinnquad_flight_track_adaptive(float* rmse_m) {
   using Reserve = pinnquad::AnalyticInverse<Everything<float>>;
   const pinnquad::AdaptiveInverse<float, Inverse, pinnquad::FlownMotion<float>, Reserve> feed_forward(
       Inverse(guarded()), pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>(),
-      pinnquad::bias_settings<SmallModel>(), pinnquad::FlownMotion<float>({25'000, 0.005F, 0.02F}),
+      pinnquad::bias_settings<SmallModel>(), pinnquad::FlownMotion<float>(25'000, 0.005F, 0.02F),
       Reserve(everything<float>()));
   return fly(pinnquad::FigureEight<float>{}, feed_forward, rmse_m);
 }
@@ -376,15 +375,14 @@ unsigned char pinnquad_flight_track_incremental(double* rmse_m) {
 /// Every function of an inverse that learns, tick by tick.
 unsigned char pinnquad_flight_learn(const float* state, const float* wanted, float* u) {
   using Inverse = pinnquad::NetworkInverse<Guarded>;
-  pinnquad::MotionBias<float> logged(pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>());
+  pinnquad::detail::MotionBias<float> logged(pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>());
   pinnquad::AdaptiveInverse<float, Inverse> inverse(Inverse(guarded()),
                                                     pinnquad::airframe_value<pinnquad::PaperQuadrotor, float>());
   const auto vehicle = read(state);
   Commands<float> commands{u[0], u[1], u[2], u[3]};
   inverse.learn(static_cast<std::uint64_t>(wanted[6]), true, vehicle.body, commands);
   inverse.interrupt();
-  logged.resume(inverse.bias().sums(), inverse.across_m_s2(vehicle.body), inverse.bias().across_rate_m_s3(),
-                inverse.bias().noise(), inverse.bias().waited_s(), inverse.bias().status());
+  logged.resume(inverse.bias().learnt());
   const Status status = inverse(vehicle.body, motion(wanted), 0, commands);
   for (std::size_t i = 0; i < commands.size(); ++i) u[i] = commands[i] + logged.sums()[i];
   inverse.reset();
@@ -396,7 +394,7 @@ unsigned char pinnquad_flight_track_hover(float* rmse_m) {
   const Status status = pinnquad::hover_trim(everything<float>(), Vector3<float>(0.0F, 0.0F, -5.0F), trim);
   if (status != Status::ok) return static_cast<unsigned char>(status);
   const pinnquad::test::Hover<float> still{};
-  return fly(pinnquad::WithoutJerk{still}, pinnquad::AnalyticInverse<Everything<float>>(everything<float>()), rmse_m);
+  return fly(still, pinnquad::AnalyticInverse<Everything<float>>(everything<float>()), rmse_m);
 }
 
 unsigned char pinnquad_flight_pilot_loop(const float* state, const float* wanted, float* demand) {

@@ -115,8 +115,8 @@ TrajectoryPoint<float> point_of(const CoreRecord& r) {
 
 /// Slopes of what flies over the truth.
 template <class Stack>
-std::array<double, 4> over_truth(const OnboardCertificate<float>& certificate) {
-  const ForwardModel<double> truth = forward_model(StrangeVehicle<Stack>::airframe());
+std::array<double, 4> over_truth(const OnboardInverse<float>::Certificate& certificate) {
+  const auto truth = forward_model(StrangeVehicle<Stack>::airframe());
   std::array<double, 4> result{};
   for (std::size_t k = 0; k < 4; ++k) {
     result[k] = static_cast<double>(certificate[k].forward.slope()) / truth[k].slope();

@@ -132,7 +132,7 @@ TEST_CASE("limits of trust: a model of other training data than theirs is refuse
   TrustingPx4Stack stack;
   const Block sound = sound_block<StructuredQuadModel>();
   Block other = sound;
-  other[pinnquad::ModelBlockHeader::training_data_hash] ^= 1;
+  other[pinnquad::detail::ModelBlockHeader::training_data_hash] ^= 1;
   other = sealed(other);
   CHECK(stack.offer(other.data(), other.size()) == Status::block_incompatible);
   CHECK_FALSE(stack.ready());

@@ -65,8 +65,7 @@ void use(programs::ForeignNetwork network) {
   std::vector<std::uint64_t> aligned((block.size() + 7) / 8);
   std::memcpy(aligned.data(), block.data(), block.size());
   const auto opened = std::make_unique<pinnquad::RunTimeModel<double>>();
-  pinnquad::BlockFault fault;
-  expect(pinnquad::RunTimeModel<double>::open(aligned.data(), block.size(), *opened, fault) == pinnquad::Status::ok,
+  expect(pinnquad::RunTimeModel<double>::open(aligned.data(), block.size(), *opened) == pinnquad::Status::ok,
          "a converted model opens");
 }
 

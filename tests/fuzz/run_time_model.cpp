@@ -22,7 +22,7 @@
 namespace {
 
 using namespace pinnquad;
-using Header = ModelBlockHeader;
+using Header = detail::ModelBlockHeader;
 using Bytes = std::vector<unsigned char>;
 
 using pinnquad_test::expect;
@@ -61,13 +61,12 @@ void ask(const RunTimeModel<Scalar>& model) {
 template <class Scalar>
 void open(const unsigned char* block, std::size_t size) {
   const auto model = std::make_unique<RunTimeModel<Scalar>>();
-  BlockFault fault;
-  const Status status = RunTimeModel<Scalar>::open(block, size, *model, fault);
+  const Status status = RunTimeModel<Scalar>::open(block, size, *model);
   if (status != Status::ok) {
     expect(status == Status::block_truncated || status == Status::block_incompatible || status == Status::block_corrupt,
            "a refusal says why");
-    expect(fault.expected != nullptr && fault.found != nullptr, "in words");
-    ++tally.count[std::string("refused: ") + fault.expected];
+    expect(model->fault().expected != nullptr && model->fault().found != nullptr, "in words");
+    ++tally.count[std::string("refused: ") + model->fault().expected];
     return;
   }
   ++tally.count[to_string(status)];
@@ -170,9 +169,10 @@ std::vector<test::Record> records_in(const Bytes& block) {
 
 /// The hash of what the records say, as detail::hash_of_shape().
 std::uint64_t hash_of(std::vector<test::Record> records) {
-  const auto bytes = [&](BlockRecord type) -> const Bytes& { return test::find(records, type).bytes; };
-  const auto features = texts_of(bytes(BlockRecord::features)), outputs = texts_of(bytes(BlockRecord::outputs));
-  const Bytes& vehicle = bytes(BlockRecord::vehicle);
+  const auto bytes = [&](detail::BlockRecord type) -> const Bytes& { return test::find(records, type).bytes; };
+  const auto features = texts_of(bytes(detail::BlockRecord::features)),
+             outputs = texts_of(bytes(detail::BlockRecord::outputs));
+  const Bytes& vehicle = bytes(detail::BlockRecord::vehicle);
   Airframe<double> airframe{};
   std::size_t at = 0;
   if (vehicle.size() < 8 * airframe_number_count) return 0;
@@ -190,7 +190,7 @@ std::uint64_t hash_of(std::vector<test::Record> records) {
   const bool is_double = vehicle.size() > 16 * airframe_number_count;
   const std::size_t flown = airframe_number_count * (is_double ? 16u : 12u);
   detail::Fnv1a fnv;
-  fnv.absorb_text(text_of(bytes(BlockRecord::answer)));
+  fnv.absorb_text(text_of(bytes(detail::BlockRecord::answer)));
   const auto pairs = [](const auto& texts, std::size_t first) {
     return [&texts, first](std::size_t i) {
       return detail::NameAndUnit{texts[first + 2 * i], texts[first + 2 * i + 1]};
@@ -206,7 +206,7 @@ std::uint64_t hash_of(std::vector<test::Record> records) {
 void fit_scalars(Bytes& block, const std::vector<test::Record>& records, std::size_t most) {
   RunTimeNetwork network;
   std::vector<test::Record> copy = records;
-  if (!network.parse(text_of(test::find(copy, BlockRecord::answer).bytes))) return;
+  if (!network.parse(text_of(test::find(copy, detail::BlockRecord::answer).bytes))) return;
   const std::size_t inputs = std::size_t(network.inputs()), outputs = std::size_t(network.outputs());
   const std::size_t golden = 1, parameters = std::size_t(network.parameter_count());
   const std::size_t count = 4 * inputs + 2 * outputs + golden * (inputs + 4) + parameters;

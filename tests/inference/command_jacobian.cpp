@@ -142,7 +142,7 @@ TEST_CASE("under every guard: its Status, its commands, and the derivatives of t
     CHECK(of(counts, Status::ok) + of(counts, least) == (least == Status::ok ? 2 : 1) * golden);
   };
   check(check_guard<TrainingGuard>(), Status::ok, true);
-  check(check_guard<Guard<TrainingEnvelope, FiniteOutputs>>(), Status::ok, true);
+  check(check_guard<Guard<TrainingEnvelope>>(), Status::ok, true);
   check(check_guard<Extend<TrainingGuard, ClipCommands<>>>(), Status::ok, true);
   check(check_guard<Extend<TrainingGuard, ClipCommands<Tight>>>(), Status::limited, false);
   check(check_guard<Extend<TrainingGuard, RefuseCommands<Tight>>>(), Status::outside_limits, false);

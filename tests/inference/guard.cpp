@@ -56,8 +56,8 @@ TEST_CASE("a guard is a type: no room, and the order of its policies has no mean
   CHECK(std::is_empty_v<Guarded<RefusingAndClipping>>);
   CHECK(sizeof(Guarded<FallingBack>) == sizeof(FixedFallback));
   CHECK(is_guard<TrainingGuard>);
-  CHECK_FALSE(is_guard<FiniteOutputs>);
-  using Backwards = Guard<FiniteOutputs, ClipCommands<>, TrainingEnvelope, FiniteInputs>;
+  CHECK_FALSE(is_guard<FiniteInputs>);
+  using Backwards = Guard<ClipCommands<>, TrainingEnvelope, FiniteInputs>;
   RandomStates random(181);
   for (int i = 0; i < 200; ++i) {
     const auto inputs = inputs_of(random, 1.6);
@@ -97,8 +97,8 @@ TEST_CASE("limits of the commands: refused, clipped, or a little clipped and muc
 
 TEST_CASE("without an envelope any finite motion is answered; without a check of the inputs the envelope refuses NaN") {
   RandomStates random(184);
-  const Guarded<Guard<FiniteInputs, FiniteOutputs>> anywhere;
-  const Guarded<Guard<TrainingEnvelope, FiniteOutputs>> unchecked;
+  const Guarded<Guard<FiniteInputs>> anywhere;
+  const Guarded<Guard<TrainingEnvelope>> unchecked;
   const auto far = inputs_of(random, 100.0);
   Commands<float> commands = marked(), expected{};
   CHECK(InverseDynamics<SmallModel>{}.predict(far, commands) == Status::outside_envelope);
@@ -333,7 +333,7 @@ TEST_CASE("the report says how far outside which feature lies, in half-widths") 
   CHECK(report.cause == Status::not_finite);
   CHECK(report.worst_feature == -1);
   // a guard that does not look at the inputs: the NaN is the worst feature, before any number
-  const Guarded<Guard<TrainingEnvelope, FiniteOutputs>> unchecked;
+  const Guarded<Guard<TrainingEnvelope>> unchecked;
   CHECK(unchecked.predict(inputs, commands, report) == Status::outside_envelope);
   CHECK(report.worst_feature == 11);
   CHECK(std::isnan(report.excess[11]));

@@ -99,7 +99,7 @@ TEST_CASE("the envelope comes first, and what is not finite is refused as withou
     CHECK(inverse.predict(inputs, commands) == Status::not_finite);
   }
   // no envelope: a distance that overflows is one that is too far
-  const Guarded<Guard<FiniteInputs, JointDistance<Trust>, FiniteOutputs>> without;
+  const Guarded<Guard<FiniteInputs, JointDistance<Trust>>> without;
   inputs = inputs_of(random, 0.1);
   inputs.velocity_m_s[1] = 1e30F;
   CHECK(without.predict(inputs, commands) == Status::outside_distribution);

@@ -35,12 +35,12 @@ struct QuarticFirstOutput {
 
 /// Terms with weights far apart, so that one in the wrong place shows.
 struct FarApart : PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll>, CyclicalAnnealing>,
-                                  Weighted<LocalMonotonicity<Pitch, TanhStep>, Constant>,
+                                  Weighted<LocalMonotonicity<Pitch>, Constant>,
                                   Weighted<LocalMonotonicity<Yaw>, CyclicalAnnealing>> {
   FarApart() {
     std::get<0>(terms).schedule = {0.7, 5, 0.2};
     std::get<1>(terms).schedule.value = 3.0;
-    std::get<1>(terms).loss.step.gain = 0.4;
+    std::get<1>(terms).loss.gain = 0.4;
     std::get<2>(terms).schedule.maximum = 11.0;
   }
 };
@@ -93,10 +93,10 @@ void check_gradient(const Loss& loss, ContextType context) {
 }  // namespace
 
 TEST_CASE_TEMPLATE("gradient of every loss", Loss, Mse, LocalMonotonicity<Roll>, LocalMonotonicity<Pitch>,
-                   LocalMonotonicity<Yaw>, LocalMonotonicity<Roll, TanhStep, Literal>,
-                   LocalMonotonicity<Pitch, TanhStep, Match>, PaperLoss<Constant, TanhStep, Match>,
-                   PaperLoss<Constant, TanhStep, Literal>, PaperLoss<CyclicalAnnealing>, PaperLoss<Constant>, FarApart,
-                   PhysicsInformed<Mse>, PearsonCorrelation<Roll>, PearsonCorrelation<Yaw>, QuarticFirstOutput) {
+                   LocalMonotonicity<Yaw>, LocalMonotonicity<Roll, Literal>, LocalMonotonicity<Pitch, Match>,
+                   PaperLoss<Constant, Match>, PaperLoss<Constant, Literal>, PaperLoss<CyclicalAnnealing>,
+                   PaperLoss<Constant>, FarApart, PhysicsInformed<Mse>, PearsonCorrelation<Roll>,
+                   PearsonCorrelation<Yaw>, QuarticFirstOutput) {
   SUBCASE("commands") {
     check_gradient(Loss{}, flight_context<Context<PaperFeatures, PaperQuadrotor, CommandOutputs>>());
   }

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "support/loss_batches.hpp"
-#include "support/sign_step.hpp"
 #include "support/tolerances.hpp"
 
 using namespace pinnquad;
@@ -28,10 +27,13 @@ using PaperContext = Context<PaperFeatures, PaperQuadrotor>;
 /// The paper and docs/paper.md give four digits after the point.
 constexpr double printed_digits = 5e-5;
 
-template <class Form = Standardised, class Step>
-double value(const Step& step, const Array& m, const Array& n) {
+/// With it the step is the sign, as footnote 2 of the paper has it.
+constexpr double sign = 1e12;
+
+template <class Form = Standardised>
+double value(double gain, const Array& m, const Array& n) {
   Array gradient = Array::Zero(m.size());
-  return Form::compare(step, m, n, 1.0, gradient);
+  return Form::compare(gain, m, n, 1.0, gradient);
 }
 
 template <class Loss, class ContextType>
@@ -81,9 +83,9 @@ void check_axes(unsigned seed, const ContextType& context, double roundings, con
   std::mt19937_64 engine(seed);
   for (const int size : {1, 2, 3, 17, 64}) {
     const auto batch = random_batch<double>(size, engine);
-    const double values[] = {value(LocalMonotonicity<Roll, TanhStep, Form>{}, context, batch),
-                             value(LocalMonotonicity<Pitch, TanhStep, Form>{}, context, batch),
-                             value(LocalMonotonicity<Yaw, TanhStep, Form>{}, context, batch)};
+    const double values[] = {value(LocalMonotonicity<Roll, Form>{}, context, batch),
+                             value(LocalMonotonicity<Pitch, Form>{}, context, batch),
+                             value(LocalMonotonicity<Yaw, Form>{}, context, batch)};
     for (int axis = 0; axis < 3; ++axis) {
       CAPTURE(axis);
       CHECK(std::fabs(values[axis] - expected(axis, batch)) <= rounding<double>(roundings));
@@ -112,29 +114,29 @@ TEST_CASE("footnote 2 of the paper, by each form") {
   const Array y1 = array({1, -2, -3, 4, 5});
   const Array y2 = array({1, 2, 3, 1.9455, 2.5});
   SUBCASE("the sign as step function gives the paper's values") {
-    CHECK(value(SignStep{}, y1, x) == 1.0);
-    CHECK(value(SignStep{}, y2, x) == 0.5);
+    CHECK(value(sign, y1, x) == 1.0);
+    CHECK(value(sign, y2, x) == 0.5);
   }
   SUBCASE("Algorithm 1's tanh, mean over N - 1 pairs (docs/paper.md, deviation 8)") {
-    CHECK(std::fabs(value(TanhStep{1.0}, y1, x) - 0.9991) <= printed_digits);
-    CHECK(std::fabs(value(TanhStep{1.0}, y2, x) - 0.7632) <= printed_digits);
+    CHECK(std::fabs(value(1.0, y1, x) - 0.9991) <= printed_digits);
+    CHECK(std::fabs(value(1.0, y2, x) - 0.7632) <= printed_digits);
   }
   SUBCASE("divided by N_b as printed, tanh gives neither (docs/paper.md, deviation 8)") {
-    const TanhStep step = LocalMonotonicity<Roll, TanhStep, Literal>{}.step;
+    const double step = LocalMonotonicity<Roll, Literal>{}.gain;
     CHECK(std::fabs(value<Literal>(step, y1, x) - 0.7992) <= printed_digits);
     CHECK(std::fabs(value<Literal>(step, y2, x) - 0.6106) <= printed_digits);
   }
   SUBCASE("the match: of four steps, all up in x, two and one go down; each costs (1 + 1)^2") {
-    CHECK(value<Match>(SignStep{}, y1, x) == 2.0);
-    CHECK(value<Match>(SignStep{}, y2, x) == 1.0);
+    CHECK(value<Match>(sign, y1, x) == 2.0);
+    CHECK(value<Match>(sign, y2, x) == 1.0);
   }
 }
 
 TEST_CASE("the gain a form begins with; one that is set stays") {
-  CHECK(LocalMonotonicity<Roll>{}.step.gain == 3.0);
-  CHECK((LocalMonotonicity<Roll, TanhStep, Literal>{}.step.gain == 1.0));
-  CHECK((LocalMonotonicity<Roll, TanhStep, Match>{}.step.gain == 3.0));
-  CHECK((LocalMonotonicity<Roll, TanhStep, Literal>{TanhStep{2.0}}.step.gain == 2.0));
+  CHECK(LocalMonotonicity<Roll>{}.gain == 3.0);
+  CHECK((LocalMonotonicity<Roll, Literal>{}.gain == 1.0));
+  CHECK((LocalMonotonicity<Roll, Match>{}.gain == 3.0));
+  CHECK((LocalMonotonicity<Roll, Literal>{2.0}.gain == 2.0));
 }
 
 TEST_CASE("laws of the loss on two series") {
@@ -146,7 +148,7 @@ TEST_CASE("laws of the loss on two series") {
       m[i] = pinnquad::standard_normal(engine);
       n[i] = pinnquad::standard_normal(engine);
     }
-    const TanhStep step{};
+    const double step = Standardised::gain;
     const double loss = value(step, m, n);
     CHECK(loss >= 0.0);
     CHECK(loss <= 2.0);
@@ -155,7 +157,7 @@ TEST_CASE("laws of the loss on two series") {
     CHECK(loss == doctest::Approx(value(step, Array(m + 7.0), Array(n - 3.0))).epsilon(1e-12));  // offsets cancel
     if (size > 1) {
       CHECK(loss + value(step, Array(-m), n) == doctest::Approx(2.0));  // opposed: 2 - loss
-      CHECK(value(SignStep{}, Array(3.0 * m), n) == value(SignStep{}, m, n));
+      CHECK(value(sign, Array(3.0 * m), n) == value(sign, m, n));
     }
   }
 }
@@ -163,21 +165,21 @@ TEST_CASE("laws of the loss on two series") {
 TEST_CASE("0 for series that rise steeply together, 2 (match: 4) for opposed ones, 1 for one that stands still") {
   const Array steep = array({0, 100, 300, 350, 900}), still = array({4, 4, 4, 4, 4});
   for (const double gain : {1.0, 3.0}) {
-    CHECK(value(TanhStep{gain}, steep, steep) == 0.0);
-    CHECK(value(TanhStep{gain}, steep, Array(-steep)) == 2.0);
-    CHECK(value(TanhStep{gain}, still, steep) == 1.0);
+    CHECK(value(gain, steep, steep) == 0.0);
+    CHECK(value(gain, steep, Array(-steep)) == 2.0);
+    CHECK(value(gain, still, steep) == 1.0);
   }
-  CHECK(value(SignStep{}, steep, steep) == 0.0);
-  CHECK(value(SignStep{}, steep, Array(-steep)) == 2.0);
-  CHECK(value(SignStep{}, still, steep) == 1.0);
-  CHECK(value<Match>(TanhStep{}, steep, steep) == 0.0);
-  CHECK(value<Match>(TanhStep{}, steep, Array(-steep)) == 4.0);
-  CHECK(value<Match>(TanhStep{}, still, steep) == 1.0);
+  CHECK(value(sign, steep, steep) == 0.0);
+  CHECK(value(sign, steep, Array(-steep)) == 2.0);
+  CHECK(value(sign, still, steep) == 1.0);
+  CHECK(value<Match>(Match::gain, steep, steep) == 0.0);
+  CHECK(value<Match>(Match::gain, steep, Array(-steep)) == 4.0);
+  CHECK(value<Match>(Match::gain, still, steep) == 1.0);
 }
 
 TEST_CASE("the sign has no slope: it can't train") {
   Array gradient = Array::Zero(3);
-  pinnquad::local_monotonicity(SignStep{}, array({1, 2, 0}), array({0, 1, 2}), 1.0, gradient);
+  pinnquad::local_monotonicity(sign, array({1, 2, 0}), array({0, 1, 2}), 1.0, gradient);
   CHECK(gradient.abs().maxCoeff() == 0.0);
 }
 

@@ -8,7 +8,6 @@
 
 #include "pinnquad/schedule/schedule.hpp"
 #include "support/loss_batches.hpp"
-#include "support/sign_step.hpp"
 
 using namespace pinnquad;
 using namespace pinnquad::test;
@@ -65,7 +64,7 @@ TEST_CASE("base and terms add to the gradient in the order in which they are nam
 TEST_CASE("what is a loss") {
   CHECK(is_loss<Mse>);
   CHECK(is_loss<LocalMonotonicity<Roll>>);
-  CHECK(is_loss<LocalMonotonicity<Yaw, SignStep>>);
+  CHECK(is_loss<LocalMonotonicity<Yaw, Literal>>);
   CHECK(is_loss<PhysicsInformed<Mse>>);
   CHECK(is_loss<PaperLoss<CyclicalAnnealing>>);
   CHECK_FALSE(is_loss<NotALoss>);

@@ -62,19 +62,19 @@ struct CurvedQuadrotor {
 };
 
 /// The form without a rotor's index, and with nothing else.
-struct HalvedOutputs {
+struct HalvedOutputs : pinnquad::EachRotor<HalvedOutputs> {
   static constexpr std::array<const char*, 4> names = {"a", "b", "c", "d"};
-  static constexpr const char* unit = "1";
+  static constexpr std::array<const char*, 4> units = {"1", "1", "1", "1"};
   template <class Scalar>
-  static Scalar from_command(Scalar command, const pinnquad::Airframe<Scalar>&) noexcept {
+  static Scalar from_command(Scalar command, const pinnquad::Airframe<Scalar>&, std::size_t) noexcept {
     return 2 * command;
   }
   template <class Scalar>
-  static Scalar command(Scalar output, const pinnquad::Airframe<Scalar>&) noexcept {
+  static Scalar command(Scalar output, const pinnquad::Airframe<Scalar>&, std::size_t) noexcept {
     return output / 2;
   }
   template <class Scalar>
-  static Scalar command_slope(Scalar, const pinnquad::Airframe<Scalar>&) noexcept {
+  static Scalar command_slope(Scalar, const pinnquad::Airframe<Scalar>&, std::size_t) noexcept {
     return Scalar(1) / 2;
   }
 };

@@ -66,14 +66,13 @@ WindAndThrust<double> found_on_eight(const Vehicle& vehicle, std::uint64_t seed)
   const Quadrotor<double, StandardAtmosphere, QuadraticDrag> known(airframe(), paper_site<double>());
   const double scale = known.rotor_scale(known.surroundings({}, 0.0));
   const Policy::Inverse inverse(airframe(), Residual(known), scale);
-  const Policy policy(inverse, {}, FlownMotion<double>({10'000, airframe().rise_time_constant_s(0), 0.0}));
+  const Policy policy(inverse, {}, FlownMotion<double>(10'000, airframe().rise_time_constant_s(0)));
   using Adaptive = AdaptiveInverse<double, Policy>;
   BiasSettings<double> bias;
   bias.most_across_m_s2 = 6;
   TrackingController<double, Adaptive> controller(
       airframe(), FlightController<double>({}, flight_limits(airframe(), scale)),
-      Adaptive(policy, airframe(), bias, FlownMotion<double>({25'000, airframe().rise_time_constant_s(0), 0.0})),
-      scale);
+      Adaptive(policy, airframe(), bias, FlownMotion<double>(25'000, airframe().rise_time_constant_s(0))), scale);
   FigureEight<double> eight;
   eight.center_m = {0, 0, -20};
   VehicleState<double> flown;

@@ -35,7 +35,8 @@ class BlockBytes {
 
   /// Where the scalars begin: behind the header and the records.
   std::size_t scalars() const {
-    return ModelBlockHeader::size + ModelBlockHeader::record_counts + u32(ModelBlockHeader::size + 4);
+    return detail::ModelBlockHeader::size + detail::ModelBlockHeader::record_counts +
+           u32(detail::ModelBlockHeader::size + 4);
   }
 
   template <class Scalar>
@@ -53,7 +54,7 @@ class BlockBytes {
   void seal_checksum() { set_u32(size_ - 4, crc32(bytes_.get(), size_ - 4)); }
   /// The same, and before it the block's own hash: as its writer would.
   void seal() {
-    using Header = ModelBlockHeader;
+    using Header = detail::ModelBlockHeader;
     if (size_ >= Header::size + Header::checksum_size) {
       const std::uint64_t hash = detail::hash_of_block(bytes_.get(), size_ / 4 * 4);
       set_u32(Header::own_hash, static_cast<std::uint32_t>(hash));
@@ -77,7 +78,7 @@ struct Record {
 
 inline std::vector<Record> records_of(const std::vector<unsigned char>& block) {
   std::vector<Record> records;
-  const unsigned char* at = block.data() + ModelBlockHeader::size;
+  const unsigned char* at = block.data() + detail::ModelBlockHeader::size;
   std::uint32_t count = detail::read_u32(at);
   for (at += 8; count > 0; --count) {
     const std::uint32_t length = detail::read_u32(at + 4);
@@ -88,7 +89,7 @@ inline std::vector<Record> records_of(const std::vector<unsigned char>& block) {
 }
 
 /// Throws std::out_of_range for a type that is not there.
-inline Record& find(std::vector<Record>& records, BlockRecord type) {
+inline Record& find(std::vector<Record>& records, detail::BlockRecord type) {
   for (Record& record : records) {
     if ((record.type & 0x7fffu) == static_cast<unsigned>(type)) return record;
   }
@@ -107,14 +108,14 @@ inline BlockBytes with_records(const std::vector<unsigned char>& block, const st
     all.insert(all.end(), record.bytes.begin(), record.bytes.end());
     all.resize((all.size() + 7) / 8 * 8, 0);
   }
-  std::vector<unsigned char> result(block.begin(), block.begin() + ModelBlockHeader::size);
+  std::vector<unsigned char> result(block.begin(), block.begin() + detail::ModelBlockHeader::size);
   add_u32(result, records.size());
   add_u32(result, all.size());
   result.insert(result.end(), all.begin(), all.end());
   const auto scalars = static_cast<std::ptrdiff_t>(BlockBytes(block).scalars());
   result.insert(result.end(), block.begin() + scalars, block.end());
   BlockBytes made(result);
-  made.set_u32(ModelBlockHeader::length, static_cast<std::uint32_t>(result.size()));
+  made.set_u32(detail::ModelBlockHeader::length, static_cast<std::uint32_t>(result.size()));
   made.seal();
   return made;
 }

@@ -37,8 +37,8 @@ TEST_CASE("every unit of the feature sets and output schemas has a resolution of
     CHECK(of_unit.still_margin > of_unit.smallest_deviation);
   };
   for (const char* unit : pinnquad::PaperFeaturesWithAltitude::units) known(unit);
-  known(pinnquad::CommandOutputs::unit);
-  known(pinnquad::RotorSpeedOutputs::unit);
+  known(pinnquad::CommandOutputs::units[0]);
+  known(pinnquad::RotorSpeedOutputs::units[0]);
 }
 
 TEST_CASE("an unknown unit: relative to the value, and to 1 about 0") {

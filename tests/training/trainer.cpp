@@ -353,9 +353,9 @@ TEST_CASE("a loss whose numbers make no sense does not begin a training") {
                          std::invalid_argument);
   }
   SUBCASE("gain") {
-    std::get<2>(loss.terms).loss.step.gain = std::numeric_limits<double>::quiet_NaN();
+    std::get<2>(loss.terms).loss.gain = std::numeric_limits<double>::quiet_NaN();
     CHECK_THROWS_WITH_AS(std::make_unique<Type>(net, loss, Adam{}, PaperContext{}),
-                         "TanhStep::gain: expected a finite number from 0, found nan", std::invalid_argument);
+                         "LocalMonotonicity::gain: expected a finite number from 0, found nan", std::invalid_argument);
   }
 }
 

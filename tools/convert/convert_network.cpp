@@ -35,8 +35,7 @@ double golden_difference(const std::vector<unsigned char>& block) {
   std::vector<std::uint64_t> aligned((block.size() + 7) / 8);
   std::memcpy(aligned.data(), block.data(), block.size());
   const auto model = std::make_unique<RunTimeModel<Scalar>>();
-  BlockFault fault;
-  if (RunTimeModel<Scalar>::open(aligned.data(), block.size(), *model, fault) != Status::ok) return 0;  // it says why
+  if (RunTimeModel<Scalar>::open(aligned.data(), block.size(), *model) != Status::ok) return 0;  // it says why
   std::vector<Scalar> work(model->workspace());
   return static_cast<double>(model->golden_difference(work.data()));
 }

@@ -92,7 +92,7 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   flights.near_ground = near_ground;
   const ModelRange range = plan.keeps_envelope ? range_of(model) : range_of(model).of_altitude();
   const AnyTrajectory trajectory = trajectory_of(plan, ground_z_m, range, flights);
-  const AnyTrajectory without_jerk{[&](double time_s) { return WithoutJerk{trajectory}.sample(time_s); }};
+  const AnyTrajectory without_jerk{[&](double time_s) { return pinnquad::without_jerk(trajectory.sample(time_s)); }};
   Commands<double> trim{};
   Status status = on_battery.status();
   if (status == Status::ok) status = hover_trim(vehicle, trajectory.sample(0).position_m, trim);
@@ -114,7 +114,7 @@ LoopFlights fly_loop(const BlockModel& model, const LoopPlan& plan) {
   const auto behind = [&](const auto& guard) { return model_inverse(model, guard, ground_z_m, columns); };
   flights.model = fly(trajectory,
                       plan.keeps_envelope ? behind(Extend<TrainingGuard, FallsBack>(analytic))
-                                          : behind(Guard<FiniteInputs, FiniteOutputs, FallsBack>(analytic)),
+                                          : behind(Guard<FiniteInputs, FallsBack>(analytic)),
                       on_battery, flights.traces.model);
   if (voltage_V != nullptr) flights.last_voltage_V = *voltage_V;
   FlownTrace unseen;

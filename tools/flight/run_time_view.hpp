@@ -117,7 +117,7 @@ class RunTimeView {
   FeatureVector envelope_upper{};
   std::vector<FeatureVector> golden_features;
   std::vector<std::array<Scalar, pinnquad::rotor_count>> golden_commands;
-  pinnquad::ModelFacts facts{};
+  pinnquad::detail::ModelFacts facts{};
 
   RunTimeView() = default;
   /// The model must stay where it is.

@@ -84,7 +84,7 @@ inline std::vector<std::string> airframe_doubts(const Airframe<double>& a) {
   const std::array<double, 3> turn = greatest_turn_rad_s2(a);
   const std::array<const char*, 3> names = {"roll", "pitch", "yaw"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const PlausibleRange range = plausible::turn_rad_s2[axis];
+    const auto range = plausible::turn_rad_s2[axis];
     outside(std::string("greatest ") + names[axis] + " acceleration", turn[axis], range.least, range.most, " rad/s^2",
             "look at inertia_kg_m2, in kg m^2, and the rotors' places");
   }

@@ -56,7 +56,7 @@ CommandCurve command_curve(const Dataset& flights, const std::optional<double>& 
   }
   IdentificationSettings settings;
   settings.fit_thrust_curve = true;
-  settings.scope = IdentificationScope::thrust_curve;
+  settings.scope = IdentificationSettings::Scope::thrust_curve;
   const Identification found = identify(rows, axis_signs(airframe_value<PaperQuadrotor, double>()), settings);
   const Estimate& curve = found.thrust_curve;
   const std::string of = " in " + flights_in_words(flights) + evidence(found);

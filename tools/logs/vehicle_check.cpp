@@ -94,7 +94,7 @@ Judged judge(const Flight& flight, const Airframe<double>& airframe, double lag_
   judged.aligned = split_at_gaps(std::move(begin), 1.5 * period_s);
   IdentificationSettings settings;
   settings.thrust_curve = airframe.rotors[0].thrust_curve;
-  settings.scope = IdentificationScope::without_rise_and_fall;
+  settings.scope = IdentificationSettings::Scope::without_rise_and_fall;
   RowSet rows;
   std::array<RowSet, 2> half_rows;
   for (const Flight& segment : judged.aligned) {

@@ -22,12 +22,7 @@ FlightGains<double> flight_gains(const LoopGains& factors) {
 
 AnyPolicy loop_policy(const std::string& name, const LoopKnowledge& known, const LoopGains& gains) {
   const PolicyParts parts(known, gains);
-  if (name == "pid") {
-    IntegralSettings<double> integral;
-    integral.linear_1_s *= gains.learning;
-    integral.angular_1_s *= gains.learning;
-    return AnyPolicy(IntegralInverse<double, PolicyParts::Formula>(parts.rigid_body, integral));
-  }
+  if (name == "pid") return AnyPolicy(IntegralInverse<double, PolicyParts::Formula>(parts.rigid_body, gains.learning));
   if (name == "formula") return AnyPolicy(parts.formula);
   if (name == "formula_adaptive") return AnyPolicy(parts.adaptive(parts.formula));
   if (name == "indi") return AnyPolicy(parts.incremental(parts.at_once, parts.rigid_body));

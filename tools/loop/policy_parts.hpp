@@ -25,7 +25,7 @@ struct PolicyParts {
         bias(told.bias),
         at_once(told.bias),
         slower(told.bias),
-        filtered_(low_pass(gains)) {
+        filtered_(gains.learning * pinnquad::FilteredMotion<double>::usual_cutoff_rad_s, lag_s, known.delay_s) {
     for (std::size_t i = 0; i < bias.time_constants_s.size(); ++i) {
       bias.time_constants_s[i] /= gains.learning;
       at_once.time_constants_s[i] = 0;
@@ -46,7 +46,7 @@ struct PolicyParts {
   auto adaptive(const Inverse& inverse, const Reserve&... reserve) const {
     using Motion = pinnquad::FlownMotion<double>;
     return pinnquad::AdaptiveInverse<double, Inverse, Motion, Reserve...>(
-        inverse, known.vehicle.airframe(), bias, Motion({pinnquad::quick_period_us, lag_s, known.delay_s}), reserve...);
+        inverse, known.vehicle.airframe(), bias, Motion(pinnquad::quick_period_us, lag_s, known.delay_s), reserve...);
   }
   template <class Inverse, class... Reserve>
   auto incremental(const pinnquad::BiasSettings<double>& settings, const Inverse& inverse,
@@ -68,14 +68,6 @@ struct PolicyParts {
   pinnquad::BiasSettings<double> bias, at_once, slower;
 
  private:
-  pinnquad::FilteredMotionSettings<double> low_pass(const LoopGains& gains) const {
-    pinnquad::FilteredMotionSettings<double> result;
-    result.cutoff_rad_s *= gains.learning;
-    result.rotor_lag_s = lag_s;
-    result.delay_s = known.delay_s;
-    return result;
-  }
-
   pinnquad::FilteredMotion<double> filtered_;
 };
 

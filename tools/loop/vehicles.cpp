@@ -202,7 +202,7 @@ class Flown {
         switched_effects<Quadrotor<double, StandardAtmosphere, QuadraticDrag>>(), start_, Site<double>{});
     const double lag_s = told.rotor_time_constant_s;
     KnownInverse policy(StillInverse(knows ? still_ : guessed, knows), bias_for(lag_s),
-                        FlownMotion<double>({20'000, lag_s, knows ? truth_.delay_s : told_delay_s}));
+                        FlownMotion<double>(20'000, lag_s, knows ? truth_.delay_s : told_delay_s));
     return fly(
         policy, policy.inverse().in_commands(), [](double) {}, [&] { return told; });
   }
@@ -215,13 +215,13 @@ class Flown {
     std::size_t unproven = 0;
     std::optional<LearntVehicle<double>> drawn;
     if (flight_.vehicle == options_.drawn) drawn.emplace(start_);
-    const OnboardCertificate<double> at_start = policy.certificate();
+    const auto at_start = policy.certificate();
     const auto watch = [&](double time_s) {
       policy.excite(time_s < VehicleCourse::hover_s && time_s < options_.frozen_s);
       policy.freeze(time_s >= options_.frozen_s);
       if (drawn) drawn->note(time_s, policy);
       for (std::size_t k = 0; k < 4; ++k) {
-        const OnboardSum<double>& sum = policy.certificate()[k];
+        const auto& sum = policy.certificate()[k];
         if (!sum.proven && sum.forward.theta != at_start[k].forward.theta) ++unproven;
         if (sum.proven_row == row[k]) continue;
         row[k] = sum.proven_row;
@@ -238,7 +238,7 @@ class Flown {
                                                  {"unproven_ticks", unproven},
                                                  {"drag", {policy.drag().linear_1_s, policy.drag().quadratic_1_m}}};
     for (std::size_t k = 0; k < 4; ++k) {
-      const OnboardSum<double>& sum = policy.certificate()[k];
+      const auto& sum = policy.certificate()[k];
       const double slope = sum.forward.slope();
       nlohmann::json& said = learnt[sum_names[k]] = {{"proven", sum.proven},
                                                      {"first_swap_s", nullptr},
@@ -267,7 +267,7 @@ class Flown {
     for (double& command : hover) command = std::clamp(command, 0.0, 1.0);
     Shaking shaking;
     if (flight_.condition == "saturated") {
-      const ForwardModel<double> start = forward_model(start_);
+      const auto start = forward_model(start_);
       for (std::size_t k = 0; k < 4; ++k) shaking.slopes[k] = start[k].slope();
       shaking.strength = flight_.controller == "onboard" ? 4 : 5;  // beside its own
       shaking.until_s = VehicleCourse::hover_s;

@@ -26,7 +26,7 @@ struct BlockOptions {
   bool json = false;
 };
 
-nlohmann::json named(const RunTimeFeatures::Named& one) {
+nlohmann::json named(const detail::NameAndUnit& one) {
   return {{"name", std::string(one.name)}, {"unit", std::string(one.unit)}};
 }
 

@@ -42,7 +42,7 @@ class LearntVehicle {
     const auto second = static_cast<long>(std::floor(time_s));
     bool swapped = false;
     for (std::size_t k = 0; k < 4; ++k) {
-      const pinnquad::OnboardSum<Scalar>& sum = learner.certificate()[k];
+      const auto& sum = learner.certificate()[k];
       if (sum.forward.theta == last_[k].theta && sum.proven_row == rows_[k]) continue;
       swapped = swapped || rows_seen_;
       if (rows_seen_) {
@@ -92,7 +92,7 @@ class LearntVehicle {
         {"drag",
          {{"linear_1_s", number(learner.drag().linear_1_s)}, {"quadratic_1_m", number(learner.drag().quadratic_1_m)}}}};
     for (std::size_t k = 0; k < 4; ++k) {
-      const pinnquad::OnboardSum<Scalar>& sum = learner.certificate()[k];
+      const auto& sum = learner.certificate()[k];
       nlohmann::json& said = json[sum_names[k]];
       said = {{"proven", sum.proven},
               {"slope", number(sum.forward.slope())},
@@ -196,7 +196,7 @@ class LearntVehicle {
   };
 
   static double number(Scalar value) { return static_cast<double>(value); }
-  static Of of(const pinnquad::OnboardSum<Scalar>& sum) {
+  static Of of(const pinnquad::detail::OnboardSum<Scalar>& sum) {
     return {sum.proven, number(sum.forward.slope()), number(sum.half_width), to_string(sum.refused_last)};
   }
   static void write_text(const std::string& path, const std::string& text) {
@@ -208,7 +208,7 @@ class LearntVehicle {
   std::string airframe_text(const std::string& name, const Learner& learner) const {
     std::string proven;
     for (std::size_t k = 0; k < 4; ++k) {
-      const pinnquad::OnboardSum<Scalar>& sum = learner.certificate()[k];
+      const auto& sum = learner.certificate()[k];
       proven += std::string("# ") + sum_names[k] +
                 (sum.proven ? in_words(": learnt, %.4g of the start, +- %.1f %%\n",
                                        number(sum.forward.slope()) / number(start_[k].slope()),
@@ -241,7 +241,7 @@ class LearntVehicle {
     return text;
   }
 
-  pinnquad::ForwardModel<Scalar> start_, last_{};
+  pinnquad::detail::ForwardModel<Scalar> start_, last_{};
   std::array<std::uint32_t, 4> rows_{};
   bool rows_seen_ = false;
   long second_ = -1;

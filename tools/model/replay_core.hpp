@@ -158,7 +158,7 @@ class CoreReplayOf : public CoreReplay {
     past_unknown_ = has_past_;
     const typename Controller::Learner& learner = controller_->learner();
     bias_known_us_ = record.timestamp + learner.motion().settles_us();
-    window_known_us_ = bias_known_us_ + 2 * learner.trust().window_us(learner.motion().settings().period_us);
+    window_known_us_ = bias_known_us_ + 2 * learner.trust().window_us(learner.motion().period_us());
     alarm_known_us_ = record.timestamp + static_cast<std::uint64_t>(1e6f * Controller::Learner::clear_s);
     controller_->resume(record);
     take_inputs(record, static_cast<std::uint8_t>(~record.came & 31));

@@ -60,7 +60,7 @@ class ReasonOf {
   }
 
  private:
-  const pinnquad::RunTimeFeatures::Named& said(int place) const {
+  const pinnquad::detail::NameAndUnit& said(int place) const {
     return (*features_)[feature_at_[static_cast<std::size_t>(place)]];
   }
   std::size_t place(int feature) const { return static_cast<std::size_t>(View::Features::place(*features_, feature)); }

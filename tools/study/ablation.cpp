@@ -84,16 +84,12 @@ std::vector<Contender> ablation() {
 
   // other forms of the physics terms, each with the gain that is its own (loss/local_monotonicity.hpp)
   add_variant(all, "literal_constant", "form as Algorithm 1 prints it, lambda without annealing",
-              with_schedule(pinnquad::PaperLoss<pinnquad::Constant, pinnquad::TanhStep, pinnquad::Literal>{},
-                            constant_weight()),
-              informed);
+              with_schedule(pinnquad::PaperLoss<pinnquad::Constant, pinnquad::Literal>{}, constant_weight()), informed);
   add_variant(all, "literal", "form as Algorithm 1 prints it",
-              with_schedule(pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::TanhStep, pinnquad::Literal>{},
-                            annealed_weight()),
+              with_schedule(pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::Literal>{}, annealed_weight()),
               informed);
   add_variant(all, "match", "form that asks for equal steps",
-              with_schedule(pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::TanhStep, pinnquad::Match>{},
-                            annealed_weight()),
+              with_schedule(pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::Match>{}, annealed_weight()),
               informed);
   add_variant(all, "pearson", "Pearson's correlation instead of local monotonicity",
               with_schedule(programs::PearsonLoss{}, annealed_weight()), informed);

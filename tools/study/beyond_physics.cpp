@@ -54,7 +54,7 @@ BeyondTraining train_network_on_physics(const BeyondTask& task) {
 
 BeyondTraining train_match(const BeyondTask& task) {
   using namespace programs::best;
-  using Loss = pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::TanhStep, pinnquad::Match>;
+  using Loss = pinnquad::PaperLoss<pinnquad::CyclicalAnnealing, pinnquad::Match>;
   return train_network<pinnquad::PaperFeatures>(task, with_schedule(Loss{}, annealed_weight()), informed_decay);
 }
 

@@ -44,7 +44,7 @@ struct Material {
         validation(pinnquad::standardised<float>(context, {rows, split.validation})) {}
 
   const pinnquad::Flight& flight;
-  pinnquad::Split<pinnquad::IndexRange> split;
+  pinnquad::detail::Split<pinnquad::IndexRange> split;
   Context context;
   pinnquad::TrainingData<float, Features::size, pinnquad::rotor_count> data;
   pinnquad::TrainingData<float, Features::size, pinnquad::rotor_count> validation;

@@ -120,7 +120,7 @@ class L1Adaptive {
   FeedForward inverse_;
   Vehicle vehicle_;
   L1Settings<Scalar> settings_;
-  RotorFollower<Scalar> rotors_;
+  pinnquad::detail::RotorFollower<Scalar> rotors_;
   pinnquad::detail::TickClock<Scalar> clock_;
   std::array<L1Observer<Scalar>, 6> of_{};  ///< velocity NED, body rates FRD
   bool runs_ = false;

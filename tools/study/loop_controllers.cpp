@@ -127,7 +127,7 @@ AnyPolicy studied_policy(const std::string& name, const LoopKnowledge& known, co
   const auto full = [&](const auto& residual) {
     WindFilterSettings<double> walks;
     for (double* walk : {&walks.wind_walk_m_s, &walks.thrust_walk, &walks.force_walk_m_s2}) *walk *= gains.learning;
-    const FlownMotion<double> often({10'000, parts.lag_s, known.delay_s});
+    const FlownMotion<double> often(10'000, parts.lag_s, known.delay_s);
     const WindInverse<double, std::decay_t<decltype(residual)>> wind(with_wrench(residual), walks, often);
     return AnyPolicy(parts.incremental(parts.at_once, wind));
   };

@@ -47,7 +47,7 @@ struct WholeFlight {
   static constexpr bool chooses_weights = true;
   using Flight = FlightType;
   using Features = FeatureSet;
-  static constexpr pinnquad::Split<double> shares = pinnquad::usual_shares;
+  static constexpr pinnquad::detail::Split<double> shares = pinnquad::usual_shares;
 };
 struct D1 : WholeFlight<pinnquad::AgileFlight, pinnquad::PaperFeatures> {
   static constexpr const char* name = "D1";
@@ -63,13 +63,13 @@ struct D3 : WholeFlight<pinnquad::WindyFlight, pinnquad::PaperFeatures> {
 struct D1Test40 : D1 {
   static constexpr const char* name = "D1, 20 % / 40 %";
   static constexpr bool chooses_weights = false;
-  static constexpr pinnquad::Split<double> shares{0.2, 0.4, 0.4};
+  static constexpr pinnquad::detail::Split<double> shares{0.2, 0.4, 0.4};
 };
 /// The first 20 % of D1 train, all others test; nothing is left to validate with.
 struct D1Test80 : D1 {
   static constexpr const char* name = "D1, 20 % / 80 %";
   static constexpr bool chooses_weights = false;
-  static constexpr pinnquad::Split<double> shares{0.2, 0.0, 0.8};
+  static constexpr pinnquad::detail::Split<double> shares{0.2, 0.0, 0.8};
 };
 
 /// A row of Table 2. `more_flights`: part of the main comparison, which is repeated on further flights.

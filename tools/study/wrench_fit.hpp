@@ -62,7 +62,7 @@ inline Flight with_rotor_states(const Flight& flight, const pinnquad::Airframe<d
   }
   Flight result = flight;
   std::array<std::vector<double>, rotor_count> states;
-  RotorFollower<double> rotors(lag_s);
+  pinnquad::detail::RotorFollower<double> rotors(lag_s);
   constexpr double control_step_s = 0.002;
   double before_s = 0;
   for (std::size_t row = 0; row < flight.size(); ++row) {

@@ -128,7 +128,7 @@ class WrenchInverse {
   Rotors<Scalar> mount_;
   Residual residual_;
   Scalar rotor_scale_, gravity_m_s2_;
-  RotorFollower<Scalar> follower_;
+  pinnquad::detail::RotorFollower<Scalar> follower_;
   pinnquad::detail::TickClock<Scalar> clock_;
   Commands<Scalar> rotors_{};
   WindAndThrust<Scalar> told_{};

@@ -82,7 +82,7 @@ Loss with_schedule(Loss loss, const Schedule& schedule) {
 template <class Schedule>
 pinnquad::PaperLoss<Schedule> physics_loss(const Schedule& schedule, double gain = step_gain) {
   auto loss = with_schedule(pinnquad::PaperLoss<Schedule>{}, schedule);
-  std::apply([&](auto&... term) { ((term.loss.step.gain = gain), ...); }, loss.terms);
+  std::apply([&](auto&... term) { ((term.loss.gain = gain), ...); }, loss.terms);
   return loss;
 }
 

@@ -91,7 +91,7 @@ nlohmann::json programs::fly_logged(const BlockModel& model, const RowSet& train
     return track(vehicle, world, path, controller, feed_forward, plan, trace.observer(plan.duration_s));
   };
   const AnyTrajectory path{[&eight](double time_s) { return eight->sample(time_s); }};
-  const AnyTrajectory no_jerk{[&eight](double time_s) { return WithoutJerk{*eight}.sample(time_s); }};
+  const AnyTrajectory no_jerk{[&eight](double time_s) { return without_jerk(eight->sample(time_s)); }};
   const auto alone = fly({{vehicle}}, no_jerk, AnyFeedForward(analytic), traces.without);
   nlohmann::json result = {{"trajectory", "figure-eight"},
                            {"half_length_m", eight->half_length_m},

@@ -40,8 +40,8 @@ struct FitPlan {
   int epochs = 0;
   unsigned threads = 1;
   FitSettings settings{};
-  pinnquad::PastRows past{};   ///< how a bias is made of rows
-  bool shows_progress = true;  ///< on stderr
+  pinnquad::BiasTrial::Past past{};  ///< how a bias is made of rows
+  bool shows_progress = true;        ///< on stderr
 
   FitTask task(const Fold& fold, std::uint64_t seed) const {
     return {airframe, fold.split.train, fold.split.validation, absent, sample_period_s, seed, epochs, settings};
@@ -112,7 +112,7 @@ struct ErrorSums {
 };
 
 /// A row that reads ahead is known so much later.
-inline pinnquad::PastRows past_of(pinnquad::PastRows past, double looks_ahead_s) {
+inline pinnquad::BiasTrial::Past past_of(pinnquad::BiasTrial::Past past, double looks_ahead_s) {
   past.delay_s += looks_ahead_s;
   return past;
 }

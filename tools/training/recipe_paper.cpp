@@ -38,7 +38,7 @@ Recipe paper_recipe() {
            {"lambda_max", annealing.maximum},
            {"cycles", annealing.cycles},
            {"hold", annealing.hold},
-           {"step_gain", pinnquad::TanhStep{}.gain}},
+           {"step_gain", pinnquad::Standardised::gain}},
           network_kinds<Paper>({"paper_vanilla", "paper_physics_informed", "paper_constant_weight", "paper_pearson"})};
 }
 

@@ -135,8 +135,8 @@ inline void take_source(TrainOptions& options) {
 }
 
 /// The rows that a row's bias may be of. Rows of logs have derivatives that an import's filter made, which look ahead.
-inline pinnquad::PastRows past_rows_of(const pinnquad::logs::ImportedDataset& dataset,
-                                       const pinnquad::Airframe<double>& airframe, bool of_logs) {
+inline pinnquad::BiasTrial::Past past_rows_of(const pinnquad::logs::ImportedDataset& dataset,
+                                              const pinnquad::Airframe<double>& airframe, bool of_logs) {
   constexpr double filter_s = 0.05;
   return {pinnquad::flown_motion_age_s + (of_logs ? filter_s : 0),
           pinnquad::least_bias_time_constant_s(std::max(airframe.rotor_time_constant_s, dataset.lag_removed_s))};

@@ -34,7 +34,7 @@ class AdaptiveInverse {
   static_assert(detail::require_whole_policy<FeedForward, Scalar>());
 
  public:
-  using Learner = BiasLearner<Scalar, reserves ? 2 : 1, Motion>;
+  using Learner = detail::BiasLearner<Scalar, reserves ? 2 : 1, Motion>;
   /// The bias is the same in every state.
   static constexpr bool across_varies = pinnquad::across_varies<FeedForward, Scalar>;
 
@@ -45,7 +45,7 @@ class AdaptiveInverse {
 
   const FeedForward& inverse() const noexcept { return inverse_; }
   const Learner& learner() const noexcept { return learner_; }
-  const MotionBias<Scalar>& bias() const noexcept { return learner_.own(); }
+  const detail::MotionBias<Scalar>& bias() const noexcept { return learner_.own(); }
   bool at_bound() const noexcept { return learner_.at_bound(); }
   void reset() noexcept { learner_.reset(); }
   /// For a reset of the estimator: the open window is of two frames.

@@ -13,7 +13,7 @@
 #include "pinnquad/control/motion_bias.hpp"
 #include "pinnquad/control/tick_clock.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
 /// `inverses`: 1, or 2 with one in reserve. `Motion`: FlownMotion or FilteredMotion. `Trust`: FlownTrust's; its motion
 /// is a FlownMotion of float.
@@ -49,8 +49,8 @@ class BiasLearner {
   MotionBias<Scalar>& last() noexcept { return biases_.back(); }
   /// The acceleration across the thrust, whoever answers.
   Vector3<Scalar> across_m_s2() const noexcept { return last().across_ahead_m_s2(); }
-  const detail::FlownTrust<Trust>& trust() const noexcept { return trust_; }
-  detail::FlownTrust<Trust>& trust() noexcept { return trust_; }
+  const FlownTrust<Trust>& trust() const noexcept { return trust_; }
+  FlownTrust<Trust>& trust() noexcept { return trust_; }
   /// True while the bias of the first inverse has been at its bound for too long.
   bool handed_over() const noexcept { return handed_over_; }
   /// True where the flight asks for more than the bias that is flown may make good.
@@ -158,10 +158,10 @@ class BiasLearner {
       }
       return;
     }
-    if constexpr (detail::FlownTrust<Trust>::known) {
+    if constexpr (FlownTrust<Trust>::known) {
       Commands<Scalar> with_bias = said;
       own().add_to(with_bias);
-      trust_.judge(now_us, motion_.settings().period_us, with_bias, motion_.flown());
+      trust_.judge(now_us, motion_.period_us(), with_bias, motion_.flown());
     } else {
       static_cast<void>(now_us);
     }
@@ -196,11 +196,11 @@ class BiasLearner {
 
   Motion motion_;
   std::array<MotionBias<Scalar>, inverses> biases_;
-  detail::FlownTrust<Trust> trust_{};
-  detail::TickClock<Scalar> clock_;
+  FlownTrust<Trust> trust_{};
+  TickClock<Scalar> clock_;
   Scalar for_s_{0};  ///< time that has said otherwise
   bool handed_over_ = false;
   bool given_ = false;
 };
 
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

@@ -9,13 +9,6 @@
 
 namespace pinnquad {
 
-/// Range of the commands. A lower end above 0 keeps the rotors turning.
-template <class Scalar>
-struct CommandRange {
-  Scalar lower{0};
-  Scalar upper{1};
-};
-
 namespace detail {
 
 /// Ends of the thrust fractions, and the fractions that make thrust and no torque. A rotor whose part is below
@@ -29,9 +22,9 @@ struct ThrustRoom {
 };
 
 template <class Scalar>
-ThrustRoom<Scalar> thrust_room(const Rotors<Scalar>& rotors, const CommandRange<Scalar>& range) noexcept {
-  ThrustRoom<Scalar> room{rotors.fractions({range.lower, range.lower, range.lower, range.lower}),
-                          rotors.fractions({range.upper, range.upper, range.upper, range.upper}),
+ThrustRoom<Scalar> thrust_room(const Rotors<Scalar>& rotors, Scalar lower, Scalar upper) noexcept {
+  ThrustRoom<Scalar> room{rotors.fractions({lower, lower, lower, lower}),
+                          rotors.fractions({upper, upper, upper, upper}),
                           {Scalar(1), Scalar(1), Scalar(1), Scalar(1)},
                           Scalar(0)};
   if (!rotors.balanced()) room.along = rotors.fractions_of_pure_thrust_1_N();
@@ -118,17 +111,17 @@ TorqueShares<Scalar> shares_that_fit(const ThrustRoom<Scalar>& room, const Thrus
 
 }  // namespace detail
 
-/// Commands within the range that keep the given torque as far as they can; rotors may differ, sit anywhere and have
-/// curves. Thrust gives way first, then yaw torque, then roll and pitch torque by one share, so that their direction
-/// stays. No torque is greater than asked or of the other sign. Commands within the range stay, to the bit. A rotor
-/// that has no part in pure thrust is clipped. NaN passes through.
+/// Commands from `lower` to `upper` that keep the given torque as far as they can; rotors may differ, sit anywhere and
+/// have curves. Thrust gives way first, then yaw torque, then roll and pitch torque by one share, so that their
+/// direction stays. No torque is greater than asked or of the other sign. Commands within the range stay, to the bit. A
+/// rotor that has no part in pure thrust is clipped. NaN passes through. A lower end above 0 keeps the rotors turning.
 template <class Scalar>
-Commands<Scalar> desaturate(const Rotors<Scalar>& rotors, const Commands<Scalar>& commands,
-                            const CommandRange<Scalar>& range = {}) noexcept {
+Commands<Scalar> desaturate(const Rotors<Scalar>& rotors, const Commands<Scalar>& commands, Scalar lower = Scalar(0),
+                            Scalar upper = Scalar(1)) noexcept {
   bool within = true;
-  for (const Scalar u : commands) within = within && !(u < range.lower) && !(u > range.upper);
+  for (const Scalar u : commands) within = within && !(u < lower) && !(u > upper);
   if (within) return commands;
-  const detail::ThrustRoom<Scalar> room = detail::thrust_room(rotors, range);
+  const detail::ThrustRoom<Scalar> room = detail::thrust_room(rotors, lower, upper);
   ThrustFractions<Scalar> fractions = rotors.fractions(commands);
   detail::ThrustSteps<Scalar> steps = detail::thrust_steps(room, fractions);
   if (steps.least > steps.most) {  // no thrust carries this torque
@@ -154,16 +147,16 @@ Commands<Scalar> desaturate(const Rotors<Scalar>& rotors, const Commands<Scalar>
   }
   Commands<Scalar> result = rotors.commands_of(fractions);
   for (Scalar& u : result) {  // a curve's rounding
-    u = u < range.lower ? range.lower : (u > range.upper ? range.upper : u);
+    u = u < lower ? lower : (u > upper ? upper : u);
   }
   return result;
 }
 
-/// True if a command is at an end of its range, beyond it or NaN.
+/// True if a command is 0 or 1, beyond it or NaN.
 template <class Scalar>
-constexpr bool saturated(const Commands<Scalar>& commands, const CommandRange<Scalar>& range = {}) noexcept {
+constexpr bool saturated(const Commands<Scalar>& commands) noexcept {
   bool at_end = false;
-  for (const Scalar u : commands) at_end |= !(u > range.lower && u < range.upper);
+  for (const Scalar u : commands) at_end |= !(u > Scalar(0) && u < Scalar(1));
   return at_end;
 }
 

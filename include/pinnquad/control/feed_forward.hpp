@@ -87,18 +87,17 @@ using NoCount = decltype(&WithPolicyNames<Policy>::count);
 template <class Policy, class Scalar>
 constexpr bool is_whole_policy() noexcept {
   if constexpr (std::is_class_v<Policy> && !std::is_final_v<Policy>) {
-    return (is_detected<LearnCall, Policy, Scalar> || is_detected<NoLearn, Policy>)&&(
-        is_detected<IntegrateCall, Policy, Scalar> ||
-        is_detected<NoIntegrate, Policy>)&&(is_detected<AcrossCall, Policy, Scalar> ||
-                                            is_detected<NoAcross,
-                                                        Policy>)&&(is_detected<ObservedCall, Policy, Scalar> ||
-                                                                   is_detected<NoObserved,
-                                                                               Policy>)&&(is_detected<FallbackCountOf,
-                                                                                                      Policy> ||
-                                                                                          is_detected<NoCount, Policy>);
-  } else {
-    return true;
+    const bool called[] = {is_detected<LearnCall, Policy, Scalar>, is_detected<IntegrateCall, Policy, Scalar>,
+                           is_detected<AcrossCall, Policy, Scalar>, is_detected<ObservedCall, Policy, Scalar>,
+                           is_detected<FallbackCountOf, Policy>};
+    const bool absent[] = {is_detected<NoLearn, Policy>, is_detected<NoIntegrate, Policy>,
+                           is_detected<NoAcross, Policy>, is_detected<NoObserved, Policy>,
+                           is_detected<NoCount, Policy>};
+    for (int i = 0; i < 5; ++i) {
+      if (!called[i] && !absent[i]) return false;
+    }
   }
+  return true;
 }
 template <class Policy, class Scalar>
 constexpr bool require_whole_policy() noexcept {

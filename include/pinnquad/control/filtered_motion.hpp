@@ -13,24 +13,18 @@
 
 namespace pinnquad {
 
-/// Settings of a FilteredMotion.
-template <class Scalar>
-struct FilteredMotionSettings {
-  Scalar cutoff_rad_s = Scalar(75);  ///< 12 Hz
-  Scalar rotor_lag_s = Scalar(0);    ///< time constant of the rotors
-  Scalar delay_s = Scalar(0);        ///< by which a state comes late beside the commands
-};
-
 /// Velocity, body rates, attitude and commands through one Butterworth low-pass of second order,
 ///   x'' = w^2 (y - x) - sqrt(2) w x',
 /// whose x' are the accelerations: all are late alike. The commands are behind the rotors' lag. Used as FlownMotion.
 template <class Scalar>
 class FilteredMotion {
  public:
-  explicit FilteredMotion(const FilteredMotionSettings<Scalar>& settings = {}) noexcept
-      : settings_(settings), rotors_(settings.rotor_lag_s, settings.delay_s) {}
+  static constexpr Scalar usual_cutoff_rad_s = Scalar(75);  ///< 12 Hz
 
-  const FilteredMotionSettings<Scalar>& settings() const noexcept { return settings_; }
+  /// w; the time constant of the rotors; by how much a state comes late beside the commands.
+  explicit FilteredMotion(Scalar cutoff_rad_s = usual_cutoff_rad_s, Scalar rotor_lag_s = Scalar(0),
+                          Scalar delay_s = Scalar(0)) noexcept
+      : cutoff_rad_s_(cutoff_rad_s), rotors_(rotor_lag_s, delay_s) {}
 
   /// It is shown the state of each tick.
   void velocity(std::uint64_t /*time_us*/, const Vector3<Scalar>& /*m_s*/) noexcept {}
@@ -42,7 +36,7 @@ class FilteredMotion {
   bool tick(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
     const Scalar step_s = now_us > before_us_ ? Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_) : Scalar(0);
     before_us_ = now_us;
-    const bool follows = step_s > Scalar(0) && step_s * settings_.cutoff_rad_s <= Scalar(0.5);
+    const bool follows = step_s > Scalar(0) && step_s * cutoff_rad_s_ <= Scalar(0.5);
     if (!(known && follows && all_finite(state) && all_finite(commands))) {
       interrupt();
       return false;
@@ -62,7 +56,7 @@ class FilteredMotion {
     }
     const bool known_rotors = rotors_.follow(now_us, step_s, commands);
     for (std::size_t i = 0; i < rotor_count; ++i) now[10 + i] = rotors_.then()[i];
-    const Scalar w = settings_.cutoff_rad_s;
+    const Scalar w = cutoff_rad_s_;
     for (std::size_t i = 0; i < channels; ++i) {
       if (!runs_) {
         at_[i] = now[i];
@@ -102,12 +96,12 @@ class FilteredMotion {
     return true;
   }
 
-  FilteredMotionSettings<Scalar> settings_;
+  Scalar cutoff_rad_s_;
   std::uint64_t before_us_ = 0;
   bool runs_ = false;
   Scalar settled_s_{0};  ///< since rotors and states are known together
   std::array<Scalar, channels> at_{}, rate_{};
-  RotorFollower<Scalar> rotors_;
+  detail::RotorFollower<Scalar> rotors_;
   MotionInputs<Scalar> motion_{};
   Commands<Scalar> flown_{};
 };

@@ -13,14 +13,6 @@
 
 namespace pinnquad {
 
-/// Settings of a FlownMotion.
-template <class Scalar>
-struct FlownMotionSettings {
-  std::uint32_t period_us = 25'000;
-  Scalar rotor_lag_s = Scalar(0);  ///< time constant of the rotors
-  Scalar delay_s = Scalar(0);      ///< by which a state comes late beside the commands, of estimator and filters
-};
-
 /// Means over two periods of length T that follow each other. An acceleration is the difference of the mean velocities
 /// or body rates of the two over T: the weight of the acceleration at time t rises to the border of the two and falls
 /// from there. State and commands have the same weights, so that all are of one instant. The next motion shares a
@@ -28,15 +20,19 @@ struct FlownMotionSettings {
 /// between two means is T, however the samples lie, or the noise would not cancel. The commands are behind the rotors'
 /// lag, and as old as the state. Periods begin at whole multiples of T on the samples' clock, so that a
 /// replay of a part of the ticks knows where. `Rotors`: a RotorFollower.
-template <class Scalar, class Rotors = RotorFollower<Scalar>>
+template <class Scalar, class Rotors = detail::RotorFollower<Scalar>>
 class FlownMotion {
  public:
-  explicit FlownMotion(const FlownMotionSettings<Scalar>& settings = {}) noexcept
-      : settings_(settings),
-        period_s_(Scalar(1e-6) * static_cast<Scalar>(settings.period_us)),
-        rotors_(settings.rotor_lag_s, settings.delay_s) {}
+  /// T; the time constant of the rotors; by how much a state comes late beside the commands, of estimator and filters.
+  explicit FlownMotion(std::uint32_t period_us = 25'000, Scalar rotor_lag_s = Scalar(0),
+                       Scalar delay_s = Scalar(0)) noexcept
+      : period_us_(period_us),
+        period_s_(Scalar(1e-6) * static_cast<Scalar>(period_us)),
+        settles_us_(3 * std::uint64_t{period_us} +
+                    static_cast<std::uint64_t>(Scalar(1e6) * (delay_s + Scalar(20) * rotor_lag_s))),
+        rotors_(rotor_lag_s, delay_s) {}
 
-  const FlownMotionSettings<Scalar>& settings() const noexcept { return settings_; }
+  std::uint32_t period_us() const noexcept { return period_us_; }
 
   /// Samples with the times at which they were taken: a period without one of each is none. One that is of an earlier
   /// period does not count, nor one that repeats the one before to the bit, unless it is 0, a vehicle at rest: a sensor
@@ -61,7 +57,7 @@ class FlownMotion {
       interrupt();
       if (numbers) rotors_.restart(commands);  // one that is none would stay behind the lag for good
     }
-    const std::uint64_t number = now_us / settings_.period_us;
+    const std::uint64_t number = now_us / period_us_;
     bool ended = false;
     if (number != number_) {
       ended = now_.whole && before_.whole && finish();
@@ -70,7 +66,7 @@ class FlownMotion {
       number_ = number;
       now_.has_velocity = velocity_of_ == number;
       now_.has_rates = rates_of_ == number;
-      now_.whole = follows && now_us - number * settings_.period_us <= longest_tick_us();
+      now_.whole = follows && now_us - number * period_us_ <= longest_tick_us();
     }
     if (follows) weigh(now_us, Scalar(1e-6) * static_cast<Scalar>(now_us - before_us_), state, commands);
     before_us_ = now_us;
@@ -85,14 +81,11 @@ class FlownMotion {
   const Vector3<Scalar>& velocity_m_s() const noexcept { return mean_velocity_m_s_; }
   /// After this time a motion does not depend on commands and samples before: three periods, the delay, and the rotors'
   /// lag until a float does not tell.
-  std::uint64_t settles_us() const noexcept {
-    const Scalar settles_s = settings_.delay_s + Scalar(20) * settings_.rotor_lag_s;
-    return 3 * std::uint64_t{settings_.period_us} + static_cast<std::uint64_t>(Scalar(1e6) * settles_s);
-  }
+  std::uint64_t settles_us() const noexcept { return settles_us_; }
 
  private:
   std::uint64_t longest_tick_us() const noexcept {
-    const std::uint64_t half = settings_.period_us / 2;
+    const std::uint64_t half = period_us_ / 2;
     return half < 20'000 ? half : 20'000;
   }
 
@@ -130,14 +123,14 @@ class FlownMotion {
     const bool repeated = value == before && !value.isZero(Scalar(0));
     before = value;
     if (repeated) return;
-    of = time_us / settings_.period_us;
+    of = time_us / period_us_;
     if (of == number_) has = true;
   }
 
   void weigh(std::uint64_t now_us, Scalar step_s, const State<Scalar>& state,
              const Commands<Scalar>& commands) noexcept {
     if (!rotors_.follow(now_us, step_s, commands)) now_.whole = false;
-    const Scalar t = Scalar(1e-6) * static_cast<Scalar>(now_us - number_ * settings_.period_us);
+    const Scalar t = Scalar(1e-6) * static_cast<Scalar>(now_us - number_ * period_us_);
     now_.rising.add(t * step_s, state, rotors_.then());
     now_.falling.add((period_s_ - t) * step_s, state, rotors_.then());
   }
@@ -168,8 +161,9 @@ class FlownMotion {
     return true;
   }
 
-  FlownMotionSettings<Scalar> settings_;
+  std::uint32_t period_us_;
   Scalar period_s_;
+  std::uint64_t settles_us_;
   std::uint64_t before_us_ = 0;
   std::uint64_t number_ = 0;  ///< of the period
   std::uint64_t velocity_of_ = 0, rates_of_ = 0;

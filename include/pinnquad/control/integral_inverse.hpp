@@ -12,15 +12,6 @@
 
 namespace pinnquad {
 
-/// Settings of an IntegralInverse.
-template <class Scalar>
-struct IntegralSettings {
-  Scalar linear_1_s = Scalar(1);   ///< of the acceleration that position and velocity errors ask for
-  Scalar angular_1_s = Scalar(2);  ///< of the angular acceleration that attitude and rate errors ask for
-  Scalar most_m_s2 = Scalar(4);    ///< of each axis
-  Scalar most_rad_s2 = Scalar(30);
-};
-
 /// Asks the other policy for the motion wanted plus k times the integral of the feedback, each axis bounded; the
 /// integral stands still while a command is at its end.
 template <class Scalar, class FeedForward>
@@ -28,8 +19,14 @@ class IntegralInverse {
   static_assert(detail::require_whole_policy<FeedForward, Scalar>());
 
  public:
-  explicit IntegralInverse(const FeedForward& inverse, const IntegralSettings<Scalar>& settings = {}) noexcept
-      : inverse_(inverse), settings_(settings) {}
+  /// k of the acceleration that position and velocity errors ask for, and of the angular acceleration that attitude and
+  /// rate errors ask for; the bounds of each axis.
+  static constexpr Scalar linear_1_s = Scalar(1), angular_1_s = Scalar(2);
+  static constexpr Scalar most_m_s2 = Scalar(4), most_rad_s2 = Scalar(30);
+
+  /// `gain`: factor of both k.
+  explicit IntegralInverse(const FeedForward& inverse, Scalar gain = Scalar(1)) noexcept
+      : inverse_(inverse), gain_(gain) {}
 
   /// Tells the time, and whether the commands of the tick before were off their ends.
   void learn(std::uint64_t now_us, bool known, const State<Scalar>& state, const Commands<Scalar>& commands) noexcept {
@@ -42,8 +39,8 @@ class IntegralInverse {
   void integrate(const Accelerations<Scalar>& feedback) noexcept {
     const Vector3<Scalar> linear = body_to_world<Scalar>(attitude_, feedback.linear_m_s2);
     for (int i = 0; i < 3; ++i) {
-      add(settings_.linear_1_s * linear[i], settings_.most_m_s2, linear_[i]);
-      add(settings_.angular_1_s * feedback.angular_rad_s2[i], settings_.most_rad_s2, angular_[i]);
+      add(linear_1_s * gain_ * linear[i], most_m_s2, linear_[i]);
+      add(angular_1_s * gain_ * feedback.angular_rad_s2[i], most_rad_s2, angular_[i]);
     }
     if constexpr (integrates_feedback<FeedForward, Scalar>) inverse_.integrate(feedback);
   }
@@ -70,7 +67,7 @@ class IntegralInverse {
   }
 
   FeedForward inverse_;
-  IntegralSettings<Scalar> settings_;
+  Scalar gain_;
   std::uint64_t before_us_ = 0;
   Scalar step_s_{0};
   Quaternion<Scalar> attitude_{};

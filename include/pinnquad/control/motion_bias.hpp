@@ -29,7 +29,8 @@ struct BiasSettings {
   SignedSums<Scalar> most{Scalar(1.6), Scalar(0.4), Scalar(0.4), Scalar(0.4)};  ///< of a sum, either way; 0: no bias
   Scalar across_time_constant_s = Scalar(0.2);
   Scalar most_across_m_s2 = Scalar(3);  ///< its length; 0: none
-  // noise makes time constants longer: at least so many s for each unit of BiasNoise, up to longest_by_noise_s; 0: none
+  // noise makes time constants longer: at least so many s for each unit of it (MotionBias::Learnt), up to
+  // longest_by_noise_s; 0: none
   Scalar roll_pitch_by_noise_s = Scalar(0);
   Scalar across_by_noise_s3_m = Scalar(0);
   static constexpr Scalar longest_by_noise_s = Scalar(0.1);
@@ -39,14 +40,6 @@ struct BiasSettings {
   static constexpr Scalar trend_s = Scalar(0.2), swing = Scalar(0.06);
   Scalar hold_s = Scalar(0.5);  ///< without a residual it stays this long, then fades
   Scalar fade_s = Scalar(2);    ///< time constant of fading
-};
-
-/// The innovations' mean lengths over a second: what is left of a residual beside its bias is mostly noise, and, where
-/// the loop swings, the swing.
-template <class Scalar>
-struct BiasNoise {
-  Scalar roll_pitch{0};   ///< of the two sums' residuals, |roll| + |pitch|
-  Scalar across_m_s2{0};  ///< of the acceleration across the thrust, |x| + |y| + |z|
 };
 
 namespace detail {
@@ -74,7 +67,7 @@ constexpr BiasSettings<Scalar> bias_settings() noexcept {
 }
 /// Settings by a block's facts: those of a ModelView, a RunTimeModel.
 template <class Scalar>
-constexpr BiasSettings<Scalar> bias_settings(const ModelFacts& facts) noexcept {
+constexpr BiasSettings<Scalar> bias_settings(const detail::ModelFacts& facts) noexcept {
   return facts.has_bias ? detail::bias_settings_of<Scalar>(facts.bias_time_constants_s) : BiasSettings<Scalar>{};
 }
 
@@ -114,6 +107,8 @@ constexpr Commands<Scalar> largest_bias(const Airframe<Scalar>& airframe,
   return largest;
 }
 
+namespace detail {
+
 /// b <- b + T / (T + c) (r - b) of each signed sum of commands, |b| <= most. T: the period of r. c: the time constant,
 /// for roll, pitch and across longer in noise.
 /// r: the residual, commands flown - commands that the inverse gives for the motion flown.
@@ -123,6 +118,21 @@ constexpr Commands<Scalar> largest_bias(const Airframe<Scalar>& airframe,
 template <class Scalar>
 class MotionBias {
  public:
+  /// All that it has learnt: a tick logs it, a replay goes on from it.
+  struct Learnt {
+    SignedSums<Scalar> sums{};
+    Vector3<Scalar> across_m_s2 = Vector3<Scalar>::Zero();       ///< d
+    Vector3<Scalar> across_rate_m_s3 = Vector3<Scalar>::Zero();  ///< the trend of d, level
+    /// The innovations' mean lengths over a second: what is left of a residual beside its bias is mostly noise, and,
+    /// where the loop swings, the swing. |roll| + |pitch| of the sums' residuals, |x| + |y| + |z| across the thrust; 0
+    /// where the settings let noise make no time constant longer.
+    Scalar roll_pitch_noise{0}, across_noise_m_s2{0};
+    Scalar waited_s{0};  ///< time in which nothing could be learnt
+    /// `ok`: it learns. `limited`: at a bound. `warming_up`: nothing has been learnt yet, or for longer than `hold_s`.
+    /// `not_finite`: the last residual was no number.
+    Status status{Status::warming_up};
+  };
+
   /// A vehicle whose signs do not distinguish the axes has no bias of its sums.
   explicit constexpr MotionBias(const Airframe<Scalar>& airframe, const BiasSettings<Scalar>& settings = {}) noexcept
       : settings_(settings), mix_(detail::signed_mix(airframe)) {
@@ -132,26 +142,23 @@ class MotionBias {
   constexpr const BiasSettings<Scalar>& settings() const noexcept { return settings_; }
   /// From now on, as of another model; what was learnt stays.
   constexpr void time_constants(const SignedSums<Scalar>& times_s) noexcept { settings_.time_constants_s = times_s; }
-  constexpr const SignedSums<Scalar>& sums() const noexcept { return sums_; }
+  const Learnt& learnt() const noexcept { return learnt_; }
+  const SignedSums<Scalar>& sums() const noexcept { return learnt_.sums; }
   /// All 0 of a vehicle whose signs do not distinguish the axes.
   constexpr const detail::SignedMix<Scalar>& mix() const noexcept { return mix_; }
-  const Vector3<Scalar>& across_m_s2() const noexcept { return across_; }
-  const Vector3<Scalar>& across_rate_m_s3() const noexcept { return across_rate_; }  ///< the trend of that, level
+  const Vector3<Scalar>& across_m_s2() const noexcept { return learnt_.across_m_s2; }
   /// d with its lead, which is flown.
   Vector3<Scalar> across_ahead_m_s2() const noexcept {
-    const Scalar swings = noise_.roll_pitch / BiasSettings<Scalar>::swing;
-    return within_most(across_ + settings_.across_lead_s / (Scalar(1) + swings * swings) * across_rate_);
+    const Scalar swings = learnt_.roll_pitch_noise / BiasSettings<Scalar>::swing;
+    return within_most(learnt_.across_m_s2 +
+                       settings_.across_lead_s / (Scalar(1) + swings * swings) * learnt_.across_rate_m_s3);
   }
-  /// The noise that makes its time constants longer; 0 where the settings let it make none.
-  const BiasNoise<Scalar>& noise() const noexcept { return noise_; }
-  /// `ok`: it learns. `limited`: at a bound. `warming_up`: nothing has been learnt yet, or for longer than `hold_s`.
-  /// `not_finite`: the last residual was no number.
-  Status status() const noexcept { return status_; }
+  Status status() const noexcept { return learnt_.status; }
   /// The greatest share of its bound that a sum has, 0 to 1.
   Scalar share_of_bound() const noexcept {
     Scalar greatest(0);
-    for (std::size_t k = 0; k < sums_.size(); ++k) {
-      if (length(sums_[k]) > greatest * settings_.most[k]) greatest = length(sums_[k]) / settings_.most[k];
+    for (std::size_t k = 0; k < sums().size(); ++k) {
+      if (length(sums()[k]) > greatest * settings_.most[k]) greatest = length(sums()[k]) / settings_.most[k];
     }
     return greatest;
   }
@@ -159,7 +166,7 @@ class MotionBias {
   /// u + A b.
   void add_to(Commands<Scalar>& commands) const noexcept {
     for (std::size_t i = 0; i < commands.size(); ++i) {
-      for (std::size_t k = 0; k < sums_.size(); ++k) commands[i] += mix_.by[i][k] * sums_[k];
+      for (std::size_t k = 0; k < sums().size(); ++k) commands[i] += mix_.by[i][k] * sums()[k];
     }
   }
 
@@ -184,78 +191,71 @@ class MotionBias {
   /// number, or no period; nothing changes.
   Status learn(const SignedSums<Scalar>& residual, const Vector3<Scalar>& across_m_s2, Scalar period_s) noexcept {
     const bool sound = all_finite(residual) && all_finite(across_m_s2) && is_finite(period_s) && period_s > Scalar(0);
-    if (!sound) return status_ = Status::not_finite;
-    const Vector3<Scalar> beside = across_m_s2 - across_;
+    if (!sound) return learnt_.status = Status::not_finite;
+    const Vector3<Scalar> beside = across_m_s2 - learnt_.across_m_s2;
     if (settings_.roll_pitch_by_noise_s > Scalar(0) || settings_.across_by_noise_s3_m > Scalar(0)) {
       listen(residual, beside, period_s);
     }
-    const Scalar roll_pitch_s = by_noise(settings_.roll_pitch_by_noise_s * noise_.roll_pitch);
+    const Scalar roll_pitch_s = by_noise(settings_.roll_pitch_by_noise_s * learnt_.roll_pitch_noise);
     bool bound = false;
-    for (std::size_t k = 0; k < sums_.size(); ++k) {
+    for (std::size_t k = 0; k < sums().size(); ++k) {
       const Scalar time_s = longer(settings_.time_constants_s[k], k == 1 || k == 2 ? roll_pitch_s : Scalar(0));
-      bound |= move(k, share(time_s, period_s) * (residual[k] - sums_[k]));
+      bound |= move(k, share(time_s, period_s) * (residual[k] - sums()[k]));
     }
-    const Scalar across_s = by_noise(settings_.across_by_noise_s3_m * noise_.across_m_s2);
-    const Vector3<Scalar> before = across_;
+    const Scalar across_s = by_noise(settings_.across_by_noise_s3_m * learnt_.across_noise_m_s2);
+    Vector3<Scalar>&across = learnt_.across_m_s2, &rate = learnt_.across_rate_m_s3;
+    const Vector3<Scalar> before = across;
     const Vector3<Scalar> wanted =
-        across_ + share(longer(settings_.across_time_constant_s, across_s), period_s) * beside;
-    across_ = within_most(wanted);
-    bound |= across_ != wanted;
-    across_rate_ += (across_ - before - period_s * across_rate_) / (period_s + BiasSettings<Scalar>::trend_s);
-    across_rate_[2] = Scalar(0);  // up and down it is the thrust's to answer
-    waited_s_ = Scalar(0);
-    return status_ = bound ? Status::limited : Status::ok;
+        across + share(longer(settings_.across_time_constant_s, across_s), period_s) * beside;
+    across = within_most(wanted);
+    bound |= across != wanted;
+    rate += (across - before - period_s * rate) / (period_s + BiasSettings<Scalar>::trend_s);
+    rate[2] = Scalar(0);  // up and down it is the thrust's to answer
+    learnt_.waited_s = Scalar(0);
+    return learnt_.status = bound ? Status::limited : Status::ok;
   }
 
   /// Time in flight in which nothing could be learnt: it holds, then fades.
   void wait(Scalar step_s) noexcept {
     if (!(step_s > Scalar(0))) return;
-    waited_s_ += step_s;
-    if (waited_s_ <= settings_.hold_s) return;
+    learnt_.waited_s += step_s;
+    if (learnt_.waited_s <= settings_.hold_s) return;
     const Scalar kept = settings_.fade_s / (settings_.fade_s + step_s);
-    for (Scalar& sum : sums_) sum *= kept;
-    across_ *= kept;
-    across_rate_ *= kept;
-    if (status_ != Status::not_finite) status_ = Status::warming_up;
+    for (Scalar& sum : learnt_.sums) sum *= kept;
+    learnt_.across_m_s2 *= kept;
+    learnt_.across_rate_m_s3 *= kept;
+    if (learnt_.status != Status::not_finite) learnt_.status = Status::warming_up;
   }
   /// Time in flight that says nothing of it, as with commands at their ends: it stays.
-  void freeze() noexcept { waited_s_ = Scalar(0); }
+  void freeze() noexcept { learnt_.waited_s = Scalar(0); }
   /// A motion that its inverse does not answer for: it moves with the bias of another inverse, as the vehicle has
   /// changed for both.
   void follow(const SignedSums<Scalar>& before, const SignedSums<Scalar>& now) noexcept {
-    for (std::size_t k = 0; k < sums_.size(); ++k) move(k, now[k] - before[k]);
+    for (std::size_t k = 0; k < sums().size(); ++k) move(k, now[k] - before[k]);
     freeze();
   }
 
   /// Forgets: for another model, on the ground.
-  void reset() noexcept {
-    sums_ = {};
-    across_.setZero();
-    across_rate_.setZero();
-    noise_ = {};
-    waited_s_ = Scalar(0);
-    status_ = Status::warming_up;
+  void reset() noexcept { learnt_ = {}; }
+  /// Goes on from what was logged; a number that is none changes nothing.
+  void resume(const Learnt& logged) noexcept {
+    const Scalar numbers[] = {logged.roll_pitch_noise, logged.across_noise_m_s2, logged.waited_s};
+    const bool sound = all_finite(logged.sums) && all_finite(logged.across_m_s2) &&
+                       all_finite(logged.across_rate_m_s3) && all_finite(numbers, 3);
+    if (sound) learnt_ = logged;
   }
-  /// Goes on from what was logged.
-  void resume(const SignedSums<Scalar>& sums, const Vector3<Scalar>& across_m_s2,
-              const Vector3<Scalar>& across_rate_m_s3, const BiasNoise<Scalar>& noise, Scalar waited_s,
-              Status status) noexcept {
-    if (!(all_finite(sums) && all_finite(across_m_s2) && all_finite(across_rate_m_s3) && is_finite(waited_s))) return;
-    if (!(is_finite(noise.roll_pitch) && is_finite(noise.across_m_s2))) return;
-    sums_ = sums;
-    across_ = across_m_s2;
-    across_rate_ = across_rate_m_s3;
-    noise_ = noise;
-    waited_s_ = waited_s;
-    status_ = status;
+  /// Goes on from a sum that somebody else has learnt.
+  void resume(std::size_t k, Scalar sum) noexcept {
+    if (!is_finite(sum)) return;
+    learnt_.sums[k] = sum;
+    freeze();
   }
-  Scalar waited_s() const noexcept { return waited_s_; }
 
  private:
   /// True where the bound limits it.
   bool move(std::size_t k, Scalar by) noexcept {
-    const Scalar wanted = sums_[k] + by, most = settings_.most[k];
-    sums_[k] = wanted > most ? most : (wanted < -most ? -most : wanted);
+    const Scalar wanted = sums()[k] + by, most = settings_.most[k];
+    learnt_.sums[k] = wanted > most ? most : (wanted < -most ? -most : wanted);
     return wanted > most || wanted < -most;
   }
   static Scalar share(Scalar time_constant_s, Scalar period_s) noexcept {
@@ -275,19 +275,16 @@ class MotionBias {
   /// Slowly: a time constant that changes from motion to motion lets through what cancels from one to the next.
   void listen(const SignedSums<Scalar>& residual, const Vector3<Scalar>& beside, Scalar period_s) noexcept {
     const Scalar by = share(Scalar(1), period_s);
-    const Scalar roll_pitch = length(residual[1] - sums_[1]) + length(residual[2] - sums_[2]);
-    noise_.roll_pitch += by * (roll_pitch - noise_.roll_pitch);
+    const Scalar roll_pitch = length(residual[1] - sums()[1]) + length(residual[2] - sums()[2]);
+    learnt_.roll_pitch_noise += by * (roll_pitch - learnt_.roll_pitch_noise);
     const Scalar across = length(beside[0]) + length(beside[1]) + length(beside[2]);
-    noise_.across_m_s2 += by * (across - noise_.across_m_s2);
+    learnt_.across_noise_m_s2 += by * (across - learnt_.across_noise_m_s2);
   }
 
   BiasSettings<Scalar> settings_;
-  detail::SignedMix<Scalar> mix_;
-  SignedSums<Scalar> sums_{};
-  Vector3<Scalar> across_ = Vector3<Scalar>::Zero(), across_rate_ = Vector3<Scalar>::Zero();
-  BiasNoise<Scalar> noise_{};
-  Scalar waited_s_{0};
-  Status status_{Status::warming_up};
+  SignedMix<Scalar> mix_;
+  Learnt learnt_{};
 };
 
+}  // namespace detail
 }  // namespace pinnquad

@@ -8,7 +8,7 @@
 
 #include "pinnquad/core/types.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
 /// First-order lag r' = (u - r) / lag of commands in force from tick to tick, seen a delay later. `most_kept`: commands
 /// that are kept beside the delay; 0: there is no delay.
@@ -70,4 +70,4 @@ class RotorFollower {
   std::size_t oldest_ = 0, stored_ = 0;
 };
 
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

@@ -116,24 +116,12 @@ struct Circle {
   }
 };
 
-/// Another trajectory's position, velocity, acceleration and yaw alone: without jerk, snap and yaw rate, the feedback
-/// has to turn the vehicle.
-template <class Trajectory>
-struct WithoutJerk {
-  const Trajectory& path;
-
-  template <class Scalar>
-  TrajectoryPoint<Scalar> sample(Scalar time_s) const noexcept {
-    const TrajectoryPoint<Scalar> point = path.sample(time_s);
-    TrajectoryPoint<Scalar> result;
-    result.position_m = point.position_m;
-    result.velocity_m_s = point.velocity_m_s;
-    result.acceleration_m_s2 = point.acceleration_m_s2;
-    result.yaw_rad = point.yaw_rad;
-    return result;
-  }
-};
-template <class Trajectory>
-WithoutJerk(const Trajectory&) -> WithoutJerk<Trajectory>;  ///< of a path that outlives it
+/// The position, velocity, acceleration and yaw of a point alone: without jerk, snap and yaw rate, the feedback has to
+/// turn the vehicle.
+template <class Scalar>
+TrajectoryPoint<Scalar> without_jerk(const TrajectoryPoint<Scalar>& point) noexcept {
+  const Vector3<Scalar> none = Vector3<Scalar>::Zero();
+  return {point.position_m, point.velocity_m_s, point.acceleration_m_s2, none, none, point.yaw_rad};
+}
 
 }  // namespace pinnquad

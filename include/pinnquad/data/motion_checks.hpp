@@ -113,20 +113,12 @@ std::vector<Quaternion<double>> attitudes_of(const Flight& flight);
 MotionBlocks turning_sums(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
                           const TurningReading& reading = {});
 
-/// See below; `attitude`: attitudes_of() the flight.
-std::optional<Implausible> find_turning_mistake(const Flight& flight, const std::vector<Quaternion<double>>& attitude);
-std::optional<Implausible> find_acceleration_mistake(const Flight& flight,
-                                                     const std::vector<Quaternion<double>>& attitude);
-
-}  // namespace detail
-
 /// Compares, over steps of 0.2 s, the turning of the attitude with the integral of the body rates. A mistake where a
 /// rate stands still that should not; where the two agree far better with some of them in degrees, or with rates of
 /// other axes; where a rate follows another axis, or its own negated; where one of the two is late by 0.1 s or more.
 /// Limits: a flight that hardly turns, noise and gaps in time decide nothing; angles and rates share the blame.
-std::optional<detail::Implausible> find_turning_mistake(const Flight& flight);
-
-namespace detail {
+/// `attitude`: attitudes_of() the flight.
+std::optional<Implausible> find_turning_mistake(const Flight& flight, const std::vector<Quaternion<double>>& attitude);
 
 /// A vector that was read in axes of a kind, in the axes that it should have been read in: 0 as it stands; 1 ENU for
 /// NED; 2 x forward, y left, z up for FRD; 3 and 4 both, in either order.
@@ -200,8 +192,6 @@ struct VelocityReading {
 MotionBlocks world_velocity_sums(const Flight& flight, const std::vector<Quaternion<double>>& attitude,
                                  const VelocityReading& reading = {});
 
-}  // namespace detail
-
 /// Correlates, over steps of 0.04 s or of a row, the change of each body rate and velocity with the integral of each
 /// acceleration. A mistake where a column follows another axis, or its own negated, by 0.25 better than its own; where
 /// it follows its own in another unit; where vdot leaves 0.3 or more of the change of v unexplained, and another
@@ -211,8 +201,10 @@ MotionBlocks world_velocity_sums(const Flight& flight, const std::vector<Quatern
 /// the independent simulator's above 0.97 and 0.12, real logs above 0.73 and 0.45 (or 1.00 and 0.8); under gyro noise
 /// that drowns the motion 0 and 0.03.
 /// Limits: a column that noise drowns, an axis that hardly moves and a flight of few rows decide nothing.
-std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight);
+std::optional<Implausible> find_acceleration_mistake(const Flight& flight,
+                                                     const std::vector<Quaternion<double>>& attitude);
 
+}  // namespace detail
 }  // namespace pinnquad
 
 #ifndef PINNQUAD_COMPILED

@@ -23,11 +23,13 @@
 
 namespace pinnquad {
 
+namespace detail {
 /// The sums of an OnboardInverse as they fly, without what it adds to them in flight: sines, bias, drag across the
 /// thrust. u = A y(x), y an affine map of InverseFeatures (control/onboard/affine_inverse.hpp).
 template <class Scalar>
 using LearntModel =
     TrainedModel<MonotoneBase<InverseFeatures, Scalar>, Context<InverseFeatures, GivenAirframe, AxisCommandOutputs>>;
+}  // namespace detail
 
 /// Rows of the flight in which a vehicle was learnt: the envelope of its model is of them.
 class LearntRows {
@@ -55,8 +57,8 @@ class LearntRows {
   }
   /// Some, evenly apart: golden vectors.
   template <class Scalar>
-  std::vector<typename LearntModel<Scalar>::FeatureVector> some(std::size_t count = 8) const {
-    std::vector<typename LearntModel<Scalar>::FeatureVector> some;
+  std::vector<typename detail::LearntModel<Scalar>::FeatureVector> some(std::size_t count = 8) const {
+    std::vector<typename detail::LearntModel<Scalar>::FeatureVector> some;
     for (std::size_t i = 0; i < count && !rows_.empty(); ++i) {
       auto& vector = some.emplace_back();
       const Row& row = rows_[i * (rows_.size() - 1) / std::max<std::size_t>(1, count - 1)];
@@ -74,8 +76,8 @@ class LearntRows {
 /// Throws std::invalid_argument, one line, for no row, and for rotors with a thrust curve: their commands are no affine
 /// map.
 template <class Scalar>
-LearntModel<Scalar> learnt_model(const OnboardInverse<Scalar>& learner, const std::string& airframe,
-                                 const LearntRows& rows) {
+detail::LearntModel<Scalar> learnt_model(const OnboardInverse<Scalar>& learner, const std::string& airframe,
+                                         const LearntRows& rows) {
   const Airframe<Scalar> flown = learner.airframe();
   if (rows.rows().empty()) throw std::invalid_argument("learnt model: expected a row of flight, found none");
   for (const RotorMount<Scalar>& rotor : flown.rotors) {
@@ -83,7 +85,7 @@ LearntModel<Scalar> learnt_model(const OnboardInverse<Scalar>& learner, const st
     throw std::invalid_argument(
         "learnt model: rotors with a thrust curve, whose commands are no affine map of a motion");
   }
-  using Model = LearntModel<Scalar>;
+  using Model = detail::LearntModel<Scalar>;
   using Base = typename Model::Network;
   using Sum = detail::AffineSum<Scalar>;
   Model model{GivenAirframe(airframe, airframe_in<double>(flown))};
@@ -128,7 +130,7 @@ Provenance learnt_provenance(const OnboardInverse<Scalar>& learner, const std::s
   from.training_data_hash = rows.hash();
   from.training_rows = rows.rows().size();
   from.loss = "forward regression of each signed sum on board, inverted";
-  const OnboardCertificate<Scalar>& certificate = learner.certificate();
+  const auto& certificate = learner.certificate();
   from.lag_removed_s = static_cast<double>(certificate[1].forward.lag.seconds());
   from.sample_period_s = 1e-6 * learner.settings().period_us;
   auto& times_s = from.bias_time_constants_s.emplace();

@@ -36,12 +36,6 @@ constexpr double least_bias_time_constant_s(double rotor_lag_s) noexcept {
   return 2 * (rotor_lag_s + untold_delay_s + flown_motion_age_s);
 }
 
-/// How a bias is made of rows.
-struct PastRows {
-  double delay_s = flown_motion_age_s;  ///< rows younger than this have no part in it
-  double least_time_constant_s = 0;     ///< of those that are tried
-};
-
 namespace detail {
 
 /// Calls `use(row, bias)` for each row, counted through all pieces, with the bias that stands there. A row without a
@@ -85,6 +79,11 @@ std::vector<Commands<double>> with_past_bias(const RowSet& rows, const std::vect
 /// The residuals of each signed sum that each time constant leaves. Trials of several row sets are added up.
 struct BiasTrial {
   static constexpr std::size_t candidates = bias_time_constants_tried_s.size();
+  /// How a bias is made of rows.
+  struct Past {
+    double delay_s = flown_motion_age_s;  ///< rows younger than this have no part in it
+    double least_time_constant_s = 0;     ///< of those that are tried
+  };
 
   double rows = 0;
   std::array<SignedSums<double>, candidates> absolute{};  ///< sums over the rows; infinite: not to be taken
@@ -106,7 +105,7 @@ struct BiasTrial {
 /// Tries them on rows that did not train the model. Rows without a prediction count for none. Throws
 /// std::invalid_argument for a count that is none.
 BiasTrial try_biases(const RowSet& rows, const std::vector<Commands<double>>& predictions,
-                     const Airframe<double>& airframe, const PastRows& past);
+                     const Airframe<double>& airframe, const BiasTrial::Past& past);
 
 /// The time constants that a model's header and block say: best_s() on rows that did not train it, as of flights whose
 /// derivatives do not look ahead.

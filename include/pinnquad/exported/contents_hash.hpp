@@ -186,11 +186,6 @@ constexpr bool same_contents() noexcept {
   }
 }
 
-/// A feature or an output.
-struct NameAndUnit {
-  std::string_view name, unit;
-};
-
 /// All that a shape says behind its answer. `feature(i)` and `output(k)` have a `name` and a `unit`.
 template <class Feature, class Output>
 constexpr void absorb_shape(Fnv1a& fnv, std::size_t features, const Feature& feature, std::size_t outputs,

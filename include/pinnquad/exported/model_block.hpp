@@ -22,6 +22,8 @@ inline constexpr std::array<unsigned char, 8> model_block_magic = {'P', 'I', 'N'
 /// Where a block may begin: at multiples of this many bytes, so that its scalars can be read in place.
 inline constexpr std::size_t model_block_alignment = 8;
 
+namespace detail {
+
 /// Byte offsets of the header's fields, and what they hold:
 ///   magic, u32 model_format_version, u32 length of the whole block, u32 bytes of a scalar (4 or 8, IEEE 754),
 ///   u32 inputs, u32 outputs, u32 parameters, u32 golden vectors, u32 training rows, u64 shape_hash(),
@@ -64,7 +66,7 @@ enum class BlockRecord : std::uint16_t {
   columns = 4,     ///< name and unit of each extra column, every text closed by a 0
   allocation = 5,  ///< 16 scalars, row-major
   base = 6,        ///< description of what the outputs add to
-  verdict = 7,     ///< u32 detail::judged_bits(), u32 0; optional
+  verdict = 7,     ///< u32 judged_bits(), u32 0; optional
   // with those a block describes itself (exported/run_time_model.hpp)
   answer = 8,    ///< description of the predictor (model/description.hpp)
   features = 9,  ///< name and unit of each feature, every text closed by a 0
@@ -79,8 +81,6 @@ enum class BlockRecord : std::uint16_t {
 
 /// Bit of a record's type: a reader that does not know the record refuses the block.
 inline constexpr std::uint16_t mandatory_record = 0x8000;
-
-namespace detail {
 
 inline constexpr std::uint32_t block_record_types = 15;
 
@@ -169,7 +169,8 @@ struct ModelBlockLayout {
   /// around.
   static PINNQUAD_ALWAYS_INLINE constexpr std::uint64_t length(std::uint64_t golden) noexcept {
     const std::uint64_t scalars = golden_features + golden * (inputs + commands) + parameter_count;
-    return ModelBlockHeader::size + scalars * sizeof(typename Shape::Scalar) + ModelBlockHeader::checksum_size;
+    return detail::ModelBlockHeader::size + scalars * sizeof(typename Shape::Scalar) +
+           detail::ModelBlockHeader::checksum_size;
   }
   /// Bytes of the records, counts included, that no block of this library exceeds: room for one in a buffer is
   /// length(golden) and this.
@@ -178,26 +179,26 @@ struct ModelBlockLayout {
     using Map = OutputMap<typename Shape::Outputs>;
     using Base = typename detail::BaseOf<typename Shape::Outputs>::type;
     constexpr auto lengths = detail::record_lengths(sizeof(typename Shape::Scalar), inputs, outputs);
-    std::size_t bytes = ModelBlockHeader::record_counts;
+    std::size_t bytes = detail::ModelBlockHeader::record_counts;
     for (std::uint32_t type = 1; type <= detail::block_record_types; ++type) {
       std::size_t length = lengths.of[type];
-      switch (BlockRecord(type)) {
-        case BlockRecord::columns: length = detail::columns_length<Features>(); break;
-        case BlockRecord::base: length = detail::description_length<Base>(); break;
-        case BlockRecord::answer: length = detail::description_length<typename Shape::Network>(); break;
-        case BlockRecord::features: length = detail::texts_length(Features::names, Features::units); break;
-        case BlockRecord::outputs:
+      switch (detail::BlockRecord(type)) {
+        case detail::BlockRecord::columns: length = detail::columns_length<Features>(); break;
+        case detail::BlockRecord::base: length = detail::description_length<Base>(); break;
+        case detail::BlockRecord::answer: length = detail::description_length<typename Shape::Network>(); break;
+        case detail::BlockRecord::features: length = detail::texts_length(Features::names, Features::units); break;
+        case detail::BlockRecord::outputs:
           length =
               detail::description_length<typename Shape::Outputs>() + 1 + detail::texts_length(Map::names, Map::units);
           break;
-        case BlockRecord::vehicle:
+        case detail::BlockRecord::vehicle:
           length = airframe_number_count * (8 + sizeof(typename Shape::Scalar)) +
                    std::string_view(Shape::Vehicle::name).size();
           break;
-        case BlockRecord::provenance: length = detail::longest_provenance; break;
+        case detail::BlockRecord::provenance: length = detail::longest_provenance; break;
         default: break;
       }
-      bytes += ModelBlockHeader::record_head + ModelBlockHeader::padded(length);
+      bytes += detail::ModelBlockHeader::record_head + detail::ModelBlockHeader::padded(length);
     }
     return bytes;
   }

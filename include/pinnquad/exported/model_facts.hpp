@@ -8,7 +8,7 @@
 #include "pinnquad/dynamics/actuator.hpp"
 #include "pinnquad/exported/stated_numbers.hpp"
 
-namespace pinnquad {
+namespace pinnquad::detail {
 
 /// As made: commands of thrust in 0 to 1, and nothing else is said.
 struct ModelFacts {
@@ -20,14 +20,13 @@ struct ModelFacts {
   bool has_verdict = false;      ///< the next two are said
   bool worse_than_mean = false;  ///< than the mean of the commands, and exported all the same
   bool beats_linear_regression = false;
-  bool has_r_squared = false;  ///< the next one is said
-  double test_r_squared = 0;   ///< mean over the commands, on rows that it was not trained on
-  double linear_regression_r_squared = -detail::no_bound;  ///< as made: not said, any model beats it
-  bool has_bias = false;                                   ///< the next is said
-  double bias_time_constants_s[4]{};  ///< sum by sum, of a bias learnt in flight; 0: none of this sum
+  bool has_r_squared = false;                      ///< the next one is said
+  double test_r_squared = 0;                       ///< mean over the commands, on rows that it was not trained on
+  double linear_regression_r_squared = -no_bound;  ///< as made: not said, any model beats it
+  bool has_bias = false;                           ///< the next is said
+  double bias_time_constants_s[4]{};               ///< sum by sum, of a bias learnt in flight; 0: none of this sum
 };
 
-namespace detail {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
 /// The first fault of a model's facts. `finite`: FiniteConstant for the compiler, FiniteNumber when a program runs.
@@ -97,5 +96,4 @@ constexpr ModelFacts facts_of_header() noexcept {
 }
 
 }  // namespace PINNQUAD_INSTRUCTION_SET
-}  // namespace detail
-}  // namespace pinnquad
+}  // namespace pinnquad::detail

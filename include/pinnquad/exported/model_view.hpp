@@ -112,7 +112,7 @@ class ModelView : public detail::ModelScales<ShapeType>, private detail::PackedW
   /// untouched unless the Status is ok. Reads the whole block, twice: not for a control loop.
   static Status open(const void* block, std::size_t length, ModelView& view) noexcept {
     using Layout = ModelBlockLayout<ShapeType>;
-    using Header = ModelBlockHeader;
+    using Header = detail::ModelBlockHeader;
     const auto* bytes = static_cast<const unsigned char*>(block);
     const Status checked = detail::check_block(
         bytes, length,

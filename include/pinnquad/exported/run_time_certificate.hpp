@@ -15,7 +15,7 @@ ShownAcceleration shown_acceleration(const RunTimeModel<Scalar>& model, int feat
   const auto [name, unit] = model.features()[feature];
   bool is_column = false;
   std::string_view rest = model.records().columns;
-  RunTimeFeatures::Named said;
+  detail::NameAndUnit said;
   while (RunTimeFeatures::take_text(rest, said.name) && RunTimeFeatures::take_text(rest, said.unit)) {
     is_column = is_column || said.name == name || said.name == detail::name_at_tap(name);
   }

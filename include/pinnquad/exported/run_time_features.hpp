@@ -52,11 +52,6 @@ class RunTimeFeatures {
     double offset_s(int tap) const noexcept { return offset(tap) * period_s; }
   };
 
-  /// A name and a unit.
-  struct Named {
-    std::string_view name, unit;
-  };
-
   /// `texts`: name and unit of each feature, every one closed by a 0. False for texts that are no such list, a tap that
   /// the window has not or that no feature is of, a name of the library with another unit, a name that stands twice,
   /// and for more columns or features than there is room for.
@@ -85,11 +80,11 @@ class RunTimeFeatures {
   }
 
   int size() const noexcept { return size_; }
-  const Named& operator[](int feature) const noexcept { return features_[feature].named; }
+  const detail::NameAndUnit& operator[](int feature) const noexcept { return features_[feature].named; }
   const Window& window() const noexcept { return window_; }
   /// Columns that it asks for, in the order of Inputs::columns.
   int column_count() const noexcept { return column_count_; }
-  const Named& column(int index) const noexcept { return columns_[index]; }
+  const detail::NameAndUnit& column(int index) const noexcept { return columns_[index]; }
   bool is_column(int feature) const noexcept { return features_[feature].source > altitude; }
   bool asks_for_altitude() const noexcept {
     for (int i = 0; i < size_; ++i) {
@@ -153,7 +148,7 @@ class RunTimeFeatures {
   static constexpr int altitude = NamedFeatures::size;  ///< columns come behind it
 
   struct Feature {
-    Named named;
+    detail::NameAndUnit named;
     int source = 0;
     int tap = 0;
   };
@@ -217,7 +212,7 @@ class RunTimeFeatures {
   }
 
   Feature features_[most_features];
-  Named columns_[most_columns];
+  detail::NameAndUnit columns_[most_columns];
   Window window_;
   int size_ = 0;
   int column_count_ = 0;

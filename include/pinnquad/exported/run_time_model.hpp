@@ -17,13 +17,6 @@
 namespace pinnquad {
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// The fault of a block, in words: a refusal on the ground says both.
-struct BlockFault {
-  const char* expected = nullptr;
-  const char* found = nullptr;  ///< "" where a number is
-  double number = 0;
-};
-
 /// A model of a block that is known at run time alone: every layer, column and schema is as the block describes it.
 template <class Scalar>
 class RunTimeModel {
@@ -31,15 +24,22 @@ class RunTimeModel {
   template <class Number, int Count>
   using Values = RunTimeNetwork::Values<Number, Count>;
   using Records = detail::BlockRecords<Scalar>;
-  using Layout = ModelBlockHeader;
+  using Layout = detail::ModelBlockHeader;
+  /// In words, for a refusal on the ground.
+  struct Fault {
+    const char* expected = nullptr;
+    const char* found = nullptr;  ///< "" where a number is
+    double number = 0;
+  };
 
   /// Makes `model` the model of the block of `length` bytes (or more) at `block`, a multiple of model_block_alignment.
   /// Statuses as ModelView::open(); `block_incompatible` too for a layer, column or schema that this library can't work
-  /// out. `model` is of no use unless the Status is ok. Weights
-  /// are not asked: see golden_difference().
-  static Status open(const void* block, std::size_t length, RunTimeModel& model, BlockFault& fault) noexcept {
-    return model.read(static_cast<const unsigned char*>(block), length, fault);
+  /// out. Unless the Status is ok, `model` is of no use but for its fault(). Weights are not asked: see
+  /// golden_difference().
+  static Status open(const void* block, std::size_t length, RunTimeModel& model) noexcept {
+    return model.read(static_cast<const unsigned char*>(block), length);
   }
+  const Fault& fault() const noexcept { return fault_; }
 
   const RunTimeNetwork& network() const noexcept { return network_; }
   const RunTimeFeatures& features() const noexcept { return features_; }
@@ -120,9 +120,9 @@ class RunTimeModel {
   }
   /// Description, names and units of the outputs, as the block has them.
   std::string_view schema() const noexcept { return schema_; }
-  RunTimeFeatures::Named output(int k) const noexcept {
+  detail::NameAndUnit output(int k) const noexcept {
     std::string_view rest = output_texts_;
-    RunTimeFeatures::Named named;
+    detail::NameAndUnit named;
     for (; k >= 0; --k) {
       RunTimeFeatures::take_text(rest, named.name);
       RunTimeFeatures::take_text(rest, named.unit);
@@ -145,21 +145,21 @@ class RunTimeModel {
     outputs_.commands(x, work, u);
   }
 
-  Status read(const unsigned char* block, std::size_t available, BlockFault& fault) noexcept {
+  Status read(const unsigned char* block, std::size_t available) noexcept {
     const Status checked = detail::check_bytes(block, available);
-    if (checked == Status::block_truncated) return refuse(fault, checked, "a model block", "one that is cut short");
+    if (checked == Status::block_truncated) return refuse(checked, "a model block", "one that is cut short");
     if (checked == Status::block_corrupt) {
-      return refuse(fault, checked, "a model block", "one whose checksum does not hold");
+      return refuse(checked, "a model block", "one whose checksum does not hold");
     }
     if (checked != Status::ok) {
-      if (!detail::has_magic(block)) return refuse(fault, checked, "a model block", "another file");
+      if (!detail::has_magic(block)) return refuse(checked, "a model block", "another file");
       static_assert(model_format_version == 5);
-      fault = {"format 5 of a model block (of another: train and export again)", "",
-               static_cast<double>(detail::read_u32(block + Layout::version))};
+      fault_ = {"format 5 of a model block (of another: train and export again)", "",
+                static_cast<double>(detail::read_u32(block + Layout::version))};
       return checked;
     }
     if (detail::read_u32(block + Layout::scalar_bytes) != sizeof(Scalar)) {
-      return refuse(fault, Status::block_incompatible, "numbers of the size that is asked for", "others");
+      return refuse(Status::block_incompatible, "numbers of the size that is asked for", "others");
     }
     const std::size_t inputs = detail::read_u32(block + Layout::inputs);
     const std::size_t outputs = detail::read_u32(block + Layout::outputs);
@@ -169,7 +169,7 @@ class RunTimeModel {
     if (inputs < 1 || inputs > std::size_t(RunTimeFeatures::most_features) || outputs < 1 ||
         outputs > std::size_t(RunTimeOutputs<Scalar>::most_outputs) || golden < 1 || golden > length ||
         parameters > length) {
-      return refuse(fault, Status::block_corrupt, "counts that fit its length, and at most 512 features and 16 outputs",
+      return refuse(Status::block_corrupt, "counts that fit its length, and at most 512 features and 16 outputs",
                     "others");
     }
     records_ = {};
@@ -177,41 +177,40 @@ class RunTimeModel {
     const std::size_t behind = length - Layout::size - Layout::checksum_size;
     const Status read =
         detail::read_records<Scalar>(block + Layout::size, behind, inputs, outputs, records_, record_bytes);
-    if (read != Status::ok) return refuse(fault, read, records_.fault);
+    if (read != Status::ok) return refuse(read, records_.fault);
     const std::uint64_t scalars =
         4 * inputs + 2 * outputs + std::uint64_t{golden} * (inputs + rotor_count) + parameters;  // must not wrap around
     if (behind - record_bytes != scalars * sizeof(Scalar)) {
-      return refuse(fault, Status::block_corrupt, "counts that fit its length", "others");
+      return refuse(Status::block_corrupt, "counts that fit its length", "others");
     }
     numbers_ = {static_cast<const Scalar*>(static_cast<const void*>(block + Layout::size + record_bytes)), inputs,
                 outputs, golden, parameters};
     scales_ = numbers_.scales();
     block_ = block;
-    const Status described = describe(inputs, outputs, parameters, fault);
+    const Status described = describe(inputs, outputs, parameters);
     if (described != Status::ok) return described;
     const detail::StatedNumber number = detail::fault_of_block(block, records_, numbers_);
     return number == detail::StatedNumber::none ? Status::ok
-                                                : refuse(fault, Status::block_corrupt, detail::StatedFault{number});
+                                                : refuse(Status::block_corrupt, detail::StatedFault{number});
   }
 
-  static Status refuse(BlockFault& fault, Status status, const char* expected, const char* found) noexcept {
-    fault = {expected, found};
+  Status refuse(Status status, const char* expected, const char* found) noexcept {
+    fault_ = {expected, found};
     return status;
   }
-
-  static Status refuse(BlockFault& fault, Status status, const detail::StatedFault& stated) noexcept {
+  Status refuse(Status status, const detail::StatedFault& stated) noexcept {
     const detail::StatedRange& range = detail::stated_ranges[static_cast<std::size_t>(stated.number)];
-    fault = {range.expected, range.found, stated.value};
+    fault_ = {range.expected, range.found, stated.value};
     return status;
   }
 
   /// Takes the description apart and compares what it says twice.
-  Status describe(std::size_t inputs, std::size_t outputs, std::size_t parameters, BlockFault& fault) noexcept {
-    const auto incompatible = [&fault](const char* expected, const char* found) {
-      return refuse(fault, Status::block_incompatible, expected, found);
+  Status describe(std::size_t inputs, std::size_t outputs, std::size_t parameters) noexcept {
+    const auto incompatible = [this](const char* expected, const char* found) {
+      return refuse(Status::block_incompatible, expected, found);
     };
-    const auto corrupt = [&fault](const char* expected, const char* found) {
-      return refuse(fault, Status::block_corrupt, expected, found);
+    const auto corrupt = [this](const char* expected, const char* found) {
+      return refuse(Status::block_corrupt, expected, found);
     };
     if (!records_.describes_itself()) return corrupt("all records of a block that describes itself", "one less");
     if (!network_.parse(records_.answer)) {
@@ -246,7 +245,7 @@ class RunTimeModel {
     std::string_view rest = records_.columns;
     bool asked = true;
     while (asked && !rest.empty()) {
-      RunTimeFeatures::Named said;
+      detail::NameAndUnit said;
       asked = RunTimeFeatures::take_text(rest, said.name) && RunTimeFeatures::take_text(rest, said.unit);
       int column = 0;
       while (column < features_.column_count() && features_.column(column).name != said.name) ++column;
@@ -291,7 +290,7 @@ class RunTimeModel {
     }
     if (outputs_.size() != count) return false;
     for (int k = 0; k < count; ++k) {
-      RunTimeFeatures::Named named;
+      detail::NameAndUnit named;
       if (!RunTimeFeatures::take_text(rest, named.name) || !RunTimeFeatures::take_text(rest, named.unit)) return false;
       if (!outputs_.has(k, named.name, named.unit)) return false;
     }
@@ -320,6 +319,7 @@ class RunTimeModel {
   Records records_;
   Airframe<double> airframe_;
   Airframe<Scalar> flown_;
+  Fault fault_;
   std::string_view schema_, output_texts_;
   detail::BlockNumbers<Scalar> numbers_;
   detail::Scales<Scalar> scales_{};

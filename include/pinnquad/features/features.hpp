@@ -23,6 +23,11 @@
 namespace pinnquad {
 
 namespace detail {
+/// A feature, an output or a column.
+struct NameAndUnit {
+  std::string_view name, unit;
+};
+
 /// Lists of texts, one after the other.
 template <std::size_t... Size>
 constexpr std::array<const char*, (Size + ...)> joined_texts(const std::array<const char*, Size>&... lists) noexcept {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The checks between a network and the motors, as a type: Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>. The
-// compiler checks that the policies go together; their order has no meaning. In flight the inputs are checked first,
+// The checks between a network and the motors, as a type: Guard<FiniteInputs, TrainingEnvelope>. The compiler
+// checks that the policies go together; their order has no meaning. Every guard refuses commands that are not finite,
+// as `output_not_finite`. In flight the inputs are checked first,
 // then the envelope, the distance from the training rows, the commands' numbers and limits. Where one of them refuses,
 // the fallback is asked.
 #pragma once
@@ -27,9 +28,6 @@ struct FiniteInputs {};
 /// The envelope is a box, feature by feature. A motion within it may be far from every training row; JointDistance
 /// finds such motions.
 struct TrainingEnvelope {};
-
-/// The commands are finite: else `output_not_finite`. Every guard has it.
-struct FiniteOutputs {};
 
 /// A flight stack's clock in seconds. After 30 days doubles are 5e-10 s apart, floats 0.25 s.
 constexpr double seconds_of(std::uint64_t time_us) noexcept { return 1e-6 * static_cast<double>(time_us); }
@@ -123,12 +121,10 @@ class Guard : private detail::Held<typename detail::ArgumentOf<Fallback, detail:
   static constexpr bool falls_back = FallenBack::count > 0;
   static constexpr bool measures_distance = Distributed::count > 0;
 
-  static_assert(count<FiniteInputs> + count<TrainingEnvelope> + count<FiniteOutputs> + Refused::count + Clipped::count +
-                        FallenBack::count + Distributed::count ==
+  static_assert(count<FiniteInputs> + count<TrainingEnvelope> + Refused::count + Clipped::count + FallenBack::count +
+                        Distributed::count ==
                     int(sizeof...(Policies)),
                 "pinnquad: this type is not a policy of a Guard (inference/guard.hpp)");
-  static_assert(count<FiniteOutputs> > 0,
-                "pinnquad: a Guard needs FiniteOutputs: without it the NaN of a broken weight would reach a motor");
   static_assert(
       checks_inputs || refuses_outside_envelope,
       "pinnquad: a Guard without FiniteInputs needs TrainingEnvelope, which refuses NaN and infinity too: a ReLU "
@@ -195,7 +191,7 @@ template <class... Policies>
 inline constexpr bool is_guard<Guard<Policies...>> = true;
 
 /// The guard of an InverseDynamics that names none: refuses bad inputs, motions beyond the training data, bad outputs.
-using TrainingGuard = Guard<FiniteInputs, TrainingEnvelope, FiniteOutputs>;
+using TrainingGuard = Guard<FiniteInputs, TrainingEnvelope>;
 
 /// A guard with more policies: `Extend<TrainingGuard, ClipCommands<>, Fallback<AnalyticInverse<Vehicle>>>`.
 template <class GuardType, class... More>

@@ -132,7 +132,7 @@ struct Pipeline {
     if constexpr (Map::rotor_by_rotor) {  // one loop for both is less code in flash
       for (int i = 0; i < rotor_count; ++i) {
         outputs[i] = answers[i * stride] * scales.output_deviation[i] + scales.output_mean[i];
-        commands[i] = Map::command(outputs[i], setting, i);
+        commands[i] = Map::command(outputs[i], setting, static_cast<std::size_t>(i));
       }
     } else {
       for (int i = 0; i < Map::size; ++i)

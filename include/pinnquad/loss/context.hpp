@@ -96,8 +96,7 @@ struct Context : detail::ContextAirframe<VehicleType> {
                 "pinnquad: Context's first argument is not a feature set (features/features.hpp)");
   static_assert(is_output_schema<Schema>,
                 "pinnquad: Context's third argument is not an output schema; it needs size, names, units, commands(), "
-                "from_commands(), and slopes() or linear = true; or the short form, one output per rotor "
-                "(outputs/output_schema.hpp)");
+                "from_commands(), and slopes() or linear = true (outputs/output_schema.hpp)");
   static_assert(base_reads<FeatureSet, Schema>(),
                 "pinnquad: the base of Context's outputs reads a feature that the feature set has not, or not there "
                 "(outputs/base.hpp)");

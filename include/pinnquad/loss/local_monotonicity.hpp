@@ -81,96 +81,79 @@ struct SignedCommandSum {
 
 }  // namespace detail
 
-/// Step function tanh(gain x): differentiable sign. A gain of 3 on standardised series trains well; the
-/// paper prints gain 1 on raw series.
-struct TanhStep {
-  double gain = 3.0;
-
-  /// Step of a whole array of differences.
-  template <class Array>
-  void apply(Array& differences) const {
-    differences = (typename Array::Scalar(gain) * differences).tanh();
-  }
-  /// d step / d difference, from the step's value.
-  template <class Array>
-  Array slope(const Array& steps) const {
-    using Scalar = typename Array::Scalar;
-    return Scalar(gain) * (Scalar(1) - steps * steps);
-  }
-
-  /// Throws std::invalid_argument unless the gain is a finite number from 0.
-  constexpr void check() const { detail::expect_from_zero("TanhStep::gain", gain); }
-};
-
 namespace detail {
-/// The steps of both series from sample to sample. What is stepped is aligned and as long as the series, with a
-/// difference of 0 at the end: Eigen would do the lanes around whole packs one by one.
+/// The steps of both series from sample to sample: tanh(gain x) of each difference x, a sign that has a slope. What is
+/// stepped is aligned and as long as the series, with a difference of 0 at the end: Eigen would do the lanes around
+/// whole packs one by one.
 template <class Array>
 struct StepPairs {
   using Scalar = typename Array::Scalar;
+  Scalar gain;
   Eigen::Index count;
   Array m, n;
 
-  template <class Step>
-  StepPairs(const Step& step, const Array& series_m, const Array& series_n)
-      : count(series_m.size() > 0 ? series_m.size() - 1 : 0), m(steps(step, series_m)), n(steps(step, series_n)) {}
+  StepPairs(double gain_, const Array& series_m, const Array& series_n)
+      : gain(Scalar(gain_)),
+        count(series_m.size() > 0 ? series_m.size() - 1 : 0),
+        m(steps(series_m)),
+        n(steps(series_n)) {}
 
   /// Adds dL/d series_m, given dL/d step_m.
-  template <class Step, class Derivative>
-  void add_gradient(const Step& step, const Eigen::ArrayBase<Derivative>& by_step, Array& gradient) const {
-    const Array slope = by_step.derived() * step.slope(m);
+  template <class Derivative>
+  void add_gradient(const Eigen::ArrayBase<Derivative>& by_step, Array& gradient) const {
+    const Array slope = by_step.derived() * (gain * (Scalar(1) - m * m));
     gradient.tail(count) += slope.head(count);
     gradient.head(count) -= slope.head(count);
   }
 
  private:
-  template <class Step>
-  Array steps(const Step& step, const Array& series) const {
+  Array steps(const Array& series) const {
     constexpr int most = Array::MaxSizeAtCompileTime;
     Array result(series.size());
     if constexpr (most == Eigen::Dynamic) {
-      take(step, series, result);
+      take(series, result);
     } else {
       alignas(64) Scalar values[std::size_t(most)];
       Eigen::Map<Array, Eigen::Aligned64> aligned(values, series.size());
-      take(step, series, aligned);
+      take(series, aligned);
       result = aligned;
     }
     return result;
   }
-  template <class Step, class Differences>
-  void take(const Step& step, const Array& series, Differences& differences) const {
+  template <class Differences>
+  void take(const Array& series, Differences& differences) const {
     differences.setZero();
     differences.head(count) = series.tail(count) - series.head(count);
-    step.apply(differences);
+    differences = (gain * differences).tanh();
   }
 };
 }  // namespace detail
 
-/// mean over the N - 1 consecutive pairs of 1 - step(m_{i+1} - m_i) step(n_{i+1} - n_i); N = 1 gives 0.
+/// mean over the N - 1 consecutive pairs of 1 - step(m_{i+1} - m_i) step(n_{i+1} - n_i), step(x) = tanh(gain x); N = 1
+/// gives 0.
 /// 0: the series rise and fall together; 1: unrelated; 2: always opposed. Adds weight * d/dm to `gradient`.
 /// Algorithm 1 prints 1 / N_b over N_b - 1 terms; the mean over the pairs gives footnote 2's values (docs/paper.md,
 /// deviation 8).
-template <class Step, class Array>
-typename Array::Scalar local_monotonicity(const Step& step, const Array& m, const Array& n,
-                                          typename Array::Scalar weight, Array& gradient) {
+template <class Array>
+typename Array::Scalar local_monotonicity(double gain, const Array& m, const Array& n, typename Array::Scalar weight,
+                                          Array& gradient) {
   using Scalar = typename Array::Scalar;
-  const detail::StepPairs<Array> steps(step, m, n);
+  const detail::StepPairs<Array> steps(gain, m, n);
   if (steps.count < 1) return Scalar(0);
   const auto pairs = static_cast<Scalar>(steps.count);
-  steps.add_gradient(step, (-weight / pairs) * steps.n, gradient);
+  steps.add_gradient((-weight / pairs) * steps.n, gradient);
   return (Scalar(1) - steps.m * steps.n).head(steps.count).sum() / pairs;
 }
 
 /// Form of the loss, default: both series divided by their standard deviations in the training set, mean over the pairs
 /// (docs/paper.md, deviations 8 and 9).
 struct Standardised {
-  static constexpr double gain = 3.0;  ///< of a TanhStep that is not set otherwise
+  static constexpr double gain = 3.0;  ///< of the step where none is set: it trains well
   static constexpr bool physical_units = false;
-  template <class Step, class Array>
-  static typename Array::Scalar compare(const Step& step, const Array& m, const Array& n, typename Array::Scalar weight,
+  template <class Array>
+  static typename Array::Scalar compare(double steepness, const Array& m, const Array& n, typename Array::Scalar weight,
                                         Array& gradient) {
-    return local_monotonicity(step, m, n, weight, gradient);
+    return local_monotonicity(steepness, m, n, weight, gradient);
   }
 };
 
@@ -179,12 +162,12 @@ struct Standardised {
 struct Literal {
   static constexpr double gain = 1.0;
   static constexpr bool physical_units = true;
-  template <class Step, class Array>
-  static typename Array::Scalar compare(const Step& step, const Array& m, const Array& n, typename Array::Scalar weight,
+  template <class Array>
+  static typename Array::Scalar compare(double steepness, const Array& m, const Array& n, typename Array::Scalar weight,
                                         Array& gradient) {
     using Scalar = typename Array::Scalar;
     const Scalar share = m.size() > 0 ? Scalar(m.size() - 1) / Scalar(m.size()) : Scalar(0);
-    return share * local_monotonicity(step, m, n, share * weight, gradient);
+    return share * local_monotonicity(steepness, m, n, share * weight, gradient);
   }
 };
 
@@ -193,14 +176,14 @@ struct Literal {
 struct Match {
   static constexpr double gain = 3.0;
   static constexpr bool physical_units = false;
-  template <class Step, class Array>
-  static typename Array::Scalar compare(const Step& step, const Array& m, const Array& n, typename Array::Scalar weight,
+  template <class Array>
+  static typename Array::Scalar compare(double steepness, const Array& m, const Array& n, typename Array::Scalar weight,
                                         Array& gradient) {
     using Scalar = typename Array::Scalar;
-    const detail::StepPairs<Array> steps(step, m, n);
+    const detail::StepPairs<Array> steps(steepness, m, n);
     if (steps.count < 1) return Scalar(0);
     const auto pairs = static_cast<Scalar>(steps.count);
-    steps.add_gradient(step, (Scalar(2) * weight / pairs) * (steps.m - steps.n), gradient);
+    steps.add_gradient((Scalar(2) * weight / pairs) * (steps.m - steps.n), gradient);
     return (steps.m - steps.n).square().head(steps.count).sum() / pairs;
   }
 };
@@ -208,39 +191,23 @@ struct Match {
 namespace detail {
 using ProbeArray = Eigen::Array<double, Eigen::Dynamic, 1, int(Eigen::ColMajor) | int(Eigen::DontAlign), 8>;
 template <class T>
-using StepFunctionOf = std::void_t<decltype(std::declval<const T&>().apply(std::declval<ProbeArray&>())),
-                                   decltype(std::declval<const T&>().slope(std::declval<const ProbeArray&>()))>;
-template <class T>
 using FormOf = std::void_t<decltype(T::gain), decltype(T::physical_units),
-                           decltype(T::compare(std::declval<const TanhStep&>(), std::declval<const ProbeArray&>(),
+                           decltype(T::compare(1.0, std::declval<const ProbeArray&>(),
                                                std::declval<const ProbeArray&>(), 1.0, std::declval<ProbeArray&>()))>;
-
-template <class Step, class Form>
-constexpr Step initial_step() {
-  if constexpr (std::is_same_v<Step, TanhStep>) {
-    return TanhStep{Form::gain};
-  } else {
-    return Step{};
-  }
-}
 }  // namespace detail
 
 /// Local monotonicity about one axis (Roll, Pitch or Yaw): m = signed sum of predicted commands with the signs of the
 /// airframe's allocation, n = angular acceleration, compared as the form says.
-template <class Axis, class Step = TanhStep, class Form = Standardised>
+template <class Axis, class Form = Standardised>
 struct LocalMonotonicity {
   static_assert(
-      is_detected<detail::StepFunctionOf, Step>,
-      "pinnquad: LocalMonotonicity's second argument is not a step function; it needs apply() and slope(), as "
-      "TanhStep has");
-  static_assert(
       is_detected<detail::FormOf, Form>,
-      "pinnquad: LocalMonotonicity's third argument is not a form; it needs gain, physical_units and compare(), as "
+      "pinnquad: LocalMonotonicity's second argument is not a form; it needs gain, physical_units and compare(), as "
       "Standardised has");
-  Step step = detail::initial_step<Step, Form>();
+  double gain = Form::gain;
 
-  /// Throws std::invalid_argument if a number of the step function makes no sense.
-  constexpr void check() const { check_settings(step); }
+  /// Throws std::invalid_argument unless the gain is a finite number from 0.
+  constexpr void check() const { detail::expect_from_zero("LocalMonotonicity::gain", gain); }
 
   template <class Context, class Batch, class Gradient>
   typename Batch::Scalar evaluate(const Context& context, const Batch& batch, typename Batch::Scalar weight,
@@ -255,7 +222,7 @@ struct LocalMonotonicity {
           Scalar(context.input.standard_deviation[feature]);  // differences: the mean drops out
     }
     return series.evaluate(
-        [&](const auto& m, const auto& n, auto& by_m) { return Form::compare(step, m, n, weight, by_m); }, gradient);
+        [&](const auto& m, const auto& n, auto& by_m) { return Form::compare(gain, m, n, weight, by_m); }, gradient);
   }
 };
 

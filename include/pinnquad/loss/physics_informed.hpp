@@ -65,9 +65,9 @@ struct PhysicsInformed {
 };
 
 /// The paper's loss: Mse and local monotonicity about roll, pitch and yaw under one kind of schedule.
-template <class Schedule, class Step = TanhStep, class Form = Standardised>
-using PaperLoss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll, Step, Form>, Schedule>,
-                                  Weighted<LocalMonotonicity<Pitch, Step, Form>, Schedule>,
-                                  Weighted<LocalMonotonicity<Yaw, Step, Form>, Schedule>>;
+template <class Schedule, class Form = Standardised>
+using PaperLoss = PhysicsInformed<Mse, Weighted<LocalMonotonicity<Roll, Form>, Schedule>,
+                                  Weighted<LocalMonotonicity<Pitch, Form>, Schedule>,
+                                  Weighted<LocalMonotonicity<Yaw, Form>, Schedule>>;
 
 }  // namespace pinnquad

@@ -10,10 +10,10 @@
 //                                        du/dx at fixed y, rotor_count x FeatureCount, row-major; only where g uses x
 //   prepare(airframe)                    optional, constexpr: worked out by the compiler
 //   takes_features                       optional, false: no function reads x, which may be null
-// Short form for one output per rotor and one unit: `names`, `unit`, from_command(u, airframe), command(y, airframe),
-// command_slope(y, airframe), or these three with the rotor's index as last argument, for rotors that differ.
-// commands() and the slopes fly: PINNQUAD_ALWAYS_INLINE where a program links objects of other flags, and plain arrays
-// then, no Eigen (docs/in_flight.md).
+//   command(y_i, setting, rotor)         optional: command i is of output i alone, and slopes() writes du_i/dy_i alone.
+//                                        EachRotor makes the other functions of it
+// commands(), command() and the slopes fly: PINNQUAD_ALWAYS_INLINE where a program links objects of other flags, and
+// plain arrays then, no Eigen (docs/in_flight.md).
 #pragma once
 
 #include <array>
@@ -25,30 +25,62 @@
 
 namespace pinnquad {
 
-/// The outputs are the commands u_1..u_4 (the paper's PWM, Sec. 4.1). Default.
-struct CommandOutputs {
-  static constexpr std::array<const char*, rotor_count> names = {"u1", "u2", "u3", "u4"};
-  static constexpr const char* unit = "1";
+inline namespace PINNQUAD_INSTRUCTION_SET {
+
+/// A schema of one output per rotor derives from it, and has names, units and three functions of a rotor, which is
+/// given by its index, as rotors may differ:
+///   from_command(u, airframe, rotor), command(y, airframe, rotor), command_slope(y, airframe, rotor)
+template <class Schema>
+struct EachRotor {
+  using Functions = Schema;  ///< whose three functions it calls
+  static constexpr int size = rotor_count;
+  static constexpr bool takes_features = false;
 
   template <class Scalar>
-  static constexpr Scalar from_command(Scalar command, const Airframe<Scalar>&) noexcept {
+  static PINNQUAD_ALWAYS_INLINE void commands(const Scalar*, const Scalar* y, const Airframe<Scalar>& airframe,
+                                              Scalar* u) noexcept(noexcept(Schema::command(*y, airframe, 0))) {
+    for (std::size_t i = 0; i < rotor_count; ++i) u[i] = Schema::command(y[i], airframe, i);
+  }
+  template <class Scalar>
+  static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar*, const Scalar* y, const Airframe<Scalar>& airframe,
+                                            Scalar* own) noexcept(noexcept(Schema::command_slope(*y, airframe, 0))) {
+    for (std::size_t i = 0; i < rotor_count; ++i) own[i] = Schema::command_slope(y[i], airframe, i);
+  }
+  template <class Scalar>
+  static void from_commands(const Scalar*, const Scalar* u, const Airframe<Scalar>& airframe,
+                            Scalar* y) noexcept(noexcept(Schema::from_command(*u, airframe, 0))) {
+    for (std::size_t i = 0; i < rotor_count; ++i) y[i] = Schema::from_command(u[i], airframe, i);
+  }
+};
+
+}  // namespace PINNQUAD_INSTRUCTION_SET
+
+/// The outputs are the commands u_1..u_4 (the paper's PWM, Sec. 4.1). Default.
+struct CommandOutputs : EachRotor<CommandOutputs> {
+  static constexpr std::array<const char*, rotor_count> names = {"u1", "u2", "u3", "u4"};
+  static constexpr std::array<const char*, rotor_count> units = {"1", "1", "1", "1"};
+
+  template <class Scalar>
+  static constexpr Scalar from_command(Scalar command, const Airframe<Scalar>&, std::size_t = 0) noexcept {
     return command;
   }
   template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE constexpr Scalar command(Scalar output, const Airframe<Scalar>&) noexcept {
+  static PINNQUAD_ALWAYS_INLINE constexpr Scalar command(Scalar output, const Airframe<Scalar>&,
+                                                         std::size_t = 0) noexcept {
     return output;
   }
   template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE constexpr Scalar command_slope(Scalar, const Airframe<Scalar>&) noexcept {
+  static PINNQUAD_ALWAYS_INLINE constexpr Scalar command_slope(Scalar, const Airframe<Scalar>&,
+                                                               std::size_t = 0) noexcept {
     return Scalar(1);
   }
 };
 
 /// The outputs are rotor speeds n_1..n_4 (the paper's 'motor speeds', Sec. 3.4), rev/s; u = (n / n_max)^2, or the
-/// command at which the rotor's thrust_curve gives that speed. `rotor`: its index, where the curves differ.
-struct RotorSpeedOutputs {
+/// command at which the rotor's thrust_curve gives that speed.
+struct RotorSpeedOutputs : EachRotor<RotorSpeedOutputs> {
   static constexpr std::array<const char*, rotor_count> names = {"n1", "n2", "n3", "n4"};
-  static constexpr const char* unit = "rev/s";
+  static constexpr std::array<const char*, rotor_count> units = {"rev/s", "rev/s", "rev/s", "rev/s"};
 
   /// A command below 0 has no speed and counts as 0.
   template <class Scalar>
@@ -70,26 +102,6 @@ struct RotorSpeedOutputs {
 
 namespace detail {
 
-/// The functions of the short form, called with `Index...` as last arguments: none, or std::size_t.
-template <class T, class... Index>
-struct RotorCalls {
-  using Body = const Airframe<double>&;
-  template <class S>
-  using All = std::void_t<std::enable_if_t<S::names.size() == std::size_t(rotor_count)>, decltype(S::unit),
-                          decltype(S::from_command(0.0, std::declval<Body>(), Index{}...)),
-                          decltype(S::command(0.0, std::declval<Body>(), Index{}...)),
-                          decltype(S::command_slope(0.0, std::declval<Body>(), Index{}...))>;
-  static constexpr bool exist = is_detected<All, T>;
-  static constexpr bool are_noexcept() noexcept {
-    return noexcept(T::from_command(0.0, std::declval<Body>(), Index{}...))&& noexcept(T::command(
-        0.0, std::declval<Body>(), Index{}...))&& noexcept(T::command_slope(0.0, std::declval<Body>(), Index{}...));
-  }
-};
-template <class T>
-inline constexpr bool maps_rotor_by_index = RotorCalls<T, std::size_t>::exist;
-template <class T>
-inline constexpr bool maps_each_rotor = maps_rotor_by_index<T> || RotorCalls<T>::exist;
-
 template <class T>
 using PrepareOf = decltype(T::prepare(std::declval<const Airframe<double>&>()));
 
@@ -103,7 +115,7 @@ constexpr auto output_setting(const Airframe<Scalar>& airframe) noexcept {
   }
 }
 
-/// The functions of the full form.
+/// The functions of a schema.
 template <class T>
 struct VectorCalls {
   using In = const double*;
@@ -120,8 +132,11 @@ struct VectorCalls {
   using FeatureSlopes = decltype(S::template feature_slopes<16>(In{}, In{}, std::declval<Setting>(), Out{}));
   template <class S>
   using Linear = std::enable_if_t<S::linear>;
+  template <class S>
+  using OfRotor = decltype(S::command(0.0, std::declval<Setting>(), std::size_t{}));
   static constexpr bool has_slopes = is_detected<Slopes, T>;
   static constexpr bool has_feature_slopes = is_detected<FeatureSlopes, T>;
+  static constexpr bool rotor_by_rotor = is_detected<OfRotor, T>;
 
   static constexpr bool exist = is_detected<Both, T> && (is_detected<Linear, T> || has_slopes);
   static constexpr bool are_noexcept() noexcept {
@@ -131,82 +146,45 @@ struct VectorCalls {
     if constexpr (has_feature_slopes) {
       all = all&& noexcept(T::template feature_slopes<16>(In{}, In{}, std::declval<Setting>(), Out{}));
     }
+    if constexpr (rotor_by_rotor) all = all&& noexcept(T::command(0.0, std::declval<Setting>(), 0));
     return all;
   }
 };
 
 template <class T>
-constexpr bool output_schema_is_noexcept() noexcept {
-  if constexpr (VectorCalls<T>::exist) {
-    return VectorCalls<T>::are_noexcept();
-  } else if constexpr (maps_rotor_by_index<T>) {
-    return RotorCalls<T, std::size_t>::are_noexcept();
-  } else {
-    return RotorCalls<T>::are_noexcept();
-  }
-}
+inline constexpr bool is_noexcept_output_schema = VectorCalls<T>::are_noexcept();
+
 template <class T>
-inline constexpr bool is_noexcept_output_schema = output_schema_is_noexcept<T>();
+using SchemaFunctions = typename T::Functions;
+/// False for a schema that derives from one of EachRotor, which would not call its functions.
+template <class T>
+constexpr bool calls_its_own() noexcept {
+  if constexpr (is_detected<SchemaFunctions, T>) return std::is_same_v<typename T::Functions, T>;
+  return true;
+}
 
 template <class T>
 using IgnoresFeatures = std::enable_if_t<!T::takes_features>;
 
-inline namespace PINNQUAD_INSTRUCTION_SET {
-
-/// The short form as a schema of the full form; slopes() writes du_i/dy_i alone.
-template <class Schema, class... Index>
-struct EachRotor {
-  static constexpr int size = rotor_count;
-  static constexpr const auto& names = Schema::names;
-  static constexpr std::array<const char*, size> units = {Schema::unit, Schema::unit, Schema::unit, Schema::unit};
-  static constexpr bool takes_features = false;
-
-  template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE Scalar command(Scalar output, const Airframe<Scalar>& airframe,
-                                               [[maybe_unused]] int rotor) noexcept {
-    return Schema::command(output, airframe, static_cast<Index>(rotor)...);
-  }
-  template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE void commands(const Scalar*, const Scalar* y, const Airframe<Scalar>& airframe,
-                                              Scalar* u) noexcept {
-    for (int i = 0; i < size; ++i) u[i] = command(y[i], airframe, i);
-  }
-  template <class Scalar>
-  static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar*, const Scalar* y, const Airframe<Scalar>& airframe,
-                                            Scalar* own) noexcept {
-    for (int i = 0; i < size; ++i) own[i] = Schema::command_slope(y[i], airframe, static_cast<Index>(i)...);
-  }
-  template <class Scalar>
-  static void from_commands(const Scalar*, const Scalar* u, const Airframe<Scalar>& airframe, Scalar* y) noexcept {
-    for (int i = 0; i < size; ++i) y[i] = Schema::from_command(u[i], airframe, static_cast<Index>(i)...);
-  }
-};
-
-/// A schema in its full form.
-template <class Schema>
-using FullForm = std::conditional_t<maps_rotor_by_index<Schema>, EachRotor<Schema, std::size_t>,
-                                    std::conditional_t<maps_each_rotor<Schema>, EachRotor<Schema>, Schema>>;
-
-}  // namespace PINNQUAD_INSTRUCTION_SET
-
 }  // namespace detail
 
-/// True for a type that fulfils the contract at the head of this file, in one of its two forms.
+/// True for a type that fulfils the contract at the head of this file.
 template <class T>
-inline constexpr bool is_output_schema = detail::maps_each_rotor<T> != detail::VectorCalls<T>::exist;
+inline constexpr bool is_output_schema = detail::VectorCalls<T>::exist;
 
 inline namespace PINNQUAD_INSTRUCTION_SET {
 
-/// An output schema as the library calls it: its full form, whichever form it is written in, and what follows from it.
-/// `command(output, airframe, rotor)`, of one rotor, is there only where rotor_by_rotor.
+/// An output schema, and what follows from it.
 template <class Schema>
-struct OutputMap : detail::FullForm<Schema> {
-  using Form = detail::FullForm<Schema>;
-  using Form::size;
-  static constexpr bool rotor_by_rotor = !std::is_same_v<Form, Schema>;
+struct OutputMap : Schema {
+  static_assert(detail::calls_its_own<Schema>(),
+                "pinnquad: this output schema derives from another one, which is EachRotor's and would not call the "
+                "functions of this one: let it derive from EachRotor of itself (outputs/output_schema.hpp)");
+  using Schema::size;
+  static constexpr bool rotor_by_rotor = detail::VectorCalls<Schema>::rotor_by_rotor;  ///< it has command()
   static constexpr bool takes_features =
-      !is_detected<detail::IgnoresFeatures, Form>;  ///< x may be null where it is false
-  static constexpr bool has_feature_slopes = detail::VectorCalls<Form>::has_feature_slopes;
+      !is_detected<detail::IgnoresFeatures, Schema>;  ///< x may be null where it is false
+  static constexpr bool has_feature_slopes = detail::VectorCalls<Schema>::has_feature_slopes;
   static constexpr int slope_count = rotor_by_rotor ? size : rotor_count * size;  ///< numbers that slopes() writes
 
   /// Command i depends on the outputs from first_output(i) to before last_output(i). du_i/dy_k stands at
@@ -219,21 +197,21 @@ struct OutputMap : detail::FullForm<Schema> {
 
   template <class Scalar>
   static constexpr auto setting(const Airframe<Scalar>& airframe) noexcept {
-    return detail::output_setting<Form>(airframe);
+    return detail::output_setting<Schema>(airframe);
   }
   /// Slopes of a linear schema without slopes(): g(x, e_k) - g(x, 0).
   template <class Scalar, class Setting>
   static PINNQUAD_ALWAYS_INLINE void slopes(const Scalar* x, const Scalar* outputs, const Setting& setting,
                                             Scalar* slopes) noexcept {
-    if constexpr (detail::VectorCalls<Form>::has_slopes) {
-      Form::slopes(x, outputs, setting, slopes);
+    if constexpr (detail::VectorCalls<Schema>::has_slopes) {
+      Schema::slopes(x, outputs, setting, slopes);
     } else {
       Scalar unit[size] = {};
       Scalar origin[rotor_count], moved[rotor_count];
-      Form::commands(x, static_cast<const Scalar*>(unit), setting, static_cast<Scalar*>(origin));
+      Schema::commands(x, static_cast<const Scalar*>(unit), setting, static_cast<Scalar*>(origin));
       for (int k = 0; k < size; ++k) {
         unit[k] = Scalar(1);
-        Form::commands(x, static_cast<const Scalar*>(unit), setting, static_cast<Scalar*>(moved));
+        Schema::commands(x, static_cast<const Scalar*>(unit), setting, static_cast<Scalar*>(moved));
         unit[k] = Scalar(0);
         for (int i = 0; i < rotor_count; ++i) slopes[slope_index(i, k)] = moved[i] - origin[i];
       }

@@ -14,31 +14,30 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "pinnquad/core/body.hpp"
+#include "pinnquad/data/row_set.hpp"
+#include "pinnquad/dynamics/allocation.hpp"
 #include "pinnquad/regression/block_regression.hpp"
-#include "pinnquad/regression/rotation_fit.hpp"
-#include "pinnquad/regression/smoothed_flights.hpp"
 
 namespace pinnquad {
 
-/// How much of a vehicle is asked: each less costs less, and leaves the rest of Identification as it was.
-enum class IdentificationScope {
-  all,
-  without_rise_and_fall,  ///< no time constants of growing and falling thrust apart
-  thrust_curve            ///< that alone, where it is to be found
-};
-
 /// Smoothing of an identification, and numbers that it takes as known.
 struct IdentificationSettings {
+  /// How much of a vehicle is asked: each less costs less, and leaves the rest of Identification as it was.
+  enum class Scope {
+    all,
+    without_rise_and_fall,  ///< no time constants of growing and falling thrust apart
+    thrust_curve            ///< that alone, where it is to be found
+  };
+
   double window_s = 0.16;         ///< of the smoothing: motion up to some 6 Hz counts
   double thrust_curve = 0;        ///< of thrust_fraction()
   bool fit_thrust_curve = false;  ///< finds it where flights tell it (told_curve()), in place of taking that one
-  IdentificationScope scope = IdentificationScope::all;
+  Scope scope = Scope::all;
 };
 
 /// An interval is infinite where the flights do not tell.
@@ -80,60 +79,6 @@ inline std::optional<double> told_curve(const Estimate& curve) noexcept {
   if (!(curve.half_width <= narrow_curve && curve.low() > bent)) return std::nullopt;
   return curve.value < 1 ? curve.value : 1;
 }
-
-namespace detail {
-
-/// The regressions of one identification.
-class Identifier {
- public:
-  Identifier(const RowSet& rows, const InstrumentedFlights::Signs& signs, const IdentificationSettings& settings)
-      : rows_(rows, signs, settings.window_s), settings_(settings) {}
-
-  Identification run();
-
- private:
-  using Series = InstrumentedFlights::Series;
-  using Fractions = InstrumentedFlights::Fractions;
-
-  void find_rotation(double curve, Identification& result);
-
-  /// k by each motion: w_a' = B_a ((1 - k) sum sigma_i s_linear + k sum sigma_i s_square) + ..., and
-  /// f_z = -A ((1 - k) sum s_linear + k sum s_square) - drag.
-  std::array<Estimate, 4> curves() const;
-
-  /// Along z by the velocity where there is one: an accelerometer's offset of 0.1 m/s^2 would be 1 % of the thrust.
-  const Series& force(std::size_t axis) const;
-
-  /// A series by `fill(instant, regressors)`; instruments: the regressors and the series of past instants, and 1.
-  template <class Fill>
-  BlockSolution regression_of(const Series& y, std::size_t unknowns, const Fill& fill) const {
-    const std::size_t instruments = InstrumentedFlights::shifts * (unknowns + 1) + 1;
-    BlockRegression regression(unknowns, instruments, rows_.blocks());
-    std::vector<double> x(unknowns), z(instruments);
-    for (std::size_t place = 0; place < rows_.instants().size(); ++place) {
-      const std::size_t i = rows_.instants()[place];
-      for (std::size_t k = 0; k < InstrumentedFlights::shifts; ++k) {
-        const std::size_t before = rows_.before(i, k);
-        fill(before, &z[k * (unknowns + 1)]);
-        z[k * (unknowns + 1) + unknowns] = y[before];
-      }
-      z.back() = 1;
-      fill(i, x.data());
-      regression.add(rows_.block(place), x.data(), y[i], z.data());
-    }
-    return regression.solve();
-  }
-
-  void find_forces(double curve, Identification& result) const;
-
-  void measure_excitation(Identification& result) const;
-
-  InstrumentedFlights rows_;
-  IdentificationSettings settings_;
-  RotorResponse response_;
-};
-
-}  // namespace detail
 
 /// The vehicle of flights, rows of one period with the commands as they were given: in what a log's import shifted, the
 /// shift is missing from `delay_s`. `signs`: axis_signs().

@@ -18,24 +18,26 @@ namespace pinnquad {
 /// True where the interval is no wider than this share of the value: then the number stands on the flights.
 bool is_told(const Estimate& estimate, double share) noexcept;
 
+namespace detail {
 /// Ends of a range, both within it.
 struct PlausibleRange {
   double least, most;
   constexpr bool holds(double value) const noexcept { return value >= least && value <= most; }
 };
+}  // namespace detail
 
 namespace plausible {
 /// Grows with the propeller: 5 ms (the paper's simulator), 33 ms (5 inches), 60 ms (a Crazyflie's brushed motors), some
 /// 0.1 s of 28 inches.
-inline constexpr PlausibleRange rotor_lag_s{0, 0.2};
+inline constexpr detail::PlausibleRange rotor_lag_s{0, 0.2};
 /// Before the lag: 5 ms (a gyro's filter of 40 Hz) to 0.1 s (a radio link). Below 0 by half of a coarse row, or by
 /// commands that are stamped a tick late.
-inline constexpr PlausibleRange delay_s{-0.06, 0.15};
+inline constexpr detail::PlausibleRange delay_s{-0.06, 0.15};
 /// Greatest angular acceleration from rest, rad/s^2: two rotors at command 1. 20 of a carrier, 1000 of a small racer.
-inline constexpr std::array<PlausibleRange, 3> turn_rad_s2{{{15, 3000}, {15, 3000}, {1, 500}}};
+inline constexpr std::array<detail::PlausibleRange, 3> turn_rad_s2{{{15, 3000}, {15, 3000}, {1, 500}}};
 /// Moment of inertia over mass and the square of the arm: 0.15 to 0.65 of the airframes here, 1 if all mass sat in the
 /// motors. The arm may be an assumed one, a fifth of the true or five times as long.
-inline constexpr PlausibleRange inertia_over_arms{0.01, 5};
+inline constexpr detail::PlausibleRange inertia_over_arms{0.01, 5};
 /// Effectiveness of roll over that of pitch, either way: moments and arms of both are alike within this factor. Told,
 /// not refused.
 inline constexpr double roll_over_pitch = 3;
@@ -47,7 +49,7 @@ struct ImplausibleNumber {
   const char* words;  ///< "rotor lag"
   const char* unit;
   double value;
-  PlausibleRange range;
+  detail::PlausibleRange range;
 };
 
 namespace detail {

@@ -103,18 +103,6 @@ struct WeightBound {
 /// All rows of one group or more.
 RegressionSums total(const std::vector<RegressionSums>& groups);
 
-/// The normal equations A X = B of the features that are taken; `columns` are these.
-struct RidgeSystem {
-  std::vector<int> columns;
-  Eigen::MatrixXd a, b;
-  Eigen::VectorXd mean;
-
-  RidgeSystem(const RegressionSums& sums, double penalty, const std::vector<bool>& taken);
-
-  /// The map of a solution X. A feature that is not taken has the weight 0.
-  AffineMap map(const RegressionSums& sums, const Eigen::MatrixXd& solution) const;
-};
-
 }  // namespace detail
 
 /// The map of these rows. `taken`: of `inputs` entries, false for a feature that gets no weight; empty takes all. A

@@ -144,7 +144,7 @@ ContextType make_context(const RowSet& rows,
   std::vector<std::string_view> units(Features::units.begin(), Features::units.end());
   units.insert(units.end(), OutputMap<typename ContextType::Outputs>::units.begin(),
                OutputMap<typename ContextType::Outputs>::units.end());
-  units.insert(units.end(), axes, CommandOutputs::unit);
+  units.insert(units.end(), axes, CommandOutputs::units[0]);
   const auto columns = detail::column_statistics(units, [&](const detail::RowVisit& visit) {
     each_features<Features, double>(rows, [&](const Flight& flight, std::size_t row, const auto& x) {
       const Sample& sample = flight[row];

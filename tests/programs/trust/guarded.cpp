@@ -50,8 +50,7 @@ int main(int, char** argv) {
   std::string line;
   std::getline(in, line);
   const Guarded guarded;
-  const InverseDynamics<TrainedQuadModel, Guard<FiniteInputs, JointDistance<TrainedQuadModelTrust>, FiniteOutputs>>
-      boundless;
+  const InverseDynamics<TrainedQuadModel, Guard<FiniteInputs, JointDistance<TrainedQuadModelTrust>>> boundless;
   MonitoredInverse<Guarded, TrainedQuadModelTrust> same{guarded}, heavier{guarded};
   Row row{};
   Commands<float> commands{};

@@ -56,7 +56,7 @@ struct CoreRecord {
   float analytic_bias_sums[4]{};     ///< of the analytic inverse
   float bias_across_m_s2[3]{};       ///< NED, of both
   float bias_across_rate_m_s3[2]{};  ///< its trend, north and east
-  float bias_noise{0};               ///< BiasNoise of roll and pitch, of the network
+  float bias_noise{0};               ///< MotionBias::Learnt of roll and pitch, of the network
   float analytic_bias_noise{0};      ///< of the analytic inverse
   float bias_across_noise_m_s2{0};
   float bias_waited_s{0};  ///< time in which nothing could be learnt
@@ -171,7 +171,7 @@ struct CoreSettings {
   float climb_m_s{5};
   float descent_m_s{3};
   float take_off_s{1};  ///< time that thrust takes to come at take-off
-  // BiasSettings, of the network's bias and the analytic inverse's; and the delay of FlownMotionSettings
+  // BiasSettings, of the network's bias and the analytic inverse's; and the delay of a FlownMotion
   float bias_time_constants_s[4]{};  ///< 0: what the model's block says, or the usual one; see state_delay_s
   float most_bias[4]{BiasSettings<float>{}.most[0], BiasSettings<float>{}.most[1], BiasSettings<float>{}.most[2],
                      BiasSettings<float>{}.most[3]};

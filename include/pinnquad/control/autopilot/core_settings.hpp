@@ -75,18 +75,22 @@ CoreSettings with_effects(CoreSettings settings, const Quadrotor<float, Effects.
 /// The biases of a logged tick.
 template <class Learner>
 void resume_biases(const CoreRecord& logged, Learner& learner) noexcept {
-  const auto sums = [](const float(&b)[4]) noexcept { return SignedSums<float>{b[0], b[1], b[2], b[3]}; };
-  const Vector3<float> across(logged.bias_across_m_s2);
-  const Vector3<float> rate(logged.bias_across_rate_m_s3[0], logged.bias_across_rate_m_s3[1], 0);
+  const auto resume = [&](auto& bias, const float(&b)[4], float noise, float waited_s, std::uint8_t status) noexcept {
+    bias.resume({{b[0], b[1], b[2], b[3]},
+                 Vector3<float>(logged.bias_across_m_s2),
+                 {logged.bias_across_rate_m_s3[0], logged.bias_across_rate_m_s3[1], 0},
+                 noise,
+                 logged.bias_across_noise_m_s2,
+                 waited_s,
+                 static_cast<Status>(status)});
+  };
   if (logged.learning != 0) {  // it is the learner's that was logged
     learner.own().reset();
   } else {
-    learner.own().resume(sums(logged.bias_sums), across, rate, {logged.bias_noise, logged.bias_across_noise_m_s2},
-                         logged.bias_waited_s, static_cast<Status>(logged.bias_status));
+    resume(learner.own(), logged.bias_sums, logged.bias_noise, logged.bias_waited_s, logged.bias_status);
   }
-  learner.last().resume(sums(logged.analytic_bias_sums), across, rate,
-                        {logged.analytic_bias_noise, logged.bias_across_noise_m_s2}, logged.analytic_bias_waited_s,
-                        static_cast<Status>(logged.analytic_bias_status));
+  resume(learner.last(), logged.analytic_bias_sums, logged.analytic_bias_noise, logged.analytic_bias_waited_s,
+         logged.analytic_bias_status);
 }
 
 /// Commands that neither rotor nor sound network asks for: the analytic inverse is asked instead.

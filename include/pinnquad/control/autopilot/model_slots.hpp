@@ -61,22 +61,17 @@ class ModelSlots {
   }
 
  private:
+  using Header = pinnquad::detail::ModelBlockHeader;
   static_assert(std::atomic<const Inverse*>::is_always_lock_free);
 
   /// Checksum of a block that was opened, so that its length is known.
   static std::uint32_t checksum_of(const void* block) noexcept {
-    using Header = ModelBlockHeader;
-    return number(block, number(block, Header::length) - Header::checksum_size);
+    using pinnquad::detail::read_u32;
+    const auto* bytes = static_cast<const unsigned char*>(block);
+    return read_u32(bytes + read_u32(bytes + Header::length) - Header::checksum_size);
   }
   static std::uint64_t training_data_of(const void* block) noexcept {
-    constexpr std::size_t at = ModelBlockHeader::training_data_hash;
-    return std::uint64_t{number(block, at)} | std::uint64_t{number(block, at + 4)} << 32;
-  }
-  static std::uint32_t number(const void* block, std::size_t at) noexcept {
-    const auto* bytes = static_cast<const unsigned char*>(block);
-    std::uint32_t value = 0;
-    for (std::size_t i = 4; i-- > 0;) value = (value << 8) | bytes[at + i];
-    return value;
+    return pinnquad::detail::read_u64(static_cast<const unsigned char*>(block) + Header::training_data_hash);
   }
 
   Inverse slots_[2];

@@ -42,7 +42,7 @@ class NeuralController {
       std::conditional_t<trusts, Extend<TrainingGuard, JointDistance<Trust>, RefuseCommands<detail::AbsurdCommands>>,
                          Extend<TrainingGuard, RefuseCommands<detail::AbsurdCommands>>>;
   using Inverse = InverseDynamics<View, NetworkGuard>;
-  using Learner = BiasLearner<float, 2, FlownMotion<float>, Trust>;
+  using Learner = pinnquad::detail::BiasLearner<float, 2, FlownMotion<float>, Trust>;
   static_assert(std::is_same_v<typename Shape::Scalar, float>, "flight stacks fly float models");
   static_assert(!trusts || ModelInputs::of_motion_alone,
                 "pinnquad: limits of trust are those of a model of the present motion alone: fly one with a window or "
@@ -58,8 +58,7 @@ class NeuralController {
         outer_loop_(detail::outer_loop(settings, vehicle_.airframe(), vehicle_.site().gravity_m_s2)),
         models_(NetworkGuard{}),
         learner_(vehicle_.airframe(), detail::bias_settings(settings),
-                 FlownMotion<float>({FlownMotionSettings<float>{}.period_us,
-                                     vehicle_.airframe().rise_time_constant_s(0), settings.state_delay_s})),
+                 FlownMotion<float>(25'000, vehicle_.airframe().rise_time_constant_s(0), settings.state_delay_s)),
         take_off_(settings.take_off_s),
         learnt_(vehicle_.airframe(), settings) {
     settings_.distance_limit = settings_.innovation_limit = 0;
@@ -122,7 +121,7 @@ class NeuralController {
 
   /// The bias of the network's commands, which learns nothing where its network does not answer; the learner's bias
   /// where that one answers.
-  const MotionBias<float>& bias() const noexcept {
+  const pinnquad::detail::MotionBias<float>& bias() const noexcept {
     if constexpr (has_onboard) {
       if (learns()) return learnt_.onboard().bias();
     }
@@ -135,7 +134,7 @@ class NeuralController {
   /// CoreRecord::learnt.
   std::uint8_t learnt() const noexcept { return static_cast<std::uint8_t>(learnt_.bits()); }
   /// Bias of the analytic inverse's commands, and the acceleration across the thrust, whoever answers.
-  const MotionBias<float>& analytic_bias() const noexcept { return learner_.last(); }
+  const pinnquad::detail::MotionBias<float>& analytic_bias() const noexcept { return learner_.last(); }
   /// Share of the thrust that it uses, 0 to 1: below 1 at take-off and landing.
   float lift() const noexcept { return take_off_.lift(); }
   /// Mean error of the model's commands, bias included, about the flown motion; 0 without limits of trust.
@@ -182,7 +181,7 @@ class NeuralController {
       report.status =
           learns() ? ask_onboard(now_us, reaction, answer, report) : ask(*inverse, reaction, answer, report);
       if (has_output(report.status)) {
-        last_commands_ = desaturate(vehicle_.rotors(), answer, range());
+        last_commands_ = desaturate(vehicle_.rotors(), answer, settings_.lowest_command, settings_.highest_command);
         const float lift = take_off_.lift();
         const float idle = settings_.lowest_command;
         for (float& u : last_commands_) u = lift < 1.0f ? idle + lift * (u - idle) : u;
@@ -232,8 +231,6 @@ class NeuralController {
   const Vehicle& vehicle() const noexcept { return vehicle_; }
 
  private:
-  CommandRange<float> range() const noexcept { return {settings_.lowest_command, settings_.highest_command}; }
-
   /// The last commands are of this tick.
   void answered(std::uint64_t now_us) noexcept {
     answered_us_ = now_us;

@@ -116,20 +116,20 @@ class Recorded : public Controller {
     record_.learning = static_cast<std::uint8_t>(Controller::learning());
     record_.learnt = Controller::learnt();
     record_.lift = Controller::lift();
-    const MotionBias<float>&own = Controller::bias(), &analytic = Controller::analytic_bias();
-    for (std::size_t k = 0; k < own.sums().size(); ++k) {
-      record_.bias_sums[k] = own.sums()[k];
-      record_.analytic_bias_sums[k] = analytic.sums()[k];
+    const auto &own = Controller::bias().learnt(), &analytic = Controller::analytic_bias().learnt();
+    for (std::size_t k = 0; k < own.sums.size(); ++k) {
+      record_.bias_sums[k] = own.sums[k];
+      record_.analytic_bias_sums[k] = analytic.sums[k];
     }
-    copy(analytic.across_m_s2(), record_.bias_across_m_s2);
-    for (int i = 0; i < 2; ++i) record_.bias_across_rate_m_s3[i] = analytic.across_rate_m_s3()[i];
-    record_.bias_noise = own.noise().roll_pitch;
-    record_.analytic_bias_noise = analytic.noise().roll_pitch;
-    record_.bias_across_noise_m_s2 = analytic.noise().across_m_s2;
-    record_.bias_waited_s = own.waited_s();
-    record_.analytic_bias_waited_s = analytic.waited_s();
-    record_.bias_status = static_cast<std::uint8_t>(own.status());
-    record_.analytic_bias_status = static_cast<std::uint8_t>(analytic.status());
+    copy(analytic.across_m_s2, record_.bias_across_m_s2);
+    for (int i = 0; i < 2; ++i) record_.bias_across_rate_m_s3[i] = analytic.across_rate_m_s3[i];
+    record_.bias_noise = own.roll_pitch_noise;
+    record_.analytic_bias_noise = analytic.roll_pitch_noise;
+    record_.bias_across_noise_m_s2 = analytic.across_noise_m_s2;
+    record_.bias_waited_s = own.waited_s;
+    record_.analytic_bias_waited_s = analytic.waited_s;
+    record_.bias_status = static_cast<std::uint8_t>(own.status);
+    record_.analytic_bias_status = static_cast<std::uint8_t>(analytic.status);
     record_.reaction = static_cast<std::uint8_t>(report.reaction);
     record_.status = static_cast<std::uint8_t>(report.status);
     record_.cause = static_cast<std::uint8_t>(report.cause);

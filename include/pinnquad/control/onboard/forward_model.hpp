@@ -56,21 +56,19 @@ Terms<Scalar> terms_of(std::size_t k, const SumMotion<Scalar>& motion, Scalar to
   }
 }
 
-}  // namespace detail
-
 /// a = theta . x, for thrust fractions behind a lag.
 template <class Scalar>
 struct ForwardSum {
-  detail::Terms<Scalar> theta{};
-  detail::LagPlace<Scalar> lag{};
+  Terms<Scalar> theta{};
+  LagPlace<Scalar> lag{};
 
   /// Acceleration for each unit of the sum, m/s^2 (thrust) or rad/s^2.
-  Scalar slope() const noexcept { return theta[detail::own_term]; }
+  Scalar slope() const noexcept { return theta[own_term]; }
   /// The sum that a motion needs, y = (a - the other terms) / slope, where it rises so fast.
-  Scalar needed(std::size_t k, const detail::SumMotion<Scalar>& motion, Scalar total, Scalar rise_1_s) const noexcept {
-    const detail::Terms<Scalar> x = detail::terms_of(k, motion, total, {Scalar(0), rise_1_s});
+  Scalar needed(std::size_t k, const SumMotion<Scalar>& motion, Scalar total, Scalar rise_1_s) const noexcept {
+    const Terms<Scalar> x = terms_of(k, motion, total, {Scalar(0), rise_1_s});
     Scalar own = motion.accelerations[k];
-    for (std::size_t i = 0; i < detail::own_term; ++i) own -= theta[i] * x[i];
+    for (std::size_t i = 0; i < own_term; ++i) own -= theta[i] * x[i];
     return own / slope();
   }
 };
@@ -78,10 +76,12 @@ struct ForwardSum {
 template <class Scalar>
 using ForwardModel = std::array<ForwardSum<Scalar>, 4>;
 
+}  // namespace detail
+
 /// The model of an airframe: rotors of equal strength around a centre of gravity in their middle.
 template <class Scalar>
-ForwardModel<Scalar> forward_model(const Airframe<Scalar>& airframe) noexcept {
-  ForwardModel<Scalar> model{};
+detail::ForwardModel<Scalar> forward_model(const Airframe<Scalar>& airframe) noexcept {
+  detail::ForwardModel<Scalar> model{};
   const AllocationMatrix<Scalar> matrix = allocation(airframe);
   const auto& j = airframe.inertia_kg_m2;
   const detail::LagPlace<Scalar> lag = detail::lag_place(airframe.rotor_time_constant_s);

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -28,14 +27,18 @@ namespace pinnquad {
 template <class Scalar>
 class OnboardInverse {
  public:
+  /// Certificate of a signed sum; of thrust, roll, pitch, yaw.
+  using Sum = detail::OnboardSum<Scalar>;
+  using Certificate = std::array<Sum, 4>;
+
   explicit OnboardInverse(const Airframe<Scalar>& start, const OnboardSettings<Scalar>& settings = {}) noexcept
       : start_(start),
         settings_(settings),
         regression_(settings.regression, settings.period_us),
-        motion_(FlownMotionSettings<Scalar>{settings.period_us, Scalar(0), Scalar(0)}),
+        motion_(settings.period_us),
         bank_(settings.period_us, settings.delay_s),
         bias_(start, settings.bias) {
-    const ForwardModel<Scalar> model = forward_model(start);
+    const detail::ForwardModel<Scalar> model = forward_model(start);
     for (std::size_t k = 0; k < 4; ++k) {
       flown_[k].forward = before_[k].forward = model[k];
       start_terms_[k] = {model[k].theta[2], model[k].slope()};
@@ -118,18 +121,18 @@ class OnboardInverse {
   }
 
   /// The sums that fly now, at any tick.
-  const OnboardCertificate<Scalar>& certificate() const noexcept { return flown_; }
+  const Certificate& certificate() const noexcept { return flown_; }
   /// Their model; inverted (affine_inverse()) it answers, with sines and bias beside it.
-  ForwardModel<Scalar> forward() const noexcept {
+  detail::ForwardModel<Scalar> forward() const noexcept {
     return {flown_[0].forward, flown_[1].forward, flown_[2].forward, flown_[3].forward};
   }
   /// The motion of the last row.
   const MotionInputs<Scalar>& motion() const noexcept { return motion_.motion(); }
   /// The sums that were proposed last, whether they will fly or not.
-  const OnboardCertificate<Scalar>& candidate() const noexcept { return candidate_; }
+  const Certificate& candidate() const noexcept { return candidate_; }
   const OnboardSettings<Scalar>& settings() const noexcept { return settings_; }
   const detail::LateralDrag<Scalar>& drag() const noexcept { return drag_; }
-  const MotionBias<Scalar>& bias() const noexcept { return bias_; }
+  const detail::MotionBias<Scalar>& bias() const noexcept { return bias_; }
   std::uint32_t rows() const noexcept { return rows_; }  ///< since the start
   /// The start with the slopes that fly, for limits and desaturation: thrust by coefficient, torques by inertia.
   Airframe<Scalar> airframe() const noexcept {
@@ -144,6 +147,7 @@ class OnboardInverse {
   }
 
  private:
+  using Motion = detail::SumMotion<Scalar>;
   static constexpr std::uint32_t rows_to_settle = 6;
 
   /// The forward residuals of sums, past a bias of their own, as the one that flies has.
@@ -166,12 +170,10 @@ class OnboardInverse {
     const bool unknown = !flown_[k].proven && !frozen_;
     return excited_ ? Scalar(1) : (unknown ? settings_.excitation.share_unknown : Scalar(0));
   }
-  void listen(std::uint64_t now_us, const detail::SumMotion<Scalar>& motion) noexcept {
+  void listen(std::uint64_t now_us, const Motion& motion) noexcept {
     std::array<Scalar, 4> amplitudes{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Scalar slope = flown_[k].forward.slope();
-      amplitudes[k] = detail::sine_amplitudes(settings_.excitation, k, slope, sine_share(k)).fast;
-    }
+    for (std::size_t k = 0; k < 4; ++k)
+      amplitudes[k] = detail::sine_amplitudes(settings_.excitation, k, flown_[k].forward.slope(), sine_share(k)).fast;
     if (!begun_ || now_us - begun_us_ < settings_.period_us) return;
     const Scalar t_s = detail::sine_time_s<Scalar>(now_us - begun_us_ - settings_.period_us);  // a row's middle
     const detail::AskedSines<Scalar> asked = detail::asked_sines(t_s, settings_.excitation, amplitudes);
@@ -194,7 +196,7 @@ class OnboardInverse {
   /// Teaches bias and regression; false: no row. Out of line: its motion is off the stack as a candidate is made.
   PINNQUAD_NOINLINE bool taught(std::uint64_t now_us, bool is_row) noexcept {
     const MotionInputs<Scalar>& flown = motion_.motion();
-    const detail::SumMotion<Scalar> motion = detail::sum_motion(flown);
+    const Motion motion = detail::sum_motion(flown);
     SignedSums<Scalar> residual{};
     for (std::size_t k = 0; k < 4; ++k) residual[k] = lacking(k, flown_[k].forward, motion);
     // desaturation gives yaw up, and its sum swings: by the start's slope a bias of such swings is none
@@ -227,7 +229,7 @@ class OnboardInverse {
   }
 
   /// The sum that the rotors followed, less the one that the model says.
-  Scalar lacking(std::size_t k, const ForwardSum<Scalar>& sum, const detail::SumMotion<Scalar>& motion) const noexcept {
+  Scalar lacking(std::size_t k, const detail::ForwardSum<Scalar>& sum, const Motion& motion) const noexcept {
     const detail::Followed<Scalar> own = bank_.at(k, sum.lag);
     return own.sum - sum.needed(k, motion, bank_.at(0, sum.lag).sum, own.rise_1_s);
   }
@@ -246,12 +248,12 @@ class OnboardInverse {
     bias_.reset();
     bias_age_s_ = Scalar(0);
     judging_ = false;
-    for (OnboardSum<Scalar>& sum : flown_) sum.refused_last = OnboardRule::still;
+    for (Sum& sum : flown_) sum.refused_last = OnboardRule::still;
     return false;
   }
 
   /// Forward residuals of what flies, of what flew before, and of the candidate.
-  void judge(const detail::SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
+  void judge(const Motion& motion, const SignedSums<Scalar>& residual) noexcept {
     const bool settled = judging_ && judged_ >= rows_to_settle;
     for (std::size_t k = 0; k < 4; ++k) {
       add(own_, k, residual[k], flown_[k].forward.slope(), settled);
@@ -282,11 +284,11 @@ class OnboardInverse {
         regression_.best_lag(detail::lag_place(start_.rotor_time_constant_s).seconds());
     judging_ = false;
     for (std::size_t k = 0; k < 4; ++k) {
-      ForwardSum<Scalar> start{};
+      detail::ForwardSum<Scalar> start{};
       start.theta[2] = start_terms_[k].second;
       start.theta[detail::own_term] = start_terms_[k].slope;
       const detail::SumSolution<Scalar> solution = regression_.solution(k, lag, start);
-      OnboardSum<Scalar>& sum = candidate_[k];
+      Sum& sum = candidate_[k];
       sum.forward = {solution.theta, lag};
       sum.half_width = detail::half_width(k, solution);
       sum.terms_bound = detail::terms_bound(k, sum.forward, start);
@@ -299,7 +301,7 @@ class OnboardInverse {
     const auto late = [this](std::size_t k) noexcept { return candidate_[k].refused_last == OnboardRule::lag_unknown; };
     const bool any_late = late(1) || late(2);  // samples that come late are of all sums
     for (std::size_t k = 0; k < 4; ++k) {
-      OnboardSum<Scalar>& sum = candidate_[k];
+      Sum& sum = candidate_[k];
       if (any_late && sum.refused_last == OnboardRule::none) sum.refused_last = OnboardRule::lag_unknown;
       sum.proven = sum.refused_last == OnboardRule::none;
       judging_ = judging_ || sum.proven;
@@ -313,25 +315,25 @@ class OnboardInverse {
   void decide() noexcept {
     const auto rows = Scalar(judged_ - rows_to_settle);
     for (std::size_t k = 0; k < 4; ++k) {
-      OnboardSum<Scalar>& sum = candidate_[k];
+      Sum& sum = candidate_[k];
       if (!sum.proven) continue;
       sum.gain = shadow_.square[k] / own_.square[k];
       flown_[k].refused_last = verdict(k, sum, shadow_.square[k] / rows);
       if (flown_[k].refused_last == OnboardRule::none) swap(k, sum, shadow_.bias[k]);
     }
   }
-  static bool elsewhere(const OnboardSum<Scalar>& sum, const OnboardSum<Scalar>& other) noexcept {
+  static bool elsewhere(const Sum& sum, const Sum& other) noexcept {
     return magnitude(sum.forward.slope() - other.forward.slope()) > sum.half_width;
   }
   /// An interval that is narrower, or elsewhere, is worth a swap by itself, if nothing is lost.
-  OnboardRule verdict(std::size_t k, const OnboardSum<Scalar>& sum, Scalar square) const noexcept {
-    const OnboardSum<Scalar>& flown = flown_[k];
+  OnboardRule verdict(std::size_t k, const Sum& sum, Scalar square) const noexcept {
+    const Sum& flown = flown_[k];
     if (square > settings_.proof.most_contradiction * sum.left_square) return OnboardRule::contradicted;
     const bool tighter = !flown.proven || sum.half_width < flown.half_width;
     if (!(sum.gain < (elsewhere(sum, flown) || tighter ? Scalar(1.005) : Scalar(0.98)))) return OnboardRule::no_gain;
     return frozen_ ? OnboardRule::frozen : OnboardRule::none;
   }
-  void swap(std::size_t k, const OnboardSum<Scalar>& sum, Scalar bias) noexcept {
+  void swap(std::size_t k, const Sum& sum, Scalar bias) noexcept {
     if (elsewhere(sum, flown_[k])) {  // a finer one of the same slope is no other model
       before_[k] = flown_[k];
       past_bias_[k] = own_.bias[k];
@@ -341,14 +343,12 @@ class OnboardInverse {
     past_square_[k] = watched_square_[k] = first_square_[k] = Scalar(0);
     watched_rows_[k] = 0;
     own_.bias[k] = bias;
-    SignedSums<Scalar> biases = bias_.sums();
-    biases[k] = bias;
-    bias_.resume(biases, bias_.across_m_s2(), bias_.across_rate_m_s3(), bias_.noise(), Scalar(0), bias_.status());
+    bias_.resume(k, bias);
   }
 
   /// A proven sum whose residual over two seconds is twice that of its first two flies no longer where the one before
   /// it has less.
-  void watch(const detail::SumMotion<Scalar>& motion, const SignedSums<Scalar>& residual) noexcept {
+  void watch(const Motion& motion, const SignedSums<Scalar>& residual) noexcept {
     for (std::size_t k = 0; k < 4; ++k) {
       if (!flown_[k].proven) continue;
       const Scalar said = lacking(k, before_[k].forward, motion) - past_bias_[k];
@@ -360,7 +360,7 @@ class OnboardInverse {
       if (!(first_square_[k] > Scalar(0))) first_square_[k] = watched_square_[k];
       const bool doubled = watched_square_[k] > Scalar(4) * first_square_[k];
       if (doubled && past_square_[k] < Scalar(0.8) * watched_square_[k] && !frozen_) {
-        const OnboardSum<Scalar> again = before_[k];
+        const Sum again = before_[k];
         swap(k, again, past_bias_[k]);
         flown_[k].refused_last = OnboardRule::went_back;
         judging_ = false;
@@ -379,16 +379,16 @@ class OnboardInverse {
   std::array<StartTerms, 4> start_terms_{};
   OnboardSettings<Scalar> settings_;
   detail::SumRegression<Scalar> regression_;
-  OnboardCertificate<Scalar> flown_{}, candidate_{}, before_{};
+  Certificate flown_{}, candidate_{}, before_{};
   Shadow own_{}, shadow_{};
   SignedSums<Scalar> past_bias_{};                                           ///< of the sum that flew before
   std::array<Scalar, 4> past_square_{}, watched_square_{}, first_square_{};  ///< over two seconds; the first two
   std::array<std::uint32_t, 4> watched_rows_{};
   detail::SineAnswer<Scalar> answer_{}, second_{};  ///< of the rows remembered, and of the last second
   detail::LateralDrag<Scalar> drag_{};
-  FlownMotion<Scalar, RotorFollower<Scalar, 0>> motion_;
+  FlownMotion<Scalar, detail::RotorFollower<Scalar, 0>> motion_;
   detail::LagBank<Scalar> bank_;
-  MotionBias<Scalar> bias_;
+  detail::MotionBias<Scalar> bias_;
   detail::TickClock<Scalar> clock_;
   std::uint64_t begun_us_ = 0, number_ = 0;  ///< of the period
   Scalar bias_age_s_{0};                     ///< time of the rows that it has learnt from

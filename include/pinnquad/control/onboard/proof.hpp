@@ -52,6 +52,8 @@ constexpr const char* to_string(OnboardRule rule) noexcept {
   return "unknown rule";
 }
 
+namespace detail {
+
 /// Certificate of a signed sum as it flies.
 template <class Scalar>
 struct OnboardSum {
@@ -64,10 +66,6 @@ struct OnboardSum {
   Scalar gain{1};                ///< mean square of its forward residual over that of the sum that flew before
   std::uint32_t proven_row = 0;  ///< the row after which it has flown
 };
-template <class Scalar>
-using OnboardCertificate = std::array<OnboardSum<Scalar>, 4>;
-
-namespace detail {
 
 /// Error of a model of so few terms, as a share of the slope: rotors that differ, a curve that is another one, noise
 /// that feedback has answered. It does not fall with the rows, as the standard error does.

@@ -353,13 +353,4 @@ PINNQUAD_BODY std::optional<Implausible> find_acceleration_mistake(const Flight&
 }
 
 }  // namespace detail
-
-PINNQUAD_BODY std::optional<detail::Implausible> find_turning_mistake(const Flight& flight) {
-  return detail::find_turning_mistake(flight, detail::attitudes_of(flight));
-}
-
-PINNQUAD_BODY std::optional<detail::Implausible> find_acceleration_mistake(const Flight& flight) {
-  return detail::find_acceleration_mistake(flight, detail::attitudes_of(flight));
-}
-
 }  // namespace pinnquad

@@ -8,7 +8,7 @@ namespace pinnquad {
 namespace detail {
 
 /// Throws std::invalid_argument, in one line, for shares that are no shares.
-PINNQUAD_BODY void require_shares(const Split<double>& shares) {
+PINNQUAD_BODY void require_shares(const detail::Split<double>& shares) {
   constexpr double sum_tolerance = 1e-9;  // decimal shares such as 0.7 + 0.2 + 0.1 miss 1 by a few ulp
   const auto is_share = [](double share) { return share >= 0 && share <= 1; };
   if (!is_share(shares.train) || !is_share(shares.validation) || !is_share(shares.test) ||
@@ -21,14 +21,14 @@ PINNQUAD_BODY void require_shares(const Split<double>& shares) {
 
 }  // namespace detail
 
-PINNQUAD_BODY Split<IndexRange> split_contiguous(std::size_t rows, const Split<double>& shares) {
+PINNQUAD_BODY detail::Split<IndexRange> split_contiguous(std::size_t rows, const detail::Split<double>& shares) {
   detail::require_shares(shares);
   const auto border = [rows](double share) {
     const double exact = static_cast<double>(rows) * share;
     const auto rounded = static_cast<std::size_t>(std::floor(exact + 0.5));
     return rounded < rows ? rounded : rows;
   };
-  Split<IndexRange> split;
+  detail::Split<IndexRange> split;
   split.train = {0, border(shares.train)};
   split.validation = {split.train.end, shares.test > 0 ? border(shares.train + shares.validation) : rows};
   split.test = {split.validation.end, rows};
@@ -46,10 +46,10 @@ PINNQUAD_BODY Split<IndexRange> split_contiguous(std::size_t rows, const Split<d
   return split;
 }
 
-PINNQUAD_BODY RowSplit split_each_flight(const Dataset& dataset, const Split<double>& shares) {
+PINNQUAD_BODY RowSplit split_each_flight(const Dataset& dataset, const detail::Split<double>& shares) {
   RowSplit split;
   for (const Flight& flight : dataset.flights()) {
-    const Split<IndexRange> blocks = split_contiguous(flight.size(), shares);
+    const detail::Split<IndexRange> blocks = split_contiguous(flight.size(), shares);
     split.train.add(flight, blocks.train);
     split.validation.add(flight, blocks.validation);
     split.test.add(flight, blocks.test);
@@ -61,7 +61,7 @@ namespace detail {
 
 /// Groups of flights that are not empty, each group whole: the first ones train, the next validate, the last test. The
 /// borders are where the shares of the rows are met best, so that each block with a share above 0 has a group.
-PINNQUAD_BODY RowSplit split_groups(const Dataset& dataset, bool by_trajectory, const Split<double>& shares) {
+PINNQUAD_BODY RowSplit split_groups(const Dataset& dataset, bool by_trajectory, const detail::Split<double>& shares) {
   require_shares(shares);
   std::vector<std::vector<const Flight*>> groups;
   for (const Flight& flight : dataset.flights()) {
@@ -114,11 +114,11 @@ PINNQUAD_BODY RowSplit split_groups(const Dataset& dataset, bool by_trajectory, 
 
 }  // namespace detail
 
-PINNQUAD_BODY RowSplit split_by_flight(const Dataset& dataset, const Split<double>& shares) {
+PINNQUAD_BODY RowSplit split_by_flight(const Dataset& dataset, const detail::Split<double>& shares) {
   return detail::split_groups(dataset, false, shares);
 }
 
-PINNQUAD_BODY RowSplit split_by_trajectory(const Dataset& dataset, const Split<double>& shares) {
+PINNQUAD_BODY RowSplit split_by_trajectory(const Dataset& dataset, const detail::Split<double>& shares) {
   return detail::split_groups(dataset, true, shares);
 }
 

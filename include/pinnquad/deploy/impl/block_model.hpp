@@ -42,8 +42,8 @@ void BlockModel::take_derivatives(const RunTimeModel<Scalar>& model) {
 template <class Scalar>
 void BlockModel::open_as() {
   auto model = std::make_unique<RunTimeModel<Scalar>>();
-  BlockFault fault;
-  if (RunTimeModel<Scalar>::open(data(), length_, *model, fault) != Status::ok) {
+  if (RunTimeModel<Scalar>::open(data(), length_, *model) != Status::ok) {
+    const auto& fault = model->fault();
     refuse(fault.expected, *fault.found == 0 ? number_text(fault.number) : fault.found);
   }
   take_derivatives(*model);
@@ -54,7 +54,7 @@ void BlockModel::open_as() {
 }
 
 PINNQUAD_BODY void BlockModel::open() {
-  using Header = ModelBlockHeader;
+  using Header = detail::ModelBlockHeader;
   constexpr std::size_t least = Header::size + Header::checksum_size;
   if (length_ < least) {
     refuse("a model block, " + std::to_string(least) + " bytes or more", std::to_string(length_) + " bytes");
@@ -69,8 +69,8 @@ PINNQUAD_BODY void BlockModel::open() {
 }
 
 PINNQUAD_BODY std::uint32_t BlockModel::checksum() const noexcept {
-  return detail::read_u32(data() + detail::read_u32(data() + ModelBlockHeader::length) -
-                          ModelBlockHeader::checksum_size);
+  return detail::read_u32(data() + detail::read_u32(data() + detail::ModelBlockHeader::length) -
+                          detail::ModelBlockHeader::checksum_size);
 }
 
 PINNQUAD_BODY std::string BlockModel::provenance(const char* word) const {
@@ -261,7 +261,7 @@ PINNQUAD_BODY void BlockModel::require_words() const {
   };
   require_whole("seed", StatedNumber::seed);
   require_whole("epochs", StatedNumber::epochs);
-  ModelFacts facts = with([](const auto& model) -> ModelFacts { return model.records(); });
+  detail::ModelFacts facts = with([](const auto& model) -> detail::ModelFacts { return model.records(); });
   facts.has_r_squared = true;
   for (double* figure : {&facts.test_r_squared, &facts.linear_regression_r_squared}) {
     const bool test = figure == &facts.test_r_squared;

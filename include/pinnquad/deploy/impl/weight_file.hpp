@@ -2,7 +2,7 @@
 // Bodies of weight_file.hpp.
 #pragma once
 
-#include "pinnquad/deploy/block_writer.hpp"
+#include "pinnquad/deploy/impl/block_writer.hpp"
 #include "pinnquad/deploy/weight_file.hpp"
 
 namespace pinnquad {

@@ -12,12 +12,12 @@ PINNQUAD_BODY std::vector<Commands<double>> with_past_bias(const RowSet& rows,
                                                            const BiasSettings<double>& settings, double delay_s) {
   std::vector<Commands<double>> result = predictions;
   detail::each_past_bias(rows, predictions, airframe, settings, delay_s,
-                         [&](std::size_t row, const MotionBias<double>& bias) { bias.add_to(result[row]); });
+                         [&](std::size_t row, const auto& bias) { bias.add_to(result[row]); });
   return result;
 }
 
 PINNQUAD_BODY BiasTrial try_biases(const RowSet& rows, const std::vector<Commands<double>>& predictions,
-                                   const Airframe<double>& airframe, const PastRows& past) {
+                                   const Airframe<double>& airframe, const BiasTrial::Past& past) {
   constexpr double rounding = 1e-9;  // 2 (0.06 + 0.04 + 0.05) is more than 0.3
   BiasTrial trial;
   for (std::size_t c = 0; c < BiasTrial::candidates; ++c) {
@@ -27,20 +27,18 @@ PINNQUAD_BODY BiasTrial try_biases(const RowSet& rows, const std::vector<Command
       continue;
     }
     const auto settings = detail::bias_settings_of<double>(SignedSums<double>{time_s, time_s, time_s, time_s});
-    detail::each_past_bias(rows, predictions, airframe, settings, past.delay_s,
-                           [&](std::size_t row, const MotionBias<double>& bias) {
-                             const SignedSums<double> residual = bias.residual(rows[row].commands, predictions[row]);
-                             if (!all_finite(residual)) return;
-                             trial.rows += c == 0 ? 1 : 0;
-                             for (std::size_t k = 0; k < 4; ++k)
-                               trial.absolute[c][k] += std::abs(residual[k] - bias.sums()[k]);
-                           });
+    detail::each_past_bias(rows, predictions, airframe, settings, past.delay_s, [&](std::size_t row, const auto& bias) {
+      const SignedSums<double> residual = bias.residual(rows[row].commands, predictions[row]);
+      if (!all_finite(residual)) return;
+      trial.rows += c == 0 ? 1 : 0;
+      for (std::size_t k = 0; k < 4; ++k) trial.absolute[c][k] += std::abs(residual[k] - bias.sums()[k]);
+    });
   }
   return trial;
 }
 
 PINNQUAD_BODY SignedSums<double> chosen_bias_time_constants_s(const AskedModel& model, const RowSet& rows) {
-  const PastRows past{flown_motion_age_s, least_bias_time_constant_s(model.airframe.rotor_time_constant_s)};
+  const BiasTrial::Past past{flown_motion_age_s, least_bias_time_constant_s(model.airframe.rotor_time_constant_s)};
   return try_biases(rows, predicted_commands(model, rows), model.airframe, past).best_s();
 }
 

@@ -35,7 +35,7 @@ PINNQUAD_BODY std::optional<ImplausibleNumber> implausible_effectiveness(const I
                                                "yaw_effectiveness_rad_s2"};
   constexpr std::array<const char*, 3> words = {"roll effectiveness", "pitch effectiveness", "yaw effectiveness"};
   const Estimate& turn = found.effectiveness_rad_s2[axis];
-  const PlausibleRange both = plausible::turn_rad_s2[axis], one = {both.least / 2, both.most / 2};
+  const detail::PlausibleRange both = plausible::turn_rad_s2[axis], one = {both.least / 2, both.most / 2};
   if (!detail::is_taken(turn) || one.holds(turn.value)) return {};
   return ImplausibleNumber{keys[axis], words[axis], "rad/s^2", turn.value, one};
 }
@@ -43,7 +43,7 @@ PINNQUAD_BODY std::optional<ImplausibleNumber> implausible_effectiveness(const I
 PINNQUAD_BODY std::optional<ImplausibleNumber> implausible_number(const Identification& found,
                                                                   const Airframe<double>& like) {
   if (const auto lag = implausible_lag(found)) return lag;
-  const PlausibleRange delays = plausible::delay_s;
+  const detail::PlausibleRange delays = plausible::delay_s;
   if (found.delay_s.low() > delays.most || found.delay_s.high() < delays.least) {
     return ImplausibleNumber{"delay_s", "delay before the rotor lag", "s", found.delay_s.value, delays};
   }

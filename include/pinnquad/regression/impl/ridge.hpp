@@ -76,6 +76,52 @@ PINNQUAD_BODY RegressionSums total(const std::vector<RegressionSums>& groups) {
   return all;
 }
 
+/// The normal equations A X = B of the features that are taken; `columns` are these.
+struct RidgeSystem {
+  std::vector<int> columns;
+  Eigen::MatrixXd a, b;
+  Eigen::VectorXd mean;
+
+  RidgeSystem(const RegressionSums& sums, double penalty, const std::vector<bool>& taken) {
+    if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
+    if (!(penalty >= 0) || penalty > 1e12) {
+      throw std::invalid_argument("ridge: expected a penalty from 0, found " + std::to_string(penalty));
+    }
+    for (int i = 0; i < sums.inputs(); ++i) {
+      if (taken.empty() || taken[std::size_t(i)]) columns.push_back(i);
+    }
+    const Eigen::MatrixXd covariances = sums.covariances();
+    mean = sums.means();
+    const auto size = static_cast<Eigen::Index>(columns.size());
+    a.resize(size, size);
+    b.resize(size, sums.outputs());
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const int row = columns[std::size_t(i)];
+      for (Eigen::Index j = 0; j < size; ++j) a(i, j) = covariances(row, columns[std::size_t(j)]);
+      a(i, i) += penalty;
+      for (int k = 0; k < sums.outputs(); ++k) b(i, k) = covariances(row, sums.inputs() + k);
+    }
+  }
+
+  /// The map of a solution X. A feature that is not taken has the weight 0.
+  AffineMap map(const RegressionSums& sums, const Eigen::MatrixXd& solution) const {
+    AffineMap map;
+    map.inputs = sums.inputs();
+    map.outputs = sums.outputs();
+    map.weights.assign(std::size_t(map.inputs) * std::size_t(map.outputs), 0.0);
+    for (int k = 0; k < map.outputs; ++k) {
+      double at_mean = 0;
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        const double weight = solution(Eigen::Index(i), k);
+        map.weights[std::size_t(k * map.inputs + columns[i])] = weight;
+        at_mean += weight * mean[columns[i]];
+      }
+      map.intercept.push_back(mean[map.inputs + k] - at_mean);
+    }
+    return map;
+  }
+};
+
 }  // namespace detail
 
 PINNQUAD_BODY AffineMap fit_ridge(const RegressionSums& sums, double penalty, const std::vector<bool>& taken) {
@@ -245,45 +291,4 @@ PINNQUAD_BODY RegressionSums RegressionSums::of_column(int from) const {
   return one;
 }
 
-namespace detail {
-
-PINNQUAD_BODY RidgeSystem::RidgeSystem(const RegressionSums& sums, double penalty, const std::vector<bool>& taken) {
-  if (!(sums.rows() > 0)) throw std::invalid_argument("ridge: expected at least one row, found none");
-  if (!(penalty >= 0) || penalty > 1e12) {
-    throw std::invalid_argument("ridge: expected a penalty from 0, found " + std::to_string(penalty));
-  }
-  for (int i = 0; i < sums.inputs(); ++i) {
-    if (taken.empty() || taken[std::size_t(i)]) columns.push_back(i);
-  }
-  const Eigen::MatrixXd covariances = sums.covariances();
-  mean = sums.means();
-  const auto size = static_cast<Eigen::Index>(columns.size());
-  a.resize(size, size);
-  b.resize(size, sums.outputs());
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const int row = columns[std::size_t(i)];
-    for (Eigen::Index j = 0; j < size; ++j) a(i, j) = covariances(row, columns[std::size_t(j)]);
-    a(i, i) += penalty;
-    for (int k = 0; k < sums.outputs(); ++k) b(i, k) = covariances(row, sums.inputs() + k);
-  }
-}
-
-PINNQUAD_BODY AffineMap RidgeSystem::map(const RegressionSums& sums, const Eigen::MatrixXd& solution) const {
-  AffineMap map;
-  map.inputs = sums.inputs();
-  map.outputs = sums.outputs();
-  map.weights.assign(std::size_t(map.inputs) * std::size_t(map.outputs), 0.0);
-  for (int k = 0; k < map.outputs; ++k) {
-    double at_mean = 0;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const double weight = solution(Eigen::Index(i), k);
-      map.weights[std::size_t(k * map.inputs + columns[i])] = weight;
-      at_mean += weight * mean[columns[i]];
-    }
-    map.intercept.push_back(mean[map.inputs + k] - at_mean);
-  }
-  return map;
-}
-
-}  // namespace detail
 }  // namespace pinnquad
