@@ -15,15 +15,18 @@
 #include "command_line/console.hpp"
 #include "command_line/file_roles.hpp"
 #include "command_line/in_columns.hpp"
+#include "command_line/in_words.hpp"
 #include "command_line/options.hpp"
-#include "convert/begun_features.hpp"
 #include "convert/convert_network.hpp"
 #include "convert/python_answer.hpp"
 #include "model/given_model.hpp"
 #include "model/model_evidence.hpp"
+#include "pinnquad/data/row_set.hpp"
 #include "pinnquad/deploy/block_model.hpp"
+#include "pinnquad/features/motion_parts.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/logs/read_dataset.hpp"
+#include "pinnquad/training/training_data.hpp"
 
 namespace {
 
@@ -71,6 +74,47 @@ void convert_model(const ConvertOptions& options) {
               bytes.size(), model.features().size());
 }
 
+template <class Features>
+std::string features_text(const RowSet& rows) {
+  std::string text;
+  const auto columns = pinnquad::detail::feature_statistics<Features>(rows);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto& column = columns[i];
+    text += programs::in_words(
+        "  { name = \"%s\", unit = \"%s\", lower = %.4g, upper = %.4g },  # mean = %.6g, scale = %.6g\n",
+        Features::names[i], Features::units[i], column.lowest - column.margin(), column.highest + column.margin(),
+        column.mean, column.scale());
+  }
+  return text;
+}
+
+/// A features file (docs/convert.md) to begin with, for a network that was trained on these flights: the features of
+/// `set` ("paper", "physics" or "inverse") with the range that training would take, and as comments mean and scale.
+/// Throws std::invalid_argument, one line, for another set and for flights without a row.
+std::string begun_features(const Dataset& flights, const std::string& set) {
+  const RowSet rows = all_rows(flights.flights());
+  if (rows.size() == 0) throw std::invalid_argument("a features file begins with the rows of a flight; there are none");
+  std::string features;
+  if (set == "paper") {
+    features = features_text<PaperFeatures>(rows);
+  } else if (set == "physics") {
+    features = features_text<PhysicsFeatures>(rows);
+  } else if (set == "inverse") {
+    features = features_text<InverseFeatures>(rows);
+  } else {
+    throw std::invalid_argument("--inputs " + set + ": paper, physics or inverse was expected");
+  }
+  return "# The numbers that the network reads, in its order. One that reads (value - mean) / scale says so in the "
+         "braces.\n"
+         "feature = [\n" +
+         features +
+         "]\n"
+         "# Of safetensors alone, after each Linear but the last: activations = \"relu\"\n"
+         "# Where its outputs were standardised too: [output] with mean and scale, four numbers each\n"
+         "[airframe]\n"
+         "name = \"paper_quadrotor\"  # or file = \"mine.toml\", beside this file\n";
+}
+
 /// Of flights a features file to begin with.
 void begin_features(const ConvertOptions& options) {
   if (std::filesystem::path(options.out).extension() != ".toml") {
@@ -79,7 +123,7 @@ void begin_features(const ConvertOptions& options) {
   programs::FileRoles roles;
   roles.reads("source", options.source);
   roles.writes("--out", options.out);
-  const std::string text = programs::begun_features(logs::read_source({options.source}).flights, options.inputs);
+  const std::string text = begun_features(logs::read_source({options.source}).flights, options.inputs);
   AtomicFile file(options.out);
   file.stream() << text;
   file.commit();

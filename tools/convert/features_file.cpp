@@ -20,7 +20,6 @@ using namespace pinnquad;
 using logs::TomlTable;
 
 constexpr const char* key_of_file = "a key of a features file (docs/convert.md)";
-constexpr const char* one_line = "a text on one line";
 
 /// Units that a file may say in place of the library's.
 struct OtherUnit {
@@ -34,15 +33,6 @@ constexpr std::array<OtherUnit, 4> other_units = {{{"deg", "rad", degrees},
                                                    {"deg/s^2", "rad/s^2", degrees},
                                                    {"g", "m/s^2", 1 / standard_gravity_m_s2<double>}}};
 
-std::string required_line(TomlTable& table, const char* key) {
-  const std::string text = table.text(key, one_line);
-  if (text.empty() || text != printable(text)) {
-    const toml::node& node = table.required(key, one_line);
-    table.refuse(node, one_line, logs::described(node));
-  }
-  return text;
-}
-
 /// The unit of a feature of the library; empty for any other name.
 std::string own_unit(const std::string& name) {
   using Named = NamedFeaturesWithAltitude;
@@ -55,17 +45,17 @@ std::string own_unit(const std::string& name) {
 ForeignFeature feature_of(const std::string& path, const toml::table& table) {
   TomlTable keys(path, table, "a key of a feature: name, unit, lower, upper, mean, scale");
   ForeignFeature feature{};
-  feature.name = required_line(keys, "name");
-  const toml::node& name = keys.required("name", one_line);
+  feature.name = keys.line("name");
+  const toml::node& name = keys.required("name", "");
   if (feature.name.find('[') != std::string::npos) {
     keys.refuse(name, "a feature of the present instant", "\"" + feature.name + "\", of another instant of a window");
   }
-  feature.unit = required_line(keys, "unit");
+  feature.unit = keys.line("unit");
   feature.unit_factor = 1;
   const std::string own = own_unit(feature.name);
   feature.is_column = own.empty();
   if (!own.empty() && feature.unit != own) {
-    const toml::node& unit = keys.required("unit", one_line);
+    const toml::node& unit = keys.required("unit", "");
     const auto* other = std::find_if(other_units.begin(), other_units.end(),
                                      [&](const OtherUnit& one) { return one.own == own && one.said == feature.unit; });
     if (other == other_units.end()) {
@@ -196,11 +186,11 @@ void take_airframe(const std::string& path, TomlTable& root, ForeignMeaning& mea
   table.require_no_more();
   if ((name == nullptr) == (file == nullptr)) table.refuse(node, "`name` or `file`", name ? "both" : "none of them");
   if (file) {
-    const std::filesystem::path of_file = required_line(table, "file");
+    const std::filesystem::path of_file = table.line("file");
     meaning.airframe = logs::read_airframe_file((std::filesystem::path(path).parent_path() / of_file).string());
     return;
   }
-  const std::string known = required_line(table, "name");
+  const std::string known = table.line("name");
   if (logs::is_airframe_file(known)) table.refuse(*name, "the name of an airframe, or `file`", logs::described(*name));
   try {
     meaning.airframe = logs::chosen_airframe(known);
@@ -244,12 +234,9 @@ ForeignMeaning meaning_of(const toml::table& content, const std::string& path) {
     meaning.layers = texts_of(root, *layers, "the names of the layers in their order, [\"fc1\", \"fc2\"]");
   }
   if (root.optional("commands_are")) {
-    constexpr std::array<const char*, command_meaning_count> words = [] {
-      std::array<const char*, command_meaning_count> all{};
-      for (std::size_t i = 0; i < all.size(); ++i) all[i] = to_string(static_cast<CommandMeaning>(i));
-      return all;
-    }();
-    meaning.command_meaning = static_cast<CommandMeaning>(root.choice("commands_are", words, 0));
+    std::vector<const char*> words;
+    for (std::size_t i = 0; i < command_meaning_count; ++i) words.push_back(to_string(static_cast<CommandMeaning>(i)));
+    meaning.command_meaning = root.choice("commands_are", words, CommandMeaning{});
   }
   meaning.sample_period_s =
       root.number("sample_period_s", {0, longest_clock_s, "a value from 0 to 4"}, meaning.sample_period_s);

@@ -82,14 +82,14 @@ inline constexpr std::array<std::pair<const char*, pinnquad::GroundEffectModel>,
     {"conyers", pinnquad::GroundEffectModel::conyers},
 }};
 
-/// The model of that name. False if there is none.
-inline bool ground_effect_of(const std::string& name, pinnquad::GroundEffectModel& model) {
-  for (const auto& [known, value] : ground_effects) {
-    if (name != known) continue;
-    model = value;
-    return true;
+/// Throws std::invalid_argument, one line, for a name that none has.
+inline pinnquad::GroundEffectModel ground_effect_named(const std::string& name) {
+  std::string names;
+  for (const auto& [known, model] : ground_effects) {
+    if (name == known) return model;
+    add_to_list(names, known);
   }
-  return false;
+  throw std::invalid_argument("no ground effect named '" + name + "'; known: " + names);
 }
 
 inline const char* name_of(pinnquad::GroundEffectModel model) {

@@ -293,10 +293,7 @@ int fly_chosen(const FlyOptions& options) {
   if (!fault.empty()) throw std::invalid_argument(fault);
   require_separate_files(options);
   GroundEffectModel ground_effect = GroundEffectModel::none;
-  if (!options.ground_effect.empty() && !programs::ground_effect_of(options.ground_effect, ground_effect)) {
-    throw std::invalid_argument("no ground effect named '" + options.ground_effect +
-                                "'; known: none, cheeseman-bennett, conyers");
-  }
+  if (!options.ground_effect.empty()) ground_effect = programs::ground_effect_named(options.ground_effect);
   const programs::NamedAirframe airframe = programs::chosen_airframe(options.airframe);
   const programs::NamedFlight& flight = programs::flight_named(options.flight);
   if (options.ground_effect.empty()) ground_effect = flight.ground_effect_of(airframe.value);

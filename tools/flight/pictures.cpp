@@ -14,6 +14,9 @@
 namespace programs {
 namespace {
 
+/// Every n-th row, so that a picture has no more points than the eye.
+std::size_t stride_for(std::size_t rows, std::size_t most) { return rows / most + 1; }
+
 /// An axis of the box: whole steps around the flight, so that a wall stands where its axis says.
 struct Side {
   double least = 0, most = 0, step = 1;
@@ -43,8 +46,8 @@ struct Box {
   void add(Series& series, double east_m, double north_m, double height_m) const {
     constexpr double turn = 0.61, tilt = 1.08;  // rad: about the vertical, and from it
     const double e = east.share(east_m), n = north.share(north_m), h = height.share(height_m);
-    series.x.push_back(e * std::cos(turn) + n * std::sin(turn));
-    series.y.push_back((n * std::cos(turn) - e * std::sin(turn)) * std::cos(tilt) + 0.8 * h * std::sin(tilt));
+    series.add(e * std::cos(turn) + n * std::sin(turn),
+               (n * std::cos(turn) - e * std::sin(turn)) * std::cos(tilt) + 0.8 * h * std::sin(tilt));
   }
   void add(Series& series, const TraceRow& row) const {
     add(series, row.position_m[1], row.position_m[0], row.height_m);
@@ -62,8 +65,7 @@ struct Box {
     const auto line = [&](std::array<double, 3> from, std::array<double, 3> to) {
       add(grid, from[0], from[1], from[2]);
       add(grid, to[0], to[1], to[2]);
-      grid.x.push_back(pinnquad::not_a_number);
-      grid.y.push_back(pinnquad::not_a_number);
+      grid.add_gap();
     };
     const double floor = height.least;
     for (const double e : east.ticks()) {
@@ -111,8 +113,7 @@ Series over_time(const std::string& name, const char* colour, const std::vector<
                  const Get& get) {
   Series series{name, Shape::line, colour, {}, {}, 1.3};
   for (std::size_t i = 0; i < trace.size(); i += stride_for(trace.size(), most)) {
-    series.x.push_back(trace[i].time_s);
-    series.y.push_back(get(trace[i]));
+    series.add(trace[i].time_s, get(trace[i]));
   }
   return series;
 }
@@ -131,14 +132,11 @@ Chart ground_effect_chart(const std::vector<TraceRow>& trace, const pinnquad::Ai
   cheeseman.dashed = true;
   for (int i = 0; i <= points; ++i) {
     const double ratio = first_ratio + (last_ratio - first_ratio) * i / points;
-    cheeseman.x.push_back(ratio);
-    cheeseman.y.push_back(pinnquad::CheesemanBennett{}.thrust_ratio(ratio, airframe));
-    conyers.x.push_back(ratio);
-    conyers.y.push_back(pinnquad::Conyers{}.thrust_ratio(ratio, airframe));
+    cheeseman.add(ratio, pinnquad::CheesemanBennett{}.thrust_ratio(ratio, airframe));
+    conyers.add(ratio, pinnquad::Conyers{}.thrust_ratio(ratio, airframe));
   }
   for (std::size_t i = 0; i < trace.size(); i += stride_for(trace.size(), 350)) {
-    flown.x.push_back(trace[i].height_m / radius_m);
-    flown.y.push_back(trace[i].thrust_ratio);
+    flown.add(trace[i].height_m / radius_m, trace[i].thrust_ratio);
   }
   Panel ratios, height, force;
   ratios.x = {"height over rotor radius, Z / R", 0, last_ratio};
@@ -190,6 +188,53 @@ Chart wind_chart(const std::vector<TraceRow>& trace) {
   return chart;
 }
 
+/// Fig. 2: angular acceleration and signed command sum over some rows from the first third on, and over each other with
+/// their PCC over all rows.
+Chart correlation_chart(const pinnquad::Flight& flight, const pinnquad::Airframe<double>& airframe) {
+  constexpr std::array<const char*, 3> rates = {"dp/dt, rad/s²", "dq/dt, rad/s²", "dr/dt, rad/s²"};
+  constexpr std::size_t shown_rows = 200, cloud_points = 450;
+  const std::size_t first = flight.size() / 3, last = std::min(first + shown_rows, flight.size());
+  std::vector<double> time_s;
+  for (const pinnquad::Sample& sample : flight) time_s.push_back(sample.time_s);
+  const auto part = [&](const std::vector<double>& all) {
+    return std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(first),
+                               all.begin() + static_cast<std::ptrdiff_t>(last));
+  };
+  const auto about_zero = [](const std::string& name, const std::vector<double>& values) {
+    double most = 0;
+    for (const double value : values) most = std::max(most, std::abs(value));
+    return most > 0 ? Axis{name, -1.1 * most, 1.1 * most} : Axis{name};
+  };
+  Chart chart{"Angular acceleration and signed command sum, by axis",
+              "Both over some seconds for roll, pitch and yaw, acceleration in blue, command sum in orange; beside "
+              "it over each other, with the Pearson correlation of all rows.",
+              {},
+              2};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const AxisMotion motion = axis_motion(flight, airframe, static_cast<int>(axis));
+    Panel both, cloud;
+    both.title = motion.words;
+    both.share = 2;
+    both.series = {
+        {"angular acceleration", Shape::line, colour::blue, part(time_s), part(motion.angular_acceleration), 3, 0.75},
+        {"command sum S", Shape::line, colour::orange, part(time_s), part(motion.command_sum), 1.2}};
+    both.series[1].right = true;
+    both.x.name = "time, s";
+    both.y = about_zero(rates[axis], both.series[0].y);
+    both.right = about_zero("S", both.series[1].y);
+    cloud.title =
+        "PCC " + shown::number(pinnquad::pearson_correlation(motion.angular_acceleration, motion.command_sum), 3);
+    cloud.x.name = rates[axis];
+    cloud.y.name = "S";
+    cloud.series = {{"", Shape::dots, colour::blue, {}, {}, 3, 0.6}};
+    for (std::size_t i = 0; i < time_s.size(); i += stride_for(time_s.size(), cloud_points)) {
+      cloud.series[0].add(motion.angular_acceleration[i], motion.command_sum[i]);
+    }
+    chart.panels.insert(chart.panels.end(), {both, cloud});
+  }
+  return chart;
+}
+
 }  // namespace
 
 Chart trajectory_chart(const std::vector<TraceRow>& trace) {
@@ -209,8 +254,7 @@ Chart trajectory_chart(const std::vector<TraceRow>& trace) {
       box.add(walls, wall == 0 ? box.east.least : row.position_m[1], wall == 0 ? row.position_m[0] : box.north.most,
               row.height_m);
     }
-    walls.x.push_back(pinnquad::not_a_number);
-    walls.y.push_back(pinnquad::not_a_number);
+    walls.add_gap();
   }
   walls.opacity = 0.5;
   const std::size_t stride = stride_for(trace.size(), 4000);
@@ -232,8 +276,7 @@ Chart trajectory_chart(const std::vector<TraceRow>& trace) {
     const int step = static_cast<int>((from.speed_m_s + to.speed_m_s) / 2 / step_m_s);
     Series& here = path[static_cast<std::size_t>(step)];
     if (step != last) {
-      here.x.push_back(pinnquad::not_a_number);
-      here.y.push_back(pinnquad::not_a_number);
+      here.add_gap();
       box.add(here, from);
     }
     box.add(here, to);
@@ -257,66 +300,10 @@ Chart trajectory_chart(const std::vector<TraceRow>& trace) {
           {space, speeds}};
 }
 
-Chart correlation_chart(const std::vector<double>& time_s, const std::array<MotionAndSum, 3>& axes, std::size_t first) {
-  constexpr std::array<const char*, 3> rates = {"dp/dt, rad/s²", "dq/dt, rad/s²", "dr/dt, rad/s²"};
-  constexpr std::size_t shown_rows = 200, cloud_points = 450;
-  const std::size_t last = std::min(first + shown_rows, time_s.size());
-  const auto part = [&](const std::vector<double>& all) {
-    return std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(first),
-                               all.begin() + static_cast<std::ptrdiff_t>(last));
-  };
-  const auto about_zero = [](const std::string& name, const std::vector<double>& values) {
-    double most = 0;
-    for (const double value : values) most = std::max(most, std::abs(value));
-    return most > 0 ? Axis{name, -1.1 * most, 1.1 * most} : Axis{name};
-  };
-  Chart chart{"Angular acceleration and signed command sum, by axis",
-              "Both over some seconds for roll, pitch and yaw, acceleration in blue, command sum in orange; beside "
-              "it over each other, with the Pearson correlation of all rows.",
-              {},
-              2};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const MotionAndSum& motion = axes[axis];
-    Panel both, cloud;
-    both.title = motion.words;
-    both.share = 2;
-    both.series = {
-        {"angular acceleration", Shape::line, colour::blue, part(time_s), part(motion.angular_acceleration), 3, 0.75},
-        {"command sum S", Shape::line, colour::orange, part(time_s), part(motion.command_sum), 1.2}};
-    both.series[1].right = true;
-    both.x.name = "time, s";
-    both.y = about_zero(rates[axis], both.series[0].y);
-    both.right = about_zero("S", both.series[1].y);
-    cloud.title =
-        "PCC " + shown::number(pinnquad::pearson_correlation(motion.angular_acceleration, motion.command_sum), 3);
-    cloud.x.name = rates[axis];
-    cloud.y.name = "S";
-    cloud.series = {{"", Shape::dots, colour::blue, {}, {}, 3, 0.6}};
-    for (std::size_t i = 0; i < time_s.size(); i += stride_for(time_s.size(), cloud_points)) {
-      cloud.series[0].x.push_back(motion.angular_acceleration[i]);
-      cloud.series[0].y.push_back(motion.command_sum[i]);
-    }
-    chart.panels.insert(chart.panels.end(), {both, cloud});
-  }
-  return chart;
-}
-
 void draw_flight(const std::string& folder, const pinnquad::Flight& flight, const std::vector<TraceRow>& trace,
                  const pinnquad::Airframe<double>& airframe, pinnquad::GroundEffectModel ground_effect, bool windy) {
-  constexpr std::array<const char*, 3> names = {"roll", "pitch", "yaw"};
-  std::vector<double> time_s;
-  for (const pinnquad::Sample& sample : flight) time_s.push_back(sample.time_s);
-  std::array<MotionAndSum, 3> axes;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const AxisMotion motion = axis_motion(flight, airframe, static_cast<int>(axis));
-    std::string words = std::string(names[axis]) + ": S =";
-    for (std::size_t i = 0; i < motion.signs.size(); ++i) {
-      words += (motion.signs[i] < 0 ? (i == 0 ? " −u" : " − u") : (i == 0 ? " u" : " + u")) + std::to_string(i + 1);
-    }
-    axes[axis] = {words, motion.angular_acceleration, motion.command_sum};
-  }
   write_svg(folder + "/trajectory.svg", trajectory_chart(trace));
-  write_svg(folder + "/correlation.svg", correlation_chart(time_s, axes, flight.size() / 3));
+  write_svg(folder + "/correlation.svg", correlation_chart(flight, airframe));
   if (ground_effect != pinnquad::GroundEffectModel::none) {
     write_svg(folder + "/ground_effect.svg", ground_effect_chart(trace, airframe));
   }

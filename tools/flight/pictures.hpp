@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -15,22 +14,9 @@
 
 namespace programs {
 
-/// Every n-th row, so that a picture has no more points than the eye.
-inline std::size_t stride_for(std::size_t rows, std::size_t most) { return rows / most + 1; }
-
-/// About one axis, row by row: rad/s^2, and the signed command sum with its words.
-struct MotionAndSum {
-  std::string words;
-  std::vector<double> angular_acceleration, command_sum;
-};
-
 /// Fig. 4 (d): the flown path in space, coloured by speed in steps of half a metre per second, with its shadows on the
 /// floor and on the two walls behind, its start and its end.
 Chart trajectory_chart(const std::vector<TraceRow>& trace);
-
-/// Fig. 2: angular acceleration and signed command sum over the rows from `first` on, and over each other with their
-/// PCC over all rows.
-Chart correlation_chart(const std::vector<double>& time_s, const std::array<MotionAndSum, 3>& axes, std::size_t first);
 
 /// The files that draw_flight may write.
 inline constexpr std::array<const char*, 4> flight_picture_names = {"trajectory.svg", "correlation.svg",

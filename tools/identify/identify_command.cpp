@@ -4,7 +4,6 @@
 //   pinnquad identify flight.ulg --mass 1.2 --out vehicle.toml
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -28,27 +27,20 @@ namespace logs = pinnquad::logs;
 
 struct IdentifyOptions {
   std::vector<std::string> flights;
-  std::string mapping, airframe, out;
-  std::string name = "identified";
-  std::optional<double> curve, mass_kg, arm_m, rate_hz, to_s;
-  double from_s = 0;
-  bool fit_curve = false;
+  logs::LogSettings settings;
+  programs::SaidOfVehicle said{{}, {}, {}, {}, false, "--mass", "--arm"};
+  std::string out, name = "identified";
   bool json = false;
 };
 
 logs::ImportedDataset read(const IdentifyOptions& options) {
   programs::JobLine progress;
-  logs::LogSettings settings;
-  settings.mapping = options.mapping;
-  settings.airframe = options.airframe;
-  settings.rate_hz = options.rate_hz;
+  logs::LogSettings settings = options.settings;
   settings.lag_s = 0;
-  settings.from_s = options.from_s;
-  settings.to_s = options.to_s;
   settings.keep_saturated = true;
   settings.on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
   logs::ImportedDataset dataset = logs::read_source(options.flights, settings);
-  if (options.mapping.empty() && logs::kind_of_source(options.flights.front()) == logs::SourceKind::dataset) {
+  if (settings.mapping.empty() && logs::kind_of_source(options.flights.front()) == logs::SourceKind::dataset) {
     dataset.sources.clear();  // what is refused is a file of the folder
     for (const std::string& file : logs::flight_files(dataset)) {
       dataset.sources.push_back(options.flights.front() + "/" + file);
@@ -58,8 +50,8 @@ logs::ImportedDataset read(const IdentifyOptions& options) {
 }
 
 programs::SaidOfVehicle said_by(const IdentifyOptions& options) {
-  programs::SaidOfVehicle said{{}, options.mass_kg, options.arm_m, options.curve, options.fit_curve, "--mass", "--arm"};
-  if (!options.airframe.empty()) said.airframe = programs::chosen_airframe(options.airframe);
+  programs::SaidOfVehicle said = options.said;
+  if (!options.settings.airframe.empty()) said.airframe = programs::chosen_airframe(options.settings.airframe);
   return said;
 }
 
@@ -101,16 +93,17 @@ void print_table(const programs::ToldVehicle& vehicle, const logs::ImportedDatas
 int run(const IdentifyOptions& options) {
   programs::FileRoles roles;
   for (const std::string& flight : options.flights) roles.reads("FLIGHTS", flight);
-  if (programs::is_airframe_file(options.airframe)) roles.reads("--airframe", options.airframe);
-  if (programs::is_airframe_file(options.mapping)) roles.reads("--mapping", options.mapping);  // a .toml too
+  const std::string &airframe = options.settings.airframe, &mapping = options.settings.mapping;
+  if (programs::is_airframe_file(airframe)) roles.reads("--airframe", airframe);
+  if (programs::is_airframe_file(mapping)) roles.reads("--mapping", mapping);  // a .toml too
   roles.writes("--out", options.out);
   if (!options.out.empty() && !programs::is_airframe_file(options.out)) {
     throw std::invalid_argument("--out " + options.out + ": a name that ends in .toml was expected");
   }
   logs::ImportedDataset dataset = read(options);
-  if (options.curve) dataset.curve.told.clear();
+  if (options.said.thrust_curve) dataset.curve.told.clear();
   const programs::ToldVehicle vehicle =
-      programs::told_vehicle(dataset, said_by(options), !options.mapping.empty() || !dataset.taken.empty());
+      programs::told_vehicle(dataset, said_by(options), !mapping.empty() || !dataset.taken.empty());
   if (!vehicle.airframe) {
     if (!options.json) programs::print_verdict(programs::vehicle_verdict(vehicle, options.out));
     programs::complain("identify", vehicle.why_not);
@@ -140,26 +133,27 @@ Command identify_command(CLI::App& program) {
                                           "Estimates the vehicle that flew: thrust, control effectiveness, drag and "
                                           "lag with intervals; writes an airframe file");
   const auto options = std::make_shared<IdentifyOptions>();
-  add_sources(*line, options->flights, options->mapping);
-  add_number(*line, "--rate", options->rate_hz, 10.0, 2000.0, "rows per second of logs (default: see import)")
+  add_sources(*line, options->flights, options->settings.mapping);
+  add_number(*line, "--rate", options->settings.rate_hz, 10.0, 2000.0, "rows per second of logs (default: see import)")
       ->default_str("");
-  add_time_range(*line, *options);
-  line->add_option("--airframe", options->airframe,
+  add_time_range(*line, options->settings);
+  line->add_option("--airframe", options->settings.airframe,
                    "gives mass, arms, motor order and propeller; else 1 kg, 0.2 m, PX4's order: a file, or one of: " +
                        airframe_names())
       ->type_name("NAME|FILE.toml");
-  add_number(*line, "--mass", options->mass_kg, 1e-3, 1e3, "mass, kg: flights cannot determine it")->default_str("");
-  add_number(*line, "--arm", options->arm_m, 1e-3, 1e2,
+  add_number(*line, "--mass", options->said.mass_kg, 1e-3, 1e3, "mass, kg: flights cannot determine it")
+      ->default_str("");
+  add_number(*line, "--arm", options->said.arm_m, 1e-3, 1e2,
              "distance of each rotor from the centre along x and y, m: flights cannot determine it")
       ->default_str("");
   const auto take_curve = [options](const std::string& text) {
     double curve = 0;
-    options->fit_curve = text == "fit";
-    if (options->fit_curve) return;
+    options->said.fit_thrust_curve = text == "fit";
+    if (options->said.fit_thrust_curve) return;
     if (!parse_decimal(text, 0.0, 1.0, curve)) {
       throw CLI::ValidationError("--thrust-curve", "expected fit, or a number from 0 to 1, found '" + text + "'");
     }
-    options->curve = curve;
+    options->said.thrust_curve = curve;
   };
   line->add_option_function<std::string>("--thrust-curve", take_curve,
                                          "from thrust proportional to the command, 0, to its square, 1; fit finds it "
@@ -178,12 +172,12 @@ Command identify_command(CLI::App& program) {
       "2 bad input or a file that can't be read or written; 130 interrupted. Then nothing was written.");
   return {line, [options] {
             const bool are_logs =
-                !options->mapping.empty() ||
+                !options->settings.mapping.empty() ||
                 (!options->flights.empty() && logs::kind_of_source(options->flights.front()) == logs::SourceKind::logs);
-            if (options->rate_hz && !are_logs) {
+            if (options->settings.rate_hz && !are_logs) {
               throw std::invalid_argument("--rate goes with logs: other rows have their own");
             }
-            require_time_range(*options, are_logs);
+            require_time_range(options->settings, are_logs);
             return run(*options);
           }};
 }

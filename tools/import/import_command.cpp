@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -28,13 +27,9 @@ namespace logs = pinnquad::logs;
 
 struct ImportOptions {
   std::vector<std::string> logs;
-  std::string mapping;
-  std::string airframe;
+  logs::LogSettings settings;
   std::string out;
-  std::optional<double> rate_hz, thrust_curve, to_s, cut_s;
-  double from_s = 0;
   std::string lag = "auto";
-  bool hold = false;
   bool json = false;
   bool list = false;
 };
@@ -83,20 +78,6 @@ void print_text(const logs::ImportedDataset& dataset, const std::string& out) {
       out);
 }
 
-logs::LogSettings settings_of(const ImportOptions& options) {
-  logs::LogSettings settings;
-  settings.mapping = options.mapping;
-  settings.airframe = options.airframe;
-  settings.rate_hz = options.rate_hz;
-  settings.hold_commands = options.hold;
-  settings.lag_s = programs::lag_of(options.lag);
-  settings.thrust_curve = options.thrust_curve;
-  settings.from_s = options.from_s;
-  settings.to_s = options.to_s;
-  settings.cut_s = options.cut_s;
-  return settings;
-}
-
 int run(const ImportOptions& options) {
   if (options.list) {
     list_mappings();
@@ -108,7 +89,7 @@ int run(const ImportOptions& options) {
         "dataset");
   if (options.out.empty())
     throw std::invalid_argument("expected --out DATASET, the folder to write: pinnquad import ... --out dataset");
-  programs::require_time_range(options, true);
+  programs::require_time_range(options.settings, true);
 #ifdef __GLIBC__
   constexpr const char* callers = "MALLOC_MMAP_THRESHOLD_";
   constexpr int always = 1 << 28;  // columns come and go: their memory is kept, not given back and asked for anew
@@ -117,7 +98,8 @@ int run(const ImportOptions& options) {
     mallopt(M_TRIM_THRESHOLD, always);
   }
 #endif
-  logs::LogSettings settings = settings_of(options);
+  logs::LogSettings settings = options.settings;
+  settings.lag_s = programs::lag_of(options.lag);
   logs::require_dataset_place(options.out);
   programs::JobLine progress;
   settings.on_progress = [&progress](const std::string& job, double share) { progress.update(job, share); };
@@ -139,27 +121,28 @@ namespace programs {
 Command import_command(CLI::App& program) {
   CLI::App* line = program.add_subcommand("import", "Makes a dataset of flight logs: ULog, blackbox, DataFlash, CSV");
   const auto options = std::make_shared<ImportOptions>();
+  pinnquad::logs::LogSettings& settings = options->settings;
   add_paths(*line, "logs", options->logs, "LOG",
             "ULog, blackbox, DataFlash and uSD logs, CSV tables, folders of them; recognised by content");
   line->add_option(
-          "--mapping", options->mapping,
+          "--mapping", settings.mapping,
           "what the columns mean, where the content does not tell: " + pinnquad::logs::mapping_names() + ", or a file")
       ->type_name("NAME|FILE.toml");
-  add_path(*line, "--airframe", options->airframe, "NAME|FILE.toml",
+  add_path(*line, "--airframe", settings.airframe, "NAME|FILE.toml",
            "converts logged rotor speeds or thrusts to commands; the mapping may name one");
   add_path(*line, "--out", options->out, "DATASET", "the folder to write; a dataset that is there is replaced");
-  add_number(*line, "--rate", options->rate_hz, 1.0, 2000.0,
+  add_number(*line, "--rate", settings.rate_hz, 1.0, 2000.0,
              "rows per second; else as the slowest of commands, body rates and force, at most 100");
   line->add_option("--lag", options->lag, "from command to motion, removed from the commands: estimated, or as given")
       ->type_name("auto|SECONDS")
       ->capture_default_str();
-  add_number(*line, "--thrust-curve", options->thrust_curve, 0.0, 1.0,
+  add_number(*line, "--thrust-curve", settings.thrust_curve, 0.0, 1.0,
              "k of thrust = (1 - k) u + k u^2; else the mapping's, or fitted")
       ->default_str("");
-  add_time_range(*line, *options);
-  add_number(*line, "--cut", options->cut_s, 1.0, 1e6,
+  add_time_range(*line, settings);
+  add_number(*line, "--cut", settings.cut_s, 1.0, 1e6,
              "split flights into parts of about this many seconds, NAME_1, NAME_2 ..., so that train can hold one out");
-  line->add_flag("--hold", options->hold, "hold the last command between rows instead of interpolating");
+  line->add_flag("--hold", settings.hold_commands, "hold the last command between rows instead of interpolating");
   line->add_flag("--json", options->json, "rows per step, flights and warnings as JSON, and nothing else, on stdout");
   line->add_flag("--list", options->list, "list the ready mappings");
   line->footer(

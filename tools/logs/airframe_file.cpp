@@ -24,11 +24,9 @@ RotorMount<double> rotor_of(const std::string& path, const toml::table& table) {
   r.x_m = rotor.number("x_m", of_either_sign);
   r.y_m = rotor.number("y_m", of_either_sign);
   const char* spins = "\"clockwise\" or \"counter_clockwise\", seen from above";
-  const std::string spin = rotor.text("spin", spins);
-  if (spin != "clockwise" && spin != "counter_clockwise") {
-    const toml::node& node = rotor.required("spin", spins);
-    rotor.refuse(node, spins, described(node));
-  }
+  const toml::node& node = rotor.required("spin", spins);
+  const std::string spin = rotor.as_text(node, spins);
+  if (spin != "clockwise" && spin != "counter_clockwise") rotor.refuse(node, spins, described(node));
   r.spin = spin == "clockwise" ? Spin::clockwise : Spin::counter_clockwise;
   r.z_m = rotor.number("z_m", of_either_sign, r.z_m);
   r.axis = rotor.triple("axis", of_either_sign, r.axis);
@@ -90,12 +88,7 @@ NamedAirframe read_airframe_file(const std::string& path) {
   TomlTable table(path, root, airframe_key);
   NamedAirframe result;
   Airframe<double>& a = result.value;
-  const char* one_line = "a text on one line";
-  result.name = table.text("name", one_line);
-  if (result.name.empty() || result.name != printable(result.name)) {
-    const toml::node& node = table.required("name", one_line);
-    table.refuse(node, one_line, described(node));
-  }
+  result.name = table.line("name");
   a.mass_kg = table.number("mass_kg", above_zero);
   a.inertia_kg_m2 = table.triple("inertia_kg_m2", above_zero);
   a.inertia_products_kg_m2 = table.triple("inertia_products_kg_m2", of_either_sign, a.inertia_products_kg_m2);

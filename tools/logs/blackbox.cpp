@@ -93,9 +93,7 @@ class Reader {
   };
 
   void open(const std::string& name, const std::vector<Field>& fields, Table& table) const {
-    table.topic.name = name;
-    table.topic.file = name_;
-    table.topic.places_are_lines = false;
+    table.topic = LogTopic::of_bytes(name, 0, name_);
     table.last.assign(fields.size(), 0);
     for (const Field& field : fields) {
       const Shown shown = shown_as(field.name, header_);
@@ -105,7 +103,7 @@ class Reader {
   }
 
   void say_header() {
-    for (const auto& [key, text] : header_.texts) keep_fact(log_, key, text);
+    for (const auto& [key, text] : header_.texts) keep_parameters(log_, key, text);
     if (header_.most_motor <= header_.least_motor) return;
     log_.parameters["motorOutput[0]"] = static_cast<double>(header_.least_motor);
     log_.parameters["motorOutput[1]"] = static_cast<double>(header_.most_motor);
@@ -114,12 +112,10 @@ class Reader {
   void walk() {
     constexpr std::string_view letters = "IPGHES";
     constexpr std::size_t longest_frame = 256;
-    std::size_t at = header_.end, next_report = 0;
+    std::size_t at = header_.end;
+    std::uint64_t next_report = 0;
     while (at < file_.size()) {
-      if (at >= next_report) {
-        next_report = at + (std::size_t{1} << 20);
-        selection_.report(static_cast<double>(at) / static_cast<double>(file_.size()));
-      }
+      selection_.report(at, file_.size(), next_report);
       const char letter = file_[at];
       if (letters.find(letter) == std::string_view::npos) {
         if (is_valid_ || main_.topic.size() == 0) lose(at, main_.topic.size() > 0);
@@ -316,10 +312,7 @@ class Reader {
       case 'S': row(slow_, slow_.last, last_time_, place); break;
       case 'E':
         if (!resumes_) break;
-        if (has_last_ && resumed_time_ > last_time_ % wrap) {
-          log_.dropouts.push_back({static_cast<double>(last_time_) / ticks_per_s,
-                                   static_cast<double>(resumed_time_ - last_time_ % wrap) / ticks_per_s});
-        }
+        if (has_last_ && resumed_time_ > last_time_ % wrap) ++log_.dropouts;
         last_iteration_ = resumed_iteration_;
         last_time_ = resumed_time_ + wrapped_;
         has_last_ = true;

@@ -2,7 +2,7 @@
 // Blackbox logs of Betaflight, INAV and their like (.bbl, .bfl, .txt), as the firmware wrote them. The main frames are
 // one table, whose columns have the names and units that blackbox_decode gives them with --unit-rotation deg/s
 // --unit-acceleration m/s2: "time (us)", "gyroADC[0] (deg/s)", "accSmooth[0] (m/s/s)", "vbatLatest (V)", the rest as it
-// stands. GPS and slow frames are the topics "gps" and "slow". Header lines are facts, and numbers of them parameters.
+// stands. GPS and slow frames are the topics "gps" and "slow". Numbers of header lines are parameters.
 #pragma once
 
 #include <cstddef>

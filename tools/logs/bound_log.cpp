@@ -285,8 +285,8 @@ Signal bind_source(const FlightLog& log, const Mapping& mapping, const Source& s
     const MotorRange range{*least, *most};
     require_four_motors(log, *topic, source, range.least, range.most, mapping.file);
     std::optional<double> curve = source.thrust_curve;
-    const auto logged = log.parameters.find(source.thrust_curve_parameter);
-    if (logged != log.parameters.end()) curve = std::clamp(logged->second, 0.0, 1.0);
+    const double logged = log.parameter(source.thrust_curve_parameter, std::nan(""));
+    if (!std::isnan(logged)) curve = std::clamp(logged, 0.0, 1.0);
     if (source.numbers == MotorNumbers::speed && !airframe) {
       throw InputError(mapping.file, source.place.line, source.place.column,
                        "--airframe, which says what rotor speeds command", "none");

@@ -191,8 +191,7 @@ class Head {
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(" \t\r") == std::string_view::npos; }
 
-void keep_fact(FlightLog& log, const std::string& key, const std::string& value) {
-  log.facts[key] = value;
+void keep_parameters(FlightLog& log, const std::string& key, const std::string& value) {
   std::vector<std::string_view> parts;
   split_cells(value, ',', parts);
   for (std::size_t i = 0; i < parts.size(); ++i) {

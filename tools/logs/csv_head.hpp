@@ -38,7 +38,7 @@ bool cell_number(std::string_view cell, double& value, char separator = ',');
 /// True for blanks alone.
 bool is_blank(std::string_view text);
 
-/// Keeps a value of a log's head: a number is a parameter, numbers between commas are several: "motorOutput[0]".
-void keep_fact(FlightLog& log, const std::string& key, const std::string& value);
+/// Keeps the numbers of a line of a log's head: one is a parameter, several between commas are "motorOutput[0]", ...
+void keep_parameters(FlightLog& log, const std::string& key, const std::string& value);
 
 }  // namespace pinnquad::logs

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "logs/csv_head.hpp"
-#include "logs/list_cells.hpp"
 #include "pinnquad/io/csv_table.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/file_error.hpp"
@@ -150,6 +149,76 @@ class Table {
   std::size_t cut_line_ = 0;
 };
 
+constexpr std::size_t most_numbers = 64, most_depth = 4;
+
+/// The numbers of a list and the place of each: "[1][0]". False if the text is no list of numbers.
+bool read_list(std::string_view text, std::vector<double>& numbers, std::vector<std::string>* places) {
+  constexpr std::string_view between = ", \t\n\r";
+  std::vector<std::size_t> counts;
+  numbers.clear();
+  const auto count_one = [&counts] {
+    if (!counts.empty()) ++counts.back();
+  };
+  for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '[') {
+      if (counts.size() == most_depth || (counts.empty() && i > 0)) return false;
+      counts.push_back(0);
+      ++i;
+    } else if (text[i] == ']') {
+      if (counts.empty()) return false;
+      counts.pop_back();
+      count_one();
+      ++i;
+      if (counts.empty()) return text.find_first_not_of(between, i) == std::string_view::npos && !numbers.empty();
+    } else if (between.find(text[i]) != std::string_view::npos) {
+      ++i;
+    } else {
+      const std::size_t end = text.find_first_of(", \t\n\r[]", i);
+      double value = 0;
+      if (counts.empty() || end == std::string_view::npos || numbers.size() == most_numbers) return false;
+      if (!cell_number(text.substr(i, end - i), value)) return false;
+      numbers.push_back(value);
+      if (places != nullptr) {
+        std::string place;
+        for (const std::size_t count : counts) place += '[' + std::to_string(count) + ']';
+        places->push_back(std::move(place));
+      }
+      count_one();
+      i = end;
+    }
+  }
+  return false;
+}
+
+/// A column of lists becomes columns of numbers: p[0], p[1], p[2]; of a matrix R[0][0], R[0][1] ... Numbers stand
+/// between commas or blanks. Columns of other text stay. Throws InputError with the row where a list has other numbers
+/// than the first one.
+void expand_lists(LogTopic& topic) {
+  std::vector<LogText> texts;
+  for (LogText& text : topic.texts) {
+    std::vector<double> numbers;
+    std::vector<std::string> places;
+    if (text.values.empty() || !read_list(text.values[0], numbers, &places)) {
+      texts.push_back(std::move(text));
+      continue;
+    }
+    std::vector<std::vector<double>> values(numbers.size());
+    for (std::size_t row = 0; row < text.values.size(); ++row) {
+      if (!read_list(text.values[row], numbers, nullptr) || numbers.size() != values.size()) {
+        throw InputError(topic.file, static_cast<std::size_t>(topic.place[row]), 0,
+                         "a list of " + std::to_string(values.size()) + " numbers in column " + text.name,
+                         quoted_cell(text.values[row]));
+      }
+      for (std::size_t i = 0; i < values.size(); ++i) values[i].push_back(numbers[i]);
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      // a list of one number is that number
+      topic.columns.push_back({values.size() == 1 ? text.name : text.name + places[i], std::move(values[i])});
+    }
+  }
+  topic.texts = std::move(texts);
+}
+
 /// Seconds by the column that is the clock.
 void set_clock(LogTopic& topic, const Table& table, const LogSelection& selection) {
   topic.time_s.assign(topic.place.size(), std::numeric_limits<double>::quiet_NaN());
@@ -200,7 +269,7 @@ FlightLog read_csv_log(const std::string& path, const LogSelection& selection) {
   std::size_t cut_line = 0;
   log.topics.push_back(read_table(path, selection, head, &cut_line));
   if (log.topics[0].place.empty()) throw InputError(path, head.line + 1, 0, "a row of data", "none");
-  for (const auto& [key, value] : head.facts) keep_fact(log, key, value);
+  for (const auto& [key, value] : head.facts) keep_parameters(log, key, value);
   if (cut_line > 0) {
     log.warnings.push_back(printable(std::filesystem::path(path).stem().string()) + ": line " +
                            std::to_string(cut_line) + " ends in the middle, and so does the file: left out");

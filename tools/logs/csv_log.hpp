@@ -8,7 +8,7 @@
 
 namespace pinnquad::logs {
 
-/// A log of one topic without name; rows of keys and values above the table are its facts, numbers its parameters.
+/// A log of one topic without name; numbers in rows of keys and values above the table are its parameters.
 FlightLog read_csv_log(const std::string& path, const LogSelection& selection = {});
 
 }  // namespace pinnquad::logs

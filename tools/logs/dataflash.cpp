@@ -110,12 +110,9 @@ class Reader {
   }
 
   FlightLog read() {
-    std::size_t next_report = 0;
+    std::uint64_t next_report = 0;
     for (at_ = 0; at_ < file_.size();) {
-      if (at_ >= next_report) {
-        next_report = at_ + (std::size_t{1} << 20);
-        selection_.report(static_cast<double>(at_) / static_cast<double>(file_.size()));
-      }
+      selection_.report(at_, file_.size(), next_report);
       if (!step()) lose();
     }
     if (places_lost_ > 0) {
@@ -220,13 +217,7 @@ class Reader {
                               : number_of(*format.clock->letter, content + format.clock->offset) / format.ticks_per_s;
     if (format.name == "PARM") {
       const std::string key = text_in(format, "Name", content);
-      const double value = number_in(format, "Value", content);
-      const bool is_new = log_.parameters.emplace(key, value).second;
-      if (!is_new) log_.parameter_changes.push_back({time_s, key, value});
-    } else if (format.name == "MSG") {
-      const std::string said = text_in(format, "Message", content);
-      if (log_.messages.empty()) log_.facts["firmware"] = said;
-      log_.messages.push_back({time_s, 6, said});
+      log_.parameters.emplace(key, number_in(format, "Value", content));  // the first: as it stood when the log began
     } else if (format.name == "FMTU") {
       mark_instance(number_in(format, "FmtType", content), text_in(format, "UnitIds", content));
     }
@@ -262,11 +253,7 @@ class Reader {
   }
 
   void open(const Format& format, int instance) {
-    LogTopic topic;
-    topic.name = format.name;
-    topic.instance = instance;
-    topic.file = name_;
-    topic.places_are_lines = false;
+    LogTopic topic = LogTopic::of_bytes(format.name, instance, name_);
     for (const Column& column : format.columns) {
       if (column.letter->kind == Kind::text) topic.texts.push_back({column.name, {}});
       if (column.letter->kind == Kind::number || column.letter->kind == Kind::half)
@@ -289,12 +276,11 @@ class Reader {
       std::map<int, const LogColumn*> found;  // by motor
       for (int output = 1; output <= outputs; ++output) {
         const std::string number = std::to_string(output);
-        const auto function = log_.parameters.find("SERVO" + number + "_FUNCTION");
         const LogColumn* const column = output_column(number);
-        if (function == log_.parameters.end()) continue;
-        const double motor = function->second - first_motor + 1;
-        said = said || (motor >= 1 && motor <= motors);
-        if (column != nullptr && motor >= 1 && motor <= motors) found.emplace(static_cast<int>(motor), column);
+        const double motor = log_.parameter("SERVO" + number + "_FUNCTION", 0) - first_motor + 1;
+        const bool is_motor = motor >= 1 && motor <= motors;
+        said = said || is_motor;
+        if (column != nullptr && is_motor) found.emplace(static_cast<int>(motor), column);
       }
       for (int motor = 1; motor <= static_cast<int>(rotor_count) && !said; ++motor) {
         if (const LogColumn* const column = output_column(std::to_string(motor))) found.emplace(motor, column);
@@ -306,19 +292,15 @@ class Reader {
   }
 
   void say_motor_range() {
-    const auto parameter = [this](const char* key, double otherwise) {
-      const auto found = log_.parameters.find(key);
-      return found == log_.parameters.end() ? otherwise : found->second;
-    };
-    double least = parameter("MOT_PWM_MIN", 0), most = parameter("MOT_PWM_MAX", 0);
+    double least = log_.parameter("MOT_PWM_MIN", 0), most = log_.parameter("MOT_PWM_MAX", 0);
     if (!(least > 0 && most > least)) {  // as the firmware has it where they are 0, or older than these: the stick's
-      const std::string stick = "RC" + std::to_string(std::lround(parameter("RCMAP_THROTTLE", 3)));
-      least = parameter((stick + "_MIN").c_str(), 1000);
-      most = parameter((stick + "_MAX").c_str(), 2000);
+      const std::string stick = "RC" + std::to_string(std::lround(log_.parameter("RCMAP_THROTTLE", 3)));
+      least = log_.parameter(stick + "_MIN", 1000);
+      most = log_.parameter(stick + "_MAX", 2000);
     }
     const double begin =
-        parameter("MOT_SPIN_MIN", parameter("THR_MIN", 0) / 1000);  // before 3.4: THR_MIN, MOT_THST_MAX
-    const double end = parameter("MOT_SPIN_MAX", parameter("MOT_THST_MAX", 1));
+        log_.parameter("MOT_SPIN_MIN", log_.parameter("THR_MIN", 0) / 1000);  // before 3.4: THR_MIN, MOT_THST_MAX
+    const double end = log_.parameter("MOT_SPIN_MAX", log_.parameter("MOT_THST_MAX", 1));
     if (!(end > begin && most > least)) return;
     log_.parameters["motorOutput[0]"] = least + begin * (most - least);
     log_.parameters["motorOutput[1]"] = least + end * (most - least);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // ArduPilot's DataFlash logs (.bin): messages that FMT messages describe, in the log itself. A message is a topic, its
 // instance the number in the column that FMTU marks; columns are in the units that the log has, with the factors of
-// their formats (c, C, e, E: a hundredth; L: 1e-7). PARM messages are parameters, MSG messages what the vehicle said.
+// their formats (c, C, e, E: a hundredth; L: 1e-7). PARM messages are parameters.
 #pragma once
 
 #include <string>

@@ -87,11 +87,8 @@ std::optional<double> own_unit(const LogColumn& column, const std::string& wante
 
 std::optional<double> number_in(const FlightLog& log, const MappedNumber& number) {
   if (number.parameter.empty()) return number.value;
-  const auto found = log.parameters.find(number.parameter);
-  if (found == log.parameters.end()) return std::nullopt;
-  const double value = number.divides ? 1 / found->second : found->second;
-  if (!std::isfinite(value)) return std::nullopt;
-  return value;
+  const double logged = log.parameter(number.parameter, std::nan("")), value = number.divides ? 1 / logged : logged;
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 std::vector<std::vector<double>> scaled_values(const FlightLog& log, const Mapping& mapping, const Source& source,

@@ -81,11 +81,7 @@ struct Frames {
 };
 
 Frames frames_of(TomlTable& table, const Frames& otherwise) {
-  constexpr std::array<const char*, 2> worlds = {"ned", "enu"}, bodies = {"frd", "flu"};
-  Frames frames;
-  frames.world = static_cast<WorldFrame>(table.choice("world", worlds, static_cast<std::size_t>(otherwise.world)));
-  frames.body = static_cast<BodyFrame>(table.choice("body", bodies, static_cast<std::size_t>(otherwise.body)));
-  return frames;
+  return {table.choice("world", {"ned", "enu"}, otherwise.world), table.choice("body", {"frd", "flu"}, otherwise.body)};
 }
 
 /// As the number of a mapping: 0.1, or "1/2048", "1/acc_1G", "acc_1G", of which a name is one of the log's parameters.
@@ -184,9 +180,8 @@ std::array<MotorOrder::Corner, rotor_count> motor_order_of(TomlTable& table) {
 }
 
 void read_motors(TomlTable& table, Source& source) {
-  constexpr std::array<const char*, 3> kinds = {"thrust", "signal", "speed"};
   source.corners = motor_order_of(table);
-  source.numbers = static_cast<MotorNumbers>(table.choice("numbers", kinds, 0));
+  source.numbers = table.choice("numbers", {"thrust", "signal", "speed"}, MotorNumbers::thrust);
   source.least = mapped_number(table, "least", 0);
   source.most = mapped_number(table, "most", 1);
   const bool of_log = !source.least.parameter.empty() || !source.most.parameter.empty();
@@ -206,7 +201,6 @@ void read_motors(TomlTable& table, Source& source) {
 
 void read_columns(TomlTable& table, Source& source, const QuantityFacts& facts) {
   if (facts.quantity == Quantity::attitude) {
-    constexpr std::array<const char*, 2> orders = {"wxyz", "xyzw"}, directions = {"body_to_world", "world_to_body"};
     source.euler = table.optional("euler") != nullptr;
     source.columns = source.euler ? columns_of(table, "euler", 3, "roll, pitch and yaw")
                                   : columns_of(table, "quaternion", 4, "a quaternion", 3);
@@ -220,14 +214,13 @@ void read_columns(TomlTable& table, Source& source, const QuantityFacts& facts) 
         name.erase(0, 1);
       }
     }
-    if (!source.euler && !source.without_scalar) source.scalar_last = table.choice("order", orders, 0) == 1;
-    source.world_to_body = table.choice("direction", directions, 0) == 1;
+    if (!source.euler && !source.without_scalar) source.scalar_last = table.choice("order", {"wxyz", "xyzw"}, false);
+    source.world_to_body = table.choice("direction", {"body_to_world", "world_to_body"}, false);
   } else if (facts.quantity == Quantity::torque_and_thrust) {
-    constexpr std::array<const char*, 2> ways = {"down", "up"};
     source.columns = columns_of(table, "torque", 3, "torque about x, y and z");
     source.columns.push_back(columns_of(table, "thrust", 1, "thrust along z").front());
     source.thrust_topic = table.text("thrust_topic", a_name, source.topic);
-    source.thrust_is_up = table.choice("thrust_is", ways, 0) == 1;
+    source.thrust_is_up = table.choice("thrust_is", {"down", "up"}, false);
     source.wrench = table.optional("torque_unit") != nullptr;
     if (source.wrench) {
       source.in_si = unit_of(table, "torque_unit", Dimension::torque);
@@ -243,8 +236,8 @@ void read_columns(TomlTable& table, Source& source, const QuantityFacts& facts) 
   }
   read_scale(table, source);
   if (facts.quantity == Quantity::acceleration || facts.quantity == Quantity::velocity) {
-    constexpr std::array<const char*, 2> axes = {"body", "world"};
-    source.axes = static_cast<Axes>(table.choice("axes", axes, facts.quantity == Quantity::velocity ? 1 : 0));
+    const Axes usual = facts.quantity == Quantity::velocity ? Axes::world : Axes::body;
+    source.axes = table.choice("axes", {"body", "world"}, usual);
   }
 }
 

@@ -66,16 +66,14 @@ std::string other_frame(const FlightLog& log) {
                                                    "",
                                                    "a decacopter",
                                                    ""};
-  const auto kind = log.parameters.find("FRAME_CLASS");
-  const bool said = kind != log.parameters.end();
-  const std::string key = said ? "FRAME_TYPE" : "FRAME";  // before 3.5
-  const auto type = log.parameters.find(key);
-  if (said && kind->second > 1) {
-    const auto index = static_cast<std::size_t>(std::min(kind->second, 15.0));
+  const double kind = log.parameter("FRAME_CLASS", std::nan(""));
+  const std::string key = std::isnan(kind) ? "FRAME" : "FRAME_TYPE";  // before 3.5 the first
+  if (kind > 1) {
+    const auto index = static_cast<std::size_t>(std::min(kind, 15.0));
     return "FRAME_CLASS " + std::to_string(index) +
            (classes[index][0] == '\0' ? "" : std::string(": ") + classes[index]);
   }
-  return type != log.parameters.end() && std::abs(type->second) < 0.5 ? key + " 0: a '+' frame" : "";
+  return std::abs(log.parameter(key, 1)) < 0.5 ? key + " 0: a '+' frame" : "";
 }
 
 /// PX4's parameters of the places, where all four are logged: rotors ahead, behind and beside the centre.
@@ -83,9 +81,8 @@ bool is_plus_frame(const FlightLog& log) {
   constexpr double on_axis = 0.2;
   for (std::size_t rotor = 0; rotor < rotor_count; ++rotor) {
     const std::string name = "CA_ROTOR" + std::to_string(rotor) + "_P";
-    const auto x = log.parameters.find(name + "X"), y = log.parameters.find(name + "Y");
-    if (x == log.parameters.end() || y == log.parameters.end()) return false;
-    const double along = std::abs(x->second), beside = std::abs(y->second);
+    const double along = std::abs(log.parameter(name + "X", std::nan("")));
+    const double beside = std::abs(log.parameter(name + "Y", std::nan("")));
     if (!(std::min(along, beside) < on_axis * std::max(along, beside))) return false;
   }
   return true;

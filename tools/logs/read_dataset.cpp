@@ -339,9 +339,7 @@ class Import {
 
   /// Attitude and force of a blackbox log are the accelerometer's.
   void require_accelerometer(const FlightLog& log) const {
-    const auto counts = log.parameters.find("acc_1G");
-    const bool flew_without = counts != log.parameters.end() && !(counts->second > 0);
-    if (!flew_without || (mapping_.name != "betaflight" && mapping_.name != "inav")) return;
+    if (log.parameter("acc_1G", 1) > 0 || (mapping_.name != "betaflight" && mapping_.name != "inav")) return;
     throw InputError(log.source, 0, 0, "a craft with an accelerometer, which attitude and force are made of",
                      "one that flew without (acc_1G 0 in the log's head)");
   }
@@ -433,8 +431,7 @@ class Import {
 
   /// True where PX4's logger is told to log faster already: bits 3 and 4.
   static bool has_profile(const FlightLog& log) {
-    const auto profile = log.parameters.find("SDLOG_PROFILE");
-    return profile != log.parameters.end() && (static_cast<std::int64_t>(profile->second) & 24) == 24;
+    return (static_cast<std::int64_t>(log.parameter("SDLOG_PROFILE", 0)) & 24) == 24;
   }
 
   void check_signals(const BoundLog& bound, const CommonRows& rows, const LogPart& part) {

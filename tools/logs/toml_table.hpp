@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "logs/nearest_names.hpp"
 #include "logs/toml_file.hpp"
@@ -53,21 +54,29 @@ class TomlTable {
     const toml::node* node = optional(key);
     return node ? as_text(*node, expected) : otherwise;
   }
+  /// A text that is neither empty nor of several lines.
+  std::string line(const char* key) {
+    constexpr const char* one_line = "a text on one line";
+    const toml::node& node = required(key, one_line);
+    const std::string text = as_text(node, one_line);
+    if (text.empty() || text != printable(text)) refuse(node, one_line, described(node));
+    return text;
+  }
   bool truth(const char* key, bool otherwise) {
     const toml::node* node = optional(key);
     if (!node) return otherwise;
     if (!node->is_boolean()) refuse(*node, "true or false", described(*node));
     return node->as_boolean()->get();
   }
-  /// One of the words of a list; its index. `otherwise` where the key is not there.
-  template <std::size_t Count>
-  std::size_t choice(const char* key, const std::array<const char*, Count>& words, std::size_t otherwise) {
+  /// The value of one of the words, which stand in the order of the values. `otherwise` where the key is not there.
+  template <class Value>
+  Value choice(const char* key, const std::vector<const char*>& words, Value otherwise) {
     const toml::node* node = optional(key);
     if (!node) return otherwise;
     std::string expected;
-    for (std::size_t i = 0; i < Count; ++i) {
-      if (node->is_string() && node->as_string()->get() == words[i]) return i;
-      expected += (i == 0 ? "\"" : i + 1 == Count ? " or \"" : ", \"") + std::string(words[i]) + "\"";
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      if (node->is_string() && node->as_string()->get() == words[i]) return static_cast<Value>(i);
+      expected += (i == 0 ? "\"" : i + 1 == words.size() ? " or \"" : ", \"") + std::string(words[i]) + "\"";
     }
     refuse(*node, expected, described(*node));
   }

@@ -34,15 +34,9 @@ class Reader {
     return std::move(log_);
   }
 
-  void begin(std::uint64_t start_us) { log_.start_s = static_cast<double>(start_us) / ticks_per_s; }
-
   bool in_data() const noexcept { return rows_ > 0; }
 
-  void progress(std::uint64_t bytes) {
-    if (bytes < next_progress_) return;
-    next_progress_ = bytes + progress_step;
-    selection_.report(static_cast<double>(bytes) / static_cast<double>(size_));
-  }
+  void progress(std::uint64_t bytes) { selection_.report(bytes, size_, next_progress_); }
 
   bool fits(const Message& message) {
     switch (message.type) {
@@ -85,13 +79,10 @@ class Reader {
       case 'A': subscribe(message); break;
       case 'R': topics_.erase(little_endian<std::uint16_t>(message.content.data())); break;
       case 'F': formats_.add(parse_format(message.content)); break;
-      case 'P': if_sound(message, [&] { parameter(message); }); break;
-      case 'I': if_sound(message, [&] { fact(message); }); break;
-      case 'L': said(message, 1); break;
-      case 'C': said(message, 3); break;
-      case 'O':
-        log_.dropouts.push_back({last_time_s_, little_endian<std::uint16_t>(message.content.data()) / 1000.0});
-        break;
+      case 'P': parameter(message); break;
+      case 'L':
+      case 'C': is_running_ = true; break;
+      case 'O': ++log_.dropouts; break;
       default: break;
     }
     return Taken::yes;
@@ -99,7 +90,6 @@ class Reader {
 
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  static constexpr std::uint64_t progress_step = std::uint64_t{1} << 20;
 
   /// A topic under the number that its rows carry.
   struct Subscription {
@@ -154,9 +144,8 @@ class Reader {
     if (from.clock == none) return;
     // a logger may leave out padding at the end, which is behind the last number
     const char* const data = message.content.data() + 2;
-    const double time_s = number(Basic::uint64, data + from.clock) / ticks_per_s;
-    last_time_s_ = std::max(last_time_s_, time_s);
     if (!from.wanted) return;
+    const double time_s = number(Basic::uint64, data + from.clock) / ticks_per_s;
     LogTopic& topic = log_.topics[from.topic];
     constexpr std::size_t few = 1024;
     if (topic.size() >= few && topic.size() == topic.time_s.capacity()) make_room(topic, from, message.place);
@@ -199,11 +188,7 @@ class Reader {
     const auto [known, is_new] = opened_.emplace(std::make_pair(from.name, from.instance), log_.topics.size());
     from.topic = known->second;
     if (!is_new) return;
-    LogTopic topic;
-    topic.name = from.name;
-    topic.instance = from.instance;
-    topic.file = log_.source;
-    topic.places_are_lines = false;
+    LogTopic topic = LogTopic::of_bytes(from.name, from.instance, log_.source);
     for (std::string& name : names) topic.columns.push_back({std::move(name), {}, {}});
     for (const Leaf& leaf : from.texts) topic.texts.push_back({leaf.column, {}});
     log_.topics.push_back(std::move(topic));
@@ -217,52 +202,20 @@ class Reader {
     return parse_field(content.substr(1, length));
   }
 
+  /// As it stood when the log began. A bad one, on which no row depends, is left out, and said.
   void parameter(const Message& message) {
-    std::string_view value;
-    const Field key = key_of(message.content, value);
-    const BasicType* const type = basic_type(key.type);
-    const bool known = type != nullptr && (type->type == Basic::int32 || type->type == Basic::float32);
-    if (!known || key.is_array || value.size() != 4) {
-      throw BadMessage{"a parameter of type int32_t or float", quoted_cell(message.content.substr(1))};
-    }
-    const double set_to = number(type->type, value.data());
-    if (is_running_) {
-      log_.parameter_changes.push_back({last_time_s_, key.name, set_to});
-    } else {
-      log_.parameters[key.name] = set_to;
-    }
-  }
-
-  void fact(const Message& message) {
-    std::string_view value;
-    const Field key = key_of(message.content, value);
-    const BasicType* const type = basic_type(key.type);
-    if (type == nullptr || value.size() != key.length * type->size) {
-      throw BadMessage{"information as long as its type", quoted_cell(message.content.substr(1))};
-    }
-    if (type->type == Basic::character) {
-      log_.facts[key.name] = text_of(value);
-    } else if (!key.is_array) {
-      log_.facts[key.name] = number_text(number(type->type, value.data()));
-    }
-  }
-
-  /// For what no row depends on: said, and left out.
-  template <class Take>
-  void if_sound(const Message& message, Take take) {
     try {
-      take();
+      std::string_view value;
+      const Field key = key_of(message.content, value);
+      const BasicType* const type = basic_type(key.type);
+      const bool known = type != nullptr && (type->type == Basic::int32 || type->type == Basic::float32);
+      if (!known || key.is_array || value.size() != 4) {
+        throw BadMessage{"a parameter of type int32_t or float", quoted_cell(message.content.substr(1))};
+      }
+      if (!is_running_) log_.parameters[key.name] = number(type->type, value.data());
     } catch (const BadMessage& bad) {
       messages_.warn(message.place, "expected " + bad.expected + ", found " + bad.found + ": left out");
     }
-  }
-
-  void said(const Message& message, std::size_t clock) {
-    is_running_ = true;
-    const char level = message.content[0];
-    const double time_s = number(Basic::uint64, message.content.data() + clock) / ticks_per_s;
-    log_.messages.push_back({time_s, level >= '0' && level <= '7' ? level - '0' : 6,
-                             std::string(text_of(message.content.substr(clock + 8)))});
   }
 
   const LogSelection& selection_;
@@ -274,7 +227,6 @@ class Reader {
   std::map<std::pair<std::string, int>, std::size_t> opened_;
   bool is_running_ = false;  ///< the log's definitions are over
   std::size_t rows_ = 0;
-  double last_time_s_ = 0;
   std::uint64_t next_progress_ = 0;
 };
 

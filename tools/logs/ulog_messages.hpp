@@ -33,12 +33,11 @@ class Messages {
       : file_(file), name_(std::move(name)), warnings_(warnings) {}
 
   /// `reader.take(message)` may throw BadMessage; `reader.fits(message)` says whether one is as its type demands;
-  /// `reader.in_data()` whether a row has been read; `reader.begin(start_us)` is told when the logger began,
-  /// `reader.progress(bytes)` how far the walk is.
+  /// `reader.in_data()` whether a row has been read; `reader.progress(bytes)` is told how far the walk is.
   /// Throws InputError: no ULog file, one of an incompatible kind, a bad message before the data.
   template <class Reader>
   void walk(Reader& reader) {
-    reader.begin(read_header());
+    check_header();
     for (const auto& [begin, end] : sections()) {
       position_ = begin;
       end_ = end;
@@ -78,8 +77,7 @@ class Messages {
     throw InputError(name_, 0, 0, expected + " at byte " + std::to_string(place), found);
   }
 
-  /// The time stamp of the log's start.
-  std::uint64_t read_header() {
+  void check_header() {
     const std::string_view header = file_.at(0, file_header_size);
     if (header.substr(0, magic.size()) != magic) {
       throw InputError(name_, 0, 0, "a ULog file, which begins with ULog 01 12 35 (hexadecimal)",
@@ -94,7 +92,6 @@ class Messages {
     if (version > newest_known_version) {
       warn(version_place, "version " + std::to_string(version) + " of the format, which is newer than this reader");
     }
-    return little_endian<std::uint64_t>(header.data() + start_place);
   }
 
   /// The log itself, and what a crash dump appended to it.

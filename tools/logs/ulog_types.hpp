@@ -14,7 +14,7 @@
 namespace pinnquad::logs::ulog {
 
 inline constexpr std::string_view magic{"ULog\x01\x12\x35", 7};
-inline constexpr std::size_t version_place = 7, start_place = 8;
+inline constexpr std::size_t version_place = 7;
 inline constexpr std::size_t file_header_size = 16;  ///< magic, version, time stamp of the log's start
 inline constexpr std::uint8_t newest_known_version = 1;
 

@@ -95,10 +95,7 @@ FlightLog read_usd_log(const std::string& path) {
   for (unsigned kind = 0; kind < kinds; ++kind) {
     const unsigned id = bytes.u16();
     Event event{log.topics.size(), 0, {}};
-    LogTopic topic;
-    topic.name = bytes.text();
-    topic.file = path;
-    topic.places_are_lines = false;
+    LogTopic topic = LogTopic::of_bytes(bytes.text(), 0, path);
     const unsigned variables = bytes.u16();
     for (unsigned i = 0; i < variables; ++i) {
       const std::string variable = bytes.text();  // "name(f)"

@@ -213,20 +213,25 @@ class VehicleCheck {
     return false;
   }
 
+  /// The median of a number of the other flights, NaN where one has it not; none where no other has it.
+  template <class Of>
+  std::optional<double> usual_of_others(std::size_t i, const Of& of) const {
+    std::vector<double> others;
+    for (std::size_t k = 0; k < flights_.size(); ++k) {
+      if (k != i && !std::isnan(of(flights_[k]))) others.push_back(of(flights_[k]));
+    }
+    return others.empty() ? std::nullopt : std::optional(detail::median_of(std::move(others)));
+  }
+
   void check_lag(std::size_t i) {
     constexpr double longest_s = 0.12, apart_s = 0.06;
     const Judged& flight = flights_[i];
     if (!flight.lag_found) return;
-    std::vector<double> others;
-    for (std::size_t k = 0; k < flights_.size(); ++k) {
-      if (k != i && flights_[k].lag_found) others.push_back(flights_[k].lag_s);
-    }
+    const auto usual_s =
+        usual_of_others(i, [](const Judged& other) { return other.lag_found ? other.lag_s : std::nan(""); });
     const auto ms = [](double seconds) { return std::to_string(std::lround(1e3 * seconds)) + " ms"; };
     std::string than;
-    if (!others.empty()) {
-      const double usual_s = detail::median_of(std::move(others));
-      if (std::abs(flight.lag_s - usual_s) > apart_s) than = ", in the other flights " + ms(usual_s);
-    }
+    if (usual_s && std::abs(flight.lag_s - *usual_s) > apart_s) than = ", in the other flights " + ms(*usual_s);
     if (than.empty() && std::abs(flight.lag_s) < longest_s) return;
     say(i, "columns u1 to u4: the motion comes " + ms(std::abs(flight.lag_s)) +
                (flight.lag_s < 0 ? " before" : " after") + " the commands" + than +
@@ -283,12 +288,10 @@ class VehicleCheck {
     for (std::size_t i = 0; i < flights_.size(); ++i) {
       const double volts = flights_[i].found.mean_voltage_V;
       if (!(volts > 0)) continue;
-      std::vector<double> others;
-      for (std::size_t k = 0; k < flights_.size(); ++k) {
-        const double of_other = flights_[k].found.mean_voltage_V;
-        if (k != i && of_other > 0) others.push_back(of_other);
-      }
-      const double usual = others.empty() ? volts : detail::median_of(std::move(others));
+      const auto voltage = [](const Judged& other) {
+        return other.found.mean_voltage_V > 0 ? other.found.mean_voltage_V : std::nan("");
+      };
+      const double usual = usual_of_others(i, voltage).value_or(volts);
       const std::string is = "column battery_voltage: " + short_number(volts) + " V on average";
       if (volts < empty_V || volts > most_cells * full_V) {
         say(i, is + ", where batteries of 1 to 14 cells have 2.5 to 61.6 V: another unit");

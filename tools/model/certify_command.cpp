@@ -28,7 +28,6 @@ using programs::bias_time_constants_s, programs::Findings, programs::has_base, p
     programs::least_thrust_slope, programs::print_entry;
 
 constexpr int exit_neither = 3;
-constexpr std::array<const char*, 3> axes = {Roll::name, Pitch::name, Yaw::name};
 
 struct CertifyOptions {
   std::string model;
@@ -75,7 +74,7 @@ void print_with_rates(const Findings& findings) {
               "of an acceleration held from the window's first instant on, with the body rates that it makes");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double least = findings.with_rates[axis]->least(axis + 1);
-    print_entry("", in_words("%-5s ", axes[axis]) +
+    print_entry("", in_words("%-5s ", programs::axis_names[axis]) +
                         (std::isfinite(least) ? in_words("%.6f s^2/rad or more", least) : "nothing is known"));
     above = above && least > 0;
   }
@@ -121,7 +120,7 @@ void print_proof(const BlockModel& model, const Findings& findings) {
   print_entry("for", "all finite features, inside the envelope and outside of it");
   print_entry("by", in_words(*findings.proof));
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::string line = in_words("%-5s %.6f s^2/rad, %.2f of the airframe's own in hover", axes[axis],
+    std::string line = in_words("%-5s %.6f s^2/rad, %.2f of the airframe's own in hover", programs::axis_names[axis],
                                 findings.proof->held_slope[axis], findings.proof->held_slope[axis] / own[axis]);
     if (findings.past_or_future) {
       line += in_words(", of one that is held; of the present alone %.6f", findings.proof->slope[axis]);
@@ -153,15 +152,15 @@ void print_text(const BlockModel& model, const Findings& findings) {
                                     findings.search.evaluations, findings.search.seconds));
     for (std::size_t way = 0; way < findings.ways.size(); ++way) {
       print_entry(way == 0 ? "least" : "",
-                  in_words("%-5s %.6f s^2/rad%s", axes[findings.ways[way].axis], findings.search.least[way],
-                           findings.ways[way].held ? ", held" : ""));
+                  in_words("%-5s %.6f s^2/rad%s", programs::axis_names[findings.ways[way].axis],
+                           findings.search.least[way], findings.ways[way].held ? ", held" : ""));
     }
     print_provable(findings);
     return;
   }
   print_entry("refuted",
               in_words("more %s acceleration is asked, and less is commanded: found after %ld motions, %.3f s",
-                       axes[found->asked.axis], findings.search.evaluations, findings.search.seconds));
+                       programs::axis_names[found->asked.axis], findings.search.evaluations, findings.search.seconds));
   print_entry("at", "(inside the training envelope)");
   for (std::size_t i = 0; i < found->x.size(); ++i) {
     print_entry("", in_words("%-12s %.9g", findings.names[i].c_str(), found->x[i]));

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -64,16 +64,26 @@ inline const logs::LogColumn& core_column(const logs::LogTopic& topic, const std
 
 }  // namespace detail
 
+/// Calls `visit(name, unit, number)` for each number of a record, those of an array by names as "attitude[0]".
+template <class Record, class Visit>
+void each_core_number(Record& record, const Visit& visit) {
+  Record::each_number(record, [&visit](const std::string& name, const char* unit, auto& value) {
+    if constexpr (std::is_array_v<std::remove_reference_t<decltype(value)>>) {
+      for (std::size_t i = 0; i < std::size(value); ++i) visit(name + "[" + std::to_string(i) + "]", unit, value[i]);
+    } else {
+      visit(name, unit, value);
+    }
+  });
+}
+
 /// Gives a topic a record's columns `names`, as a record is made, where it lacks them.
 template <class Names>
 void add_core_columns(logs::LogTopic& topic, const Names& names) {
-  const pinnquad::autopilot::CoreRecord layout{};
-  pinnquad::autopilot::CoreRecord::each_number(layout, [&](const char* name, const char*, const auto& value) {
-    if constexpr (!std::is_array_v<std::remove_reference_t<decltype(value)>>) {
-      const bool meant = std::find(names.begin(), names.end(), std::string_view(name)) != names.end();
-      if (!meant || topic.column(name) != nullptr || topic.text(name) != nullptr) return;
-      topic.columns.push_back({name, std::vector<double>(topic.size(), static_cast<double>(value))});
-    }
+  pinnquad::autopilot::CoreRecord layout{};
+  each_core_number(layout, [&](const std::string& name, const char*, auto value) {
+    const bool meant = std::find(names.begin(), names.end(), name) != names.end();
+    if (!meant || topic.column(name) != nullptr || topic.text(name) != nullptr) return;
+    topic.columns.push_back({name, std::vector<double>(topic.size(), static_cast<double>(value))});
   });
 }
 
@@ -90,35 +100,17 @@ inline void refuse_earlier_core(const logs::LogTopic& topic) {
 /// out what it does not know: that is as a record is made, or 0 of its settings. Columns are added to the topic.
 template <class Record>
 void complete_core_topic(logs::LogTopic& topic) {
+  constexpr bool of_settings = std::is_same_v<Record, pinnquad::autopilot::CoreSettings>;
   Record layout{};
-  if constexpr (std::is_same_v<Record, pinnquad::autopilot::CoreSettings>) {  // a setting that is left out was none
-    Record::each_number(layout, [](const char*, const char*, auto& value) {
-      if constexpr (std::is_array_v<std::remove_reference_t<decltype(value)>>) {
-        for (auto& number : value) number = {};
-      } else {
-        value = {};
-      }
-    });
-  }
-  const auto add = [&topic](const std::string& name, double value) {
+  each_core_number(layout, [&topic](const std::string& name, const char*, auto value) {
     if (topic.column(name) != nullptr) return;
     const bool is_time = name.size() > 3 && name.rfind("_us") == name.size() - 3;
     const logs::LogColumn* in_ms = topic.column((is_time ? name.substr(0, name.size() - 3) : name) + "_ms");
-    logs::LogColumn column{name, std::vector<double>(topic.size(), value)};
-    if (in_ms != nullptr) {
-      for (std::size_t row = 0; row < column.values.size(); ++row) column.values[row] = 1000 * in_ms->values[row];
+    logs::LogColumn column{name, std::vector<double>(topic.size(), of_settings ? 0 : static_cast<double>(value))};
+    for (std::size_t row = 0; in_ms != nullptr && row < column.values.size(); ++row) {
+      column.values[row] = 1000 * in_ms->values[row];
     }
     topic.columns.push_back(std::move(column));
-  };
-  Record::each_number(layout, [&add](const char* name, const char*, const auto& value) {
-    using Value = std::remove_reference_t<decltype(value)>;
-    if constexpr (std::is_array_v<Value>) {
-      for (std::size_t i = 0; i < std::extent_v<Value>; ++i) {
-        add(name + ("[" + std::to_string(i) + "]"), static_cast<double>(value[i]));
-      }
-    } else {
-      add(name, static_cast<double>(value));
-    }
   });
 }
 
@@ -127,30 +119,15 @@ void complete_core_topic(logs::LogTopic& topic) {
 template <class Record>
 std::vector<Record> core_records(const logs::LogTopic& topic) {
   std::vector<const logs::LogColumn*> columns;
-  const Record layout{};
-  Record::each_number(layout, [&](const char* name, const char*, const auto& value) {
-    using Value = std::remove_reference_t<decltype(value)>;
-    if constexpr (std::is_array_v<Value>) {
-      for (std::size_t i = 0; i < std::extent_v<Value>; ++i) {
-        columns.push_back(&detail::core_column(topic, name + ("[" + std::to_string(i) + "]")));
-      }
-    } else {
-      columns.push_back(&detail::core_column(topic, name));
-    }
+  Record layout{};
+  each_core_number(layout, [&](const std::string& name, const char*, auto) {
+    columns.push_back(&detail::core_column(topic, name));
   });
   std::vector<Record> records(topic.size());
   for (std::size_t row = 0; row < records.size(); ++row) {
     auto column = columns.begin();
-    const auto take = [&](auto& number) {
-      number = detail::core_number<std::decay_t<decltype(number)>>(topic, **column, row);
-      ++column;
-    };
-    Record::each_number(records[row], [&](const char*, const char*, auto& value) {
-      if constexpr (std::is_array_v<std::remove_reference_t<decltype(value)>>) {
-        for (auto& number : value) take(number);
-      } else {
-        take(value);
-      }
+    each_core_number(records[row], [&](const std::string&, const char*, auto& number) {
+      number = detail::core_number<std::decay_t<decltype(number)>>(topic, **column++, row);
     });
   }
   return records;

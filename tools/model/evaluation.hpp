@@ -67,7 +67,7 @@ inline pinnquad::RowSet rows_to_judge(const pinnquad::Dataset& dataset, const st
 inline nlohmann::json evaluation_json(const pinnquad::BlockModel& model, const pinnquad::Dataset& dataset,
                                       const std::string& which, const EvaluatedModel& evaluation) {
   nlohmann::json all = nlohmann::json::object();
-  for (const Figure& figure : figures()) all[figure.name] = figure.of(evaluation.judged, figure.index);
+  for (const Figure& figure : figures()) all[figure.name] = figure.of(evaluation.judged);
   nlohmann::json report = {{"model", model.path()},
                            {"answer", model.answer()},
                            {"airframe", model.airframe_name()},

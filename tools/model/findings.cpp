@@ -7,12 +7,11 @@
 #include "model/searched_model.hpp"
 #include "pinnquad/outputs/residual_outputs.hpp"
 #include "training/certificate_words.hpp"
+#include "training/model_figures.hpp"
 
 namespace programs {
 
 using namespace pinnquad;
-
-static constexpr std::array<const char*, 3> axes = {Roll::name, Pitch::name, Yaw::name};
 
 const char* in_words(const BlockModel::ProvenSigns& proof) {
   if (!proof.structure) return "the model is affine: its derivatives are the same everywhere";
@@ -83,12 +82,6 @@ static const char* verdict_of(const Findings& findings) {
   return findings.proven() ? "proven" : (findings.search.found ? "counterexample" : "neither");
 }
 
-static nlohmann::json by_axis(const std::array<double, 3>& values) {
-  nlohmann::json all = nlohmann::json::object();
-  for (std::size_t axis = 0; axis < 3; ++axis) all[axes[axis]] = values[axis];
-  return all;
-}
-
 double least_thrust_slope(const Findings& findings) {
   return findings.certificate()->held_thrust_slope + findings.thrust->residual_least[0];
 }
@@ -133,7 +126,7 @@ nlohmann::json findings_json(const BlockModel& model, const Findings& findings) 
     add_thrust(model, findings, report);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto& response = findings.with_rates[axis];
-      if (response) report["held_slope_with_body_rates"][axes[axis]] = response->least(axis + 1);
+      if (response) report["held_slope_with_body_rates"][axis_names[axis]] = response->least(axis + 1);
     }
     if (std::isfinite(findings.certificate()->rounding)) {
       const double* step = findings.certificate()->sure_step;
@@ -147,7 +140,8 @@ nlohmann::json findings_json(const BlockModel& model, const Findings& findings) 
     report["seconds"] = findings.search.seconds;
     for (std::size_t way = 0; way < findings.ways.size(); ++way) {
       const AskedMore& asked = findings.ways[way];
-      report[asked.held ? "least_held_derivative" : "least_derivative"][axes[asked.axis]] = findings.search.least[way];
+      report[asked.held ? "least_held_derivative" : "least_derivative"][axis_names[asked.axis]] =
+          findings.search.least[way];
     }
   }
   if (!findings.proven() && findings.search.found) {
@@ -156,7 +150,7 @@ nlohmann::json findings_json(const BlockModel& model, const Findings& findings) 
     for (std::size_t i = 0; i < found.x.size(); ++i) features[findings.names[i]] = found.x[i];
     nlohmann::json moved = nlohmann::json::array();
     for (const std::size_t place : found.asked.places) moved.push_back(findings.names[place]);
-    report["counterexample"] = {{"axis", axes[found.asked.axis]},
+    report["counterexample"] = {{"axis", axis_names[found.asked.axis]},
                                 {"features", features},
                                 {"moved", moved},
                                 {"step", found.step},

@@ -136,26 +136,22 @@ class LearntVehicle {
           swapped{"swap", Shape::squares, colour::red};
       if (k != 0) flown.name = candidates.name = swapped.name = "";
       low.dashed = high.dashed = true;
-      const auto add = [](Series& series, double x, double y) {
-        series.x.push_back(x);
-        series.y.push_back(y);
-      };
       Of before;
       for (const Moment& moment : moments_) {
         const Of& now = moment.flown[k];
         if (!flown.x.empty() && (now.slope < before.slope || now.slope > before.slope)) {  // a step
-          add(flown, moment.time_s, before.slope / start);
+          flown.add(moment.time_s, before.slope / start);
         }
-        add(flown, moment.time_s, now.slope / start);
+        flown.add(moment.time_s, now.slope / start);
         const double half = now.proven ? now.half_width / std::fabs(start) : nan;
-        add(low, moment.time_s, now.slope / start - half);
-        add(high, moment.time_s, now.slope / start + half);
+        low.add(moment.time_s, now.slope / start - half);
+        high.add(moment.time_s, now.slope / start + half);
         const double candidate = moment.candidate[k].slope / start;
-        if (candidate > 0 && candidate < 4) add(candidates, moment.time_s, candidate);
+        if (candidate > 0 && candidate < 4) candidates.add(moment.time_s, candidate);
         before = now;
       }
       for (const Swap& swap : swaps_) {
-        if (swap.sum == k) add(swapped, swap.time_s, swap.slope / start);
+        if (swap.sum == k) swapped.add(swap.time_s, swap.slope / start);
       }
       const std::string rule = before.rule == std::string(to_string(pinnquad::OnboardRule::none))
                                    ? std::string()
@@ -168,7 +164,7 @@ class LearntVehicle {
       if (truth && !flown.x.empty()) {
         Series known{k == 0 ? "truth" : "", Shape::line, colour::green};
         known.dashed = true;
-        for (const double end : {flown.x.front(), flown.x.back()}) add(known, end, (*truth)[k] / start);
+        for (const double end : {flown.x.front(), flown.x.back()}) known.add(end, (*truth)[k] / start);
         panel.series.insert(panel.series.begin(), known);
       }
       chart.panels.push_back(panel);

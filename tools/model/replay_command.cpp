@@ -27,7 +27,8 @@
 #include "model/replay_core.hpp"
 #include "model/replay_input.hpp"
 #include "model/replay_summary.hpp"
-#include "model/replay_table.hpp"
+#include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/csv_table.hpp"
 
 namespace {
 
@@ -56,7 +57,7 @@ void apply_setting(const std::string& text, pinnquad::autopilot::CoreSettings& s
   const std::string name = text.substr(0, equals);
   bool found = false;
   std::string known;
-  const auto take = [&](const std::string& of, const char* unit, auto& number) {
+  programs::each_core_number(settings, [&](const std::string& of, const char* unit, auto& number) {
     if (of == "timestamp") return;
     programs::add_to_list(known, of);
     if (name != of) return;
@@ -72,13 +73,6 @@ void apply_setting(const std::string& text, pinnquad::autopilot::CoreSettings& s
           (std::string(unit) == "1" ? "" : std::string(" in ") + unit) + ", found '" + text + "'");
     }
     number = static_cast<Number>(value);
-  };
-  pinnquad::autopilot::CoreSettings::each_number(settings, [&](const char* of, const char* unit, auto& value) {
-    if constexpr (std::is_array_v<std::remove_reference_t<decltype(value)>>) {
-      for (std::size_t i = 0; i < std::size(value); ++i) take(of + ("[" + std::to_string(i) + "]"), unit, value[i]);
-    } else {
-      take(of, unit, value);
-    }
   });
   if (!found) throw std::invalid_argument("--set: no setting named '" + name + "'; known: " + known);
 }
@@ -249,6 +243,35 @@ void print_head(const ReplayOptions& options, const Replayed& replayed, const st
                   : "InverseDynamics behind the flight stacks' guard: falls back to the analytic inverse");
 }
 
+/// Row by row as CSV; commands that were not there are empty cells.
+void write_table(const std::string& path, const Replayed& replayed) {
+  constexpr std::size_t rows_per_report = 1000;
+  programs::ProgressLine progress("writing " + printable(path));
+  AtomicFile file(path);
+  std::vector<std::string> head = {"flight", replayed.of_core ? "tick" : "row", "t", "answered_by", "status", "cause"};
+  if (replayed.of_core) head.push_back("reaction");
+  for (const char* name : {"u1", "u2", "u3", "u4", "logged_u1", "logged_u2", "logged_u3", "logged_u4", "worst_feature",
+                           "excess", "state", "reason"}) {
+    head.emplace_back(name);
+  }
+  if (replayed.of_core) head.push_back("differs");
+  file.stream() << csv_line(head);
+  for (std::size_t i = 0; i < replayed.rows.size(); ++i) {
+    const programs::ReplayedRow& row = replayed.rows[i];
+    std::vector<std::string> cells = {replayed.flights[row.flight], std::to_string(row.row), number_text(row.time_s),
+                                      to_string(row.answerer),      to_string(row.status),   to_string(row.cause)};
+    if (replayed.of_core) cells.push_back(row.reaction);
+    for (const programs::FourCommands* commands : {&row.commands, &row.logged}) {
+      for (const double u : *commands) cells.push_back(std::isnan(u) ? "" : number_text(u));
+    }
+    cells.insert(cells.end(), {row.feature, number_text(row.excess), row.state, row.reason});
+    if (replayed.of_core) cells.push_back(row.differs);
+    file.stream() << csv_line(cells);
+    if (i % rows_per_report == 0) progress.update(static_cast<double>(i) / static_cast<double>(replayed.rows.size()));
+  }
+  file.commit();
+}
+
 int replay(const ReplayOptions& options) {
   programs::FileRoles roles;
   roles.reads("LOG", options.log);
@@ -261,10 +284,7 @@ int replay(const ReplayOptions& options) {
   const Replayed replayed =
       input.of_core() ? replay_core(options, input, models) : replay_flights(options, input, models);
   const programs::ReplaySummary summary = programs::summary_of(replayed);
-  if (!options.out.empty()) {
-    programs::ProgressLine progress("writing " + printable(options.out));
-    programs::write_replay_table(options.out, replayed, [&](double share) { progress.update(share); });
-  }
+  if (!options.out.empty()) write_table(options.out, replayed);
   if (options.json) {
     nlohmann::json json = programs::as_json(replayed, summary);
     json["log"] = options.log;

@@ -121,9 +121,7 @@ inline ReplayInput read_core_topics(const std::string& path, logs::FlightLog& lo
   if (const logs::LogTopic* settings = log.topic(pinnquad::autopilot::CoreSettings::topic))
     take_settings(*settings, input);
   for (const std::string& warning : log.warnings) input.notes.push_back(warning);
-  if (!log.dropouts.empty()) {
-    input.notes.push_back(in_words("the logger dropped out %zu times", log.dropouts.size()));
-  }
+  if (log.dropouts > 0) input.notes.push_back(in_words("the logger dropped out %zu times", log.dropouts));
   return input;
 }
 

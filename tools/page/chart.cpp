@@ -2,7 +2,6 @@
 #include "page/chart.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +14,18 @@
 #include "pinnquad/io/atomic_file.hpp"
 
 namespace programs {
+
+// what charts/main.js reads
+NLOHMANN_JSON_SERIALIZE_ENUM(Shape, {{Shape::line, "line"},
+                                     {Shape::dots, "dots"},
+                                     {Shape::pluses, "pluses"},
+                                     {Shape::squares, "squares"},
+                                     {Shape::strokes, "strokes"}})
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Series, name, shape, colour, x, y, width, opacity, dashed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Axis, name, least, most, logarithmic, rows)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Panel, title, note, x, y, height, series)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Chart, description, columns, panels)
+
 namespace {
 
 constexpr double wide = 640, letter = 6.9, line_height = 17;
@@ -306,49 +317,23 @@ std::string drawn_chart(const Chart& chart, double width, double& y) {
 }
 
 /// Seven digits: finer than the eye, and half the page.
-nlohmann::json rounded(const std::vector<double>& values) {
-  nlohmann::json list = nlohmann::json::array();
-  for (const double value : values) {
+void round_values(std::vector<double>& values) {
+  for (double& value : values) {
     char text[32];
     std::snprintf(text, sizeof text, "%.7g", value);
-    list.push_back(std::strtod(text, nullptr));  // what is not finite is null in JSON
+    value = std::strtod(text, nullptr);
   }
-  return list;
 }
 
-nlohmann::json axis_json(const Axis& axis) {
-  return {{"name", axis.name},
-          {"least", axis.least},
-          {"most", axis.most},
-          {"logarithmic", axis.logarithmic},
-          {"rows", axis.rows}};
-}
-
-/// Data for charts/main.js. Nothing in it can end the element that holds it.
-std::string json_of(const Chart& chart) {
-  constexpr std::array<const char*, 5> shapes = {"line", "dots", "pluses", "squares", "strokes"};
-  nlohmann::json panels = nlohmann::json::array();
-  for (const Panel& panel : chart.panels) {
-    nlohmann::json all = nlohmann::json::array();
-    for (const Series& series : panel.series) {
-      all.push_back({{"name", series.name},
-                     {"shape", shapes[static_cast<std::size_t>(series.shape)]},
-                     {"colour", series.colour},
-                     {"x", rounded(series.x)},
-                     {"y", rounded(series.y)},
-                     {"width", series.width},
-                     {"opacity", series.opacity},
-                     {"dashed", series.dashed}});
+/// Data for charts/main.js; what is not finite is null. Nothing in it can end the element that holds it.
+std::string json_of(Chart chart) {
+  for (Panel& panel : chart.panels) {
+    for (Series& series : panel.series) {
+      round_values(series.x);
+      round_values(series.y);
     }
-    panels.push_back({{"title", panel.title},
-                      {"note", panel.note},
-                      {"x", axis_json(panel.x)},
-                      {"y", axis_json(panel.y)},
-                      {"height", panel.height},
-                      {"series", all}});
   }
-  const nlohmann::json json = {{"description", chart.description}, {"columns", chart.columns}, {"panels", panels}};
-  std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string text = nlohmann::json(chart).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   for (std::size_t place; (place = text.find('<')) != std::string::npos;) text.replace(place, 1, "\\u003c");
   return text;
 }

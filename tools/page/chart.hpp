@@ -29,6 +29,13 @@ struct Series {
   double opacity = 1;
   bool dashed = false;
   bool right = false;  ///< y counts on the panel's right axis
+
+  void add(double at_x, double at_y) {
+    x.push_back(at_x);
+    y.push_back(at_y);
+  }
+  /// Breaks a line.
+  void add_gap() { add(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()); }
 };
 
 /// An end that is NaN lies where the series end. What lies outside is not drawn.

@@ -13,7 +13,8 @@
 namespace programs {
 namespace {
 
-/// JSON as the template reads it. It cannot ask whether a list has entries: beside a list `x` there is `any_x`.
+/// JSON as the template reads it: null and an empty text are as false. It cannot ask whether a list has entries: beside
+/// a list `x` there is `any_x`.
 kainjow::mustache::data mustache_data(const nlohmann::json& value) {
   using kainjow::mustache::data;
   if (value.is_object()) {
@@ -29,7 +30,7 @@ kainjow::mustache::data mustache_data(const nlohmann::json& value) {
     for (const nlohmann::json& item : value) list.push_back(mustache_data(item));
     return list;
   }
-  if (value.is_boolean()) return data(value.get<bool>());
+  if (value.is_boolean() || value.is_null() || value == "") return data(value == true);
   return data(value.is_string() ? value.get<std::string>() : value.dump());
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "page/watch_page.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -48,8 +49,6 @@ std::string column(const Rows& rows, std::size_t width, const Get& get) {
   return base64_of(values);
 }
 
-double within(double low, double value, double high) { return value < low ? low : (value > high ? high : value); }
-
 /// Numbers as JSON wants them, with all the digits that a float has.
 std::string digits(double value) {
   char text[32];
@@ -83,8 +82,8 @@ void WatchPage::add(const pinnquad::VehicleState<double>& vehicle, const pinnqua
     row.velocity_m_s[i] = static_cast<float>(vehicle.body.velocity_m_s[i]);
   }
   for (std::size_t i = 0; i < 4 && row.finite; ++i) {  // a NaN has no integer
-    row.attitude[i] = static_cast<std::int16_t>(std::lround(within(-1, attitude[i], 1) * 32767));
-    row.commands[i] = static_cast<std::uint16_t>(std::lround(within(0, commands[i], 1) * 65535));
+    row.attitude[i] = static_cast<std::int16_t>(std::lround(std::clamp(attitude[i], -1.0, 1.0) * 32767));
+    row.commands[i] = static_cast<std::uint16_t>(std::lround(std::clamp(commands[i], 0.0, 1.0) * 65535));
   }
   rows_.push_back(row);
 }

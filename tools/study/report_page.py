@@ -38,7 +38,7 @@ def whole_page(template, figures, drawings):
     body = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined,
                               finalize=without_control).from_string((HERE / template).read_text())
     parts = {"title": html.escape(figures["title"]), "body": body.render(figures, drawings=drawings),
-             "style": (PAGE / "palette.css").read_text() + (PAGE / "text.css").read_text()}
+             "style": "".join(path.read_text() for path in (PAGE / "palette.css", PAGE / "text.css", HERE / "report.css"))}
     return re.sub(r"\{\{\{?(\w+)\}?\}\}", lambda name: parts[name[1]], (PAGE / "page.html").read_text())
 
 

@@ -59,8 +59,7 @@ inline std::string table_row(const RowId& id, int epochs, const Outcome& outcome
   using pinnquad::number_text;
   std::string text = id.model + "," + id.flight + "," + std::to_string(id.flight_seed) + "," + std::to_string(id.seed) +
                      "," + std::to_string(epochs) + "," + weights_name(outcome.best_weights);
-  for (const programs::Figure& figure : programs::figures())
-    text += "," + number_text(figure.of(outcome.test, figure.index));
+  for (const programs::Figure& figure : programs::figures()) text += "," + number_text(figure.of(outcome.test));
   return text + "," + number_text(outcome.validation_mae) + "," + number_text(outcome.training_s);
 }
 

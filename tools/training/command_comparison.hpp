@@ -21,16 +21,14 @@
 namespace programs {
 
 struct ComparedCommands {
-  static constexpr std::array<double, pinnquad::rotor_count> all_of_one_sign = {1, 1, 1, 1};
   std::array<std::vector<double>, 4> model, formula;  ///< of each sum, tick by tick
 
   void take(const pinnquad::Airframe<double>& airframe, const pinnquad::Commands<double>& by_model,
             const pinnquad::Commands<double>& by_formula) {
-    const auto about = pinnquad::axis_signs(airframe);
-    for (std::size_t sum = 0; sum < sum_names.size(); ++sum) {
-      const std::array<double, pinnquad::rotor_count> signs = sum == 0 ? all_of_one_sign : about[sum - 1];
-      model[sum].push_back(pinnquad::signed_sum(signs, by_model));
-      formula[sum].push_back(pinnquad::signed_sum(signs, by_formula));
+    const auto signs = sum_signs(airframe);
+    for (std::size_t sum = 0; sum < signs.size(); ++sum) {
+      model[sum].push_back(pinnquad::signed_sum(signs[sum], by_model));
+      formula[sum].push_back(pinnquad::signed_sum(signs[sum], by_formula));
     }
   }
 };

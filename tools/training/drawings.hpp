@@ -34,21 +34,18 @@ inline Chart path_chart(const FlownTraces& flown) {
   path.series = {{"planned", Shape::line, colour::muted, with.planned_east_m, with.planned_north_m, 4, 0.45},
                  {"without the model", Shape::line, colour::orange, without.east_m, without.north_m},
                  {"with the model", Shape::line, colour::blue, with.east_m, with.north_m}};
-  double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
-  for (const Series& series : path.series) {
-    for (const std::vector<double>* values : {&series.x, &series.y}) {
-      const std::size_t axis = values == &series.x ? 0 : 1;
-      for (const double value : *values) {
-        low[axis] = std::min(low[axis], value);
-        high[axis] = std::max(high[axis], value);
-      }
+  const auto ends = [&path](std::vector<double> Series::*of) {
+    std::pair<double, double> range{1e9, -1e9};
+    for (const Series& series : path.series) {
+      for (const double value : series.*of) range = {std::min(range.first, value), std::max(range.second, value)};
     }
-  }
-  const double half = 0.55 * std::max({high[0] - low[0], high[1] - low[1], 0.1});  // one scale on both axes
-  path.x.least = (low[0] + high[0]) / 2 - half;
-  path.x.most = (low[0] + high[0]) / 2 + half;
-  path.y.least = (low[1] + high[1]) / 2 - half;
-  path.y.most = (low[1] + high[1]) / 2 + half;
+    return range;
+  };
+  const auto [west, east] = ends(&Series::x);
+  const auto [south, north] = ends(&Series::y);
+  const double half = 0.55 * std::max({east - west, north - south, 0.1});  // one scale on both axes
+  path.x.least = (west + east) / 2 - half, path.x.most = (west + east) / 2 + half;
+  path.y.least = (south + north) / 2 - half, path.y.most = (south + north) / 2 + half;
   Panel error;
   error.title = "Distance from the path";
   error.x.name = "time, s";
@@ -73,8 +70,7 @@ inline Chart flights_chart(const JudgedKinds& judged, const std::vector<std::siz
   const auto marks = [&](std::size_t k, Series series) {
     const std::vector<double> errors = error_of_flights(judged.kinds[k]);
     for (std::size_t flight = 0; flight < errors.size(); ++flight) {
-      series.x.push_back(1e3 * errors[flight]);
-      series.y.push_back(static_cast<double>(flight));
+      series.add(1e3 * errors[flight], static_cast<double>(flight));
     }
     panel.series.push_back(series);
   };
@@ -130,10 +126,8 @@ inline Panel errors_over_panel(const JudgedKinds& judged, const std::vector<std:
         square += over.square[kind][order[i]];
       }
       const auto count = static_cast<double>(end - begin);
-      root.x.push_back(value / count);
-      root.y.push_back(1e3 * std::sqrt(square / count));
-      mean.x.push_back(value / count);
-      mean.y.push_back(1e3 * error / count);
+      root.add(value / count, 1e3 * std::sqrt(square / count));
+      mean.add(value / count, 1e3 * error / count);
     }
     panel.series.insert(panel.series.end(), {root, mean});
   }
@@ -172,12 +166,10 @@ inline Chart moment_chart(const WorstMoment& moment, const pinnquad::FlightRows&
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
       Series& series = panel.series[i];
       if (gap && i == 0) {
-        series.x.push_back(pinnquad::not_a_number);
-        series.y.push_back(pinnquad::not_a_number);
+        series.add_gap();
       }
-      series.x.push_back(flight[row].time_s);
-      series.y.push_back(i == 0 ? flight[row].commands[moment.motor]
-                                : (*predictions[i - 1])[moment.held_out + row - moment.row][moment.motor]);
+      series.add(flight[row].time_s, i == 0 ? flight[row].commands[moment.motor]
+                                            : (*predictions[i - 1])[moment.held_out + row - moment.row][moment.motor]);
     }
   }
   return {"Command of motor u" + std::to_string(moment.motor + 1) + " about the moment",
@@ -201,10 +193,8 @@ inline Chart stretch_chart(const HeldOutStretch& stretch, const std::string& mod
         predicted{model, Shape::line, colour_of_shown[0]};
     for (std::size_t i = 0; i < stretch.size; ++i) {
       const pinnquad::Sample& sample = (*stretch.flight)[stretch.row + i];
-      flown.x.push_back(sample.time_s);
-      flown.y.push_back(pinnquad::signed_sum(signs[sum], sample.commands));
-      predicted.x.push_back(sample.time_s);
-      predicted.y.push_back(pinnquad::signed_sum(signs[sum], predictions[stretch.held_out + i]));
+      flown.add(sample.time_s, pinnquad::signed_sum(signs[sum], sample.commands));
+      predicted.add(sample.time_s, pinnquad::signed_sum(signs[sum], predictions[stretch.held_out + i]));
     }
     panel.series = {flown, predicted};
     chart.panels.push_back(panel);
@@ -271,15 +261,13 @@ inline Chart response_chart(const HeldOutDynamics& dynamics) {
         const double value = figure == 0 ? decibels(band) : figure == 1 ? degrees(band) : coherence;
         if (figure == 1 && std::abs(value - before) > 180) {  // once round: no line across
           for (Series* line : {&weak, &clear}) {
-            line->x.push_back(band.frequency_hz);
-            line->y.push_back(pinnquad::not_a_number);
+            line->add(band.frequency_hz, pinnquad::not_a_number);
           }
         }
         before = value;
-        weak.x.push_back(band.frequency_hz);
-        weak.y.push_back(coherence > band.chance_coherence() ? value : pinnquad::not_a_number);
-        clear.x.push_back(band.frequency_hz);
-        clear.y.push_back(figure == 2 || coherence >= FollowedRange::least_coherence ? value : pinnquad::not_a_number);
+        weak.add(band.frequency_hz, coherence > band.chance_coherence() ? value : pinnquad::not_a_number);
+        clear.add(band.frequency_hz,
+                  figure == 2 || coherence >= FollowedRange::least_coherence ? value : pinnquad::not_a_number);
       }
       if (figure < 2) panels[figure].series.push_back(weak);
       panels[figure].series.push_back(clear);
@@ -307,10 +295,8 @@ inline Chart residual_chart(const HeldOutDynamics& dynamics, const std::string& 
     Series flown{"flown", Shape::line, colour::muted, {}, {}, 3, 0.55},
         residual{"residual, flown − predicted", Shape::line, colour_of_shown[0]};
     for (const SpectralBand& band : bands) {
-      flown.x.push_back(band.frequency_hz);
-      flown.y.push_back(detail::decibels(band.output));
-      residual.x.push_back(band.frequency_hz);
-      residual.y.push_back(detail::decibels(band.input));
+      flown.add(band.frequency_hz, detail::decibels(band.output));
+      residual.add(band.frequency_hz, detail::decibels(band.input));
     }
     double lowest = HUGE_VAL;
     for (const Series* series : {&flown, &residual}) {

@@ -86,20 +86,7 @@ class FitStore : public KnownFits {
     fnv.absorb_word(ignored ? 0 : size);
     const auto time = std::filesystem::last_write_time(program, ignored);
     fnv.absorb_word(ignored ? 0 : static_cast<std::uint64_t>(time.time_since_epoch().count()));
-    const pinnquad::Airframe<double>& a = plan.airframe.value;
-    for (const double v : {a.mass_kg, a.thrust_coefficient, a.power_coefficient, a.propeller_diameter_m,
-                           a.max_rotor_speed_rev_s, a.rotor_time_constant_s}) {
-      absorb(fnv, v);
-    }
-    for (const auto* triple : {&a.inertia_kg_m2, &a.inertia_products_kg_m2, &a.drag_area_m2}) {
-      for (const double v : *triple) absorb(fnv, v);
-    }
-    for (const auto& rotor : a.rotors) {
-      for (const double v : {rotor.x_m, rotor.y_m, rotor.z_m, rotor.thrust_scale, rotor.thrust_curve,
-                             static_cast<double>(static_cast<int>(rotor.spin))}) {
-        absorb(fnv, v);
-      }
-    }
+    each_number(plan.airframe.value, [&fnv](auto number) { absorb(fnv, static_cast<double>(number)); });
     for (const std::string& name : plan.absent) fnv.absorb_text(name);
     absorb(fnv, plan.sample_period_s);
     absorb(fnv, plan.past.delay_s);

@@ -244,9 +244,9 @@ inline HeldOutDynamics held_out_dynamics(const FitPlan& plan, const Fits& fits, 
     return result;
   }
   result.segment_s = static_cast<double>(length) * result.period_s;
-  const auto about = pinnquad::axis_signs(plan.airframe.value);
+  const auto all_signs = sum_signs(plan.airframe.value);
   for (std::size_t sum = 0; sum < sum_names.size(); ++sum) {
-    const MotorFigures signs = sum == 0 ? MotorFigures{1, 1, 1, 1} : about[sum - 1];
+    const MotorFigures& signs = all_signs[sum];
     const WelchSpectra spectra = detail::spectra_of(
         stretches, predictions, length, result.period_s, [&signs](const auto& flown, const auto& predicted) {
           return std::pair{pinnquad::signed_sum(signs, predicted), pinnquad::signed_sum(signs, flown)};

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_line/in_words.hpp"
 #include "pinnquad/data/row_set.hpp"
-#include "pinnquad/dynamics/rotor.hpp"
+#include "pinnquad/dynamics/allocation.hpp"
 #include "pinnquad/evaluation/judgement.hpp"
 #include "pinnquad/evaluation/summary.hpp"
 
@@ -17,6 +19,12 @@ namespace programs {
 constexpr std::array<const char*, 3> axis_names = {"roll", "pitch", "yaw"};
 /// Of the four commands: all of one sign, then those about the axes.
 constexpr std::array<const char*, 4> sum_names = {"thrust", "roll", "pitch", "yaw"};
+
+/// Signs of the commands in each of these sums.
+inline std::array<std::array<double, pinnquad::rotor_count>, 4> sum_signs(const pinnquad::Airframe<double>& airframe) {
+  const auto about = pinnquad::axis_signs(airframe);
+  return {{{1, 1, 1, 1}, about[0], about[1], about[2]}};
+}
 
 using pinnquad::axis_series;
 using pinnquad::AxisSeries;
@@ -74,38 +82,36 @@ inline PredictedRows rows_that_count(const pinnquad::RowSet& rows, const Predict
 /// A figure of a Judgement with its column name: the one list behind table, CSV and JSON.
 struct Figure {
   std::string name;
-  double (*of)(const Judgement&, std::size_t axis_or_motor);
-  std::size_t index;
+  std::function<double(const Judgement&)> of;
 };
 
 inline std::vector<Figure> figures() {
-  std::vector<Figure> list = {
-      {"mae", [](const Judgement& j, std::size_t) { return j.errors.mean.mean_absolute; }, 0},
-      {"rmse", [](const Judgement& j, std::size_t) { return j.errors.mean.root_mean_square; }, 0},
-      {"r2", [](const Judgement& j, std::size_t) { return j.errors.mean.r_squared; }, 0}};
-  for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
-    const std::string suffix = "_u" + std::to_string(motor + 1);
-    list.push_back(
-        {"mae" + suffix, [](const Judgement& j, std::size_t i) { return j.errors.per_motor[i].mean_absolute; }, motor});
-    list.push_back({"rmse" + suffix,
-                    [](const Judgement& j, std::size_t i) { return j.errors.per_motor[i].root_mean_square; }, motor});
-    list.push_back(
-        {"r2" + suffix, [](const Judgement& j, std::size_t i) { return j.errors.per_motor[i].r_squared; }, motor});
+  using Errors = pinnquad::detail::ErrorMeasures;
+  using Consistency = pinnquad::PhysicalConsistency;
+  constexpr std::pair<const char*, double Errors::*> of_errors[] = {
+      {"mae", &Errors::mean_absolute}, {"rmse", &Errors::root_mean_square}, {"r2", &Errors::r_squared}};
+  constexpr std::pair<const char*, double Consistency::*> of_axes[] = {
+      {"angle_difference_deg", &Consistency::angle_difference_deg},
+      {"raw_angle_difference_deg", &Consistency::raw_angle_difference_deg},
+      {"slope_error", &Consistency::slope_error},
+      {"correlation", &Consistency::predicted_correlation},
+      {"target_correlation", &Consistency::target_correlation},
+      {"sign_violation_share", &Consistency::sign_violation_share}};
+  std::vector<Figure> list;
+  for (const auto& [name, of] : of_errors) {
+    list.push_back({name, [of = of](const Judgement& j) { return j.errors.mean.*of; }});
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::string suffix = std::string("_") + axis_names[axis];
-    list.push_back({"angle_difference_deg" + suffix,
-                    [](const Judgement& j, std::size_t i) { return j.axes[i].angle_difference_deg; }, axis});
-    list.push_back({"raw_angle_difference_deg" + suffix,
-                    [](const Judgement& j, std::size_t i) { return j.axes[i].raw_angle_difference_deg; }, axis});
-    list.push_back(
-        {"slope_error" + suffix, [](const Judgement& j, std::size_t i) { return j.axes[i].slope_error; }, axis});
-    list.push_back({"correlation" + suffix,
-                    [](const Judgement& j, std::size_t i) { return j.axes[i].predicted_correlation; }, axis});
-    list.push_back({"target_correlation" + suffix,
-                    [](const Judgement& j, std::size_t i) { return j.axes[i].target_correlation; }, axis});
-    list.push_back({"sign_violation_share" + suffix,
-                    [](const Judgement& j, std::size_t i) { return j.axes[i].sign_violation_share; }, axis});
+  for (std::size_t motor = 0; motor < pinnquad::rotor_count; ++motor) {
+    for (const auto& [name, of] : of_errors) {
+      list.push_back({std::string(name) + "_u" + std::to_string(motor + 1),
+                      [of = of, motor](const Judgement& j) { return j.errors.per_motor[motor].*of; }});
+    }
+  }
+  for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
+    for (const auto& [name, of] : of_axes) {
+      list.push_back({std::string(name) + "_" + axis_names[axis],
+                      [of = of, axis](const Judgement& j) { return j.axes[axis].*of; }});
+    }
   }
   return list;
 }

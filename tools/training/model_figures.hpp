@@ -46,13 +46,17 @@ inline constexpr std::array<ModelFigure, 11> model_figures = {
       [](const Judgement& j, std::size_t i) { return j.derivatives.median[i] / j.nominal_slopes[i]; },
       "median derivative over nominal"}}};
 
+inline nlohmann::json by_axis(const AxisFigures& values) {
+  return {{axis_names[0], values[0]}, {axis_names[1], values[1]}, {axis_names[2], values[2]}};
+}
+
 /// Of one model: numbers, those of axes as {"roll": .., "pitch": .., "yaw": ..}.
 inline nlohmann::json figures_of_model(const Judgement& judged) {
   nlohmann::json result = nlohmann::json::object();
   for (const ModelFigure& figure : model_figures) {
     if (!figure.has_axes) result[figure.name] = figure.of(judged, 0);
-    for (std::size_t axis = 0; figure.has_axes && axis < axis_names.size(); ++axis) {
-      result[figure.name][axis_names[axis]] = figure.of(judged, axis);
+    if (figure.has_axes) {
+      result[figure.name] = by_axis({figure.of(judged, 0), figure.of(judged, 1), figure.of(judged, 2)});
     }
   }
   return result;
@@ -66,7 +70,7 @@ inline void print_figures(const Judgement& judged) {
   for (const Figure& figure : figures()) {
     const bool error = figure.name.rfind("mae", 0) == 0 || figure.name.rfind("rmse", 0) == 0;
     const bool share = figure.name.rfind("slope_error", 0) == 0 || figure.name.rfind("sign_", 0) == 0;
-    const double value = figure.of(judged, figure.index);
+    const double value = figure.of(judged);
     line(figure.name + (error   ? ", 1e-3"
                         : share ? ", %"
                                 : ""),

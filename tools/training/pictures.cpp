@@ -29,22 +29,16 @@ Chart ellipses_chart(const std::vector<EllipsesOf>& models) {
       Series target{"target", Shape::dots, colour::blue, {}, {}, 2.4, 0.55};
       Series predicted{"prediction", Shape::pluses, colour::orange, {}, {}, 0.9, 0.7};
       for (std::size_t i = 0; i < s.target.size(); i += s.target.size() / most_points + 1) {
-        target.x.push_back(s.angular_acceleration[i] / deviation.x);
-        target.y.push_back(s.target[i] / deviation.y);
-        predicted.x.push_back(target.x.back());
-        predicted.y.push_back(s.predicted[i] / deviation.y);
+        target.add(s.angular_acceleration[i] / deviation.x, s.target[i] / deviation.y);
+        predicted.add(target.x.back(), s.predicted[i] / deviation.y);
       }
       panel.series = {target, predicted};
       const auto ellipse = [&](const std::string& name, const char* colour, const pinnquad::ConfidenceEllipse& e) {
         Series outline{name, Shape::line, colour}, major = outline;
         major.dashed = true;
-        const auto add = [](Series& series, const auto& point) {
-          series.x.push_back(point[0]);
-          series.y.push_back(point[1]);
-        };
-        for (const auto& p : pinnquad::ellipse_outline(e, 91)) add(outline, p);
+        for (const auto& p : pinnquad::ellipse_outline(e, 91)) outline.add(p[0], p[1]);
         const auto tips = pinnquad::ellipse_outline(e, 3);
-        for (const std::size_t tip : {std::size_t{0}, std::size_t{1}}) add(major, tips[tip]);
+        for (const std::size_t tip : {std::size_t{0}, std::size_t{1}}) major.add(tips[tip][0], tips[tip][1]);
         panel.series.insert(panel.series.end(), {major, outline});
       };
       ellipse("target, 3 σ", colour::blue, c.target_standardized);

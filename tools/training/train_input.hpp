@@ -61,10 +61,10 @@ inline std::vector<ModelKind> kinds_of(const std::vector<ModelKind>& all, const 
   std::vector<std::string> known;
   for (const ModelKind& kind : all) {
     known.emplace_back(kind.key);
-    if (keys.empty() || std::find(keys.begin(), keys.end(), kind.key) != keys.end()) kinds.push_back(kind);
+    if (keys.empty() || detail::is_among(kind.key, keys)) kinds.push_back(kind);
   }
   for (const std::string& key : keys) {
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    if (detail::is_among(key, known)) continue;
     throw std::invalid_argument("--models " + key + ": no model of that name; " +
                                 pinnquad::logs::nearest_names(key, known));
   }
@@ -92,9 +92,7 @@ inline Selection selection_of(std::vector<ModelKind> own, std::vector<std::strin
   for (const auto& make : recipes) {
     Recipe recipe = make();
     others.insert(others.end(), recipe.kinds.begin(), recipe.kinds.end());
-    const auto is_named = [&names](const ModelKind& kind) {
-      return std::find(names.begin(), names.end(), kind.key) != names.end();
-    };
+    const auto is_named = [&names](const ModelKind& kind) { return detail::is_among(kind.key, names); };
     if (std::any_of(recipe.kinds.begin(), recipe.kinds.end(), is_named)) chosen.recipes.push_back(std::move(recipe));
   }
   own.insert(std::find_if(own.begin(), own.end(), is_structured), others.begin(), others.end());
@@ -116,7 +114,7 @@ inline void require_known_export(const std::string& choice, const std::vector<Mo
   for (const ModelKind& kind : kinds) {
     if (kind.exportable) known.emplace_back(kind.key);
   }
-  if (std::find(known.begin(), known.end(), choice) != known.end()) return;
+  if (detail::is_among(choice, known)) return;
   throw std::invalid_argument("--export " + choice + ": no such model is compared; " +
                               pinnquad::logs::nearest_names(choice, known));
 }

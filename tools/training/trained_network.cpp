@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "airframe/choice.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "pinnquad/io/decimal.hpp"
 

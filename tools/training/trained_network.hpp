@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "airframe/names.hpp"
 #include "pinnquad/deploy/block_model.hpp"
 #include "pinnquad/deploy/export_model.hpp"
 #include "pinnquad/training/structured/measured_slope.hpp"

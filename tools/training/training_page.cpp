@@ -16,11 +16,7 @@
 namespace programs {
 
 std::vector<const Predictions*> shown_predictions(const TrainingPage& in, std::size_t kind) {
-  std::vector<const Predictions*> result(in.plan.folds.size(), nullptr);
-  for (const FinishedFit& fit : in.fits.finished) {
-    if (fit.kind == kind && fit.seed == in.judged.kinds[kind].seeds.front()) result[fit.fold] = &fit.held_out;
-  }
-  return result;
+  return detail::predictions_of_seed(in.plan, in.fits, kind, in.judged.kinds[kind].seeds.front());
 }
 
 namespace detail {
@@ -218,15 +214,13 @@ nlohmann::json moments_json(const TrainingPage& in, const std::vector<std::size_
     const pinnquad::Sample& sample = (*moment.flight)[moment.row];
     const auto watched = in.watched.find(moment.flight->name);
     const double from_s = std::max(0.0, sample.time_s - watched_from_s(*moment.flight) - 1);
-    nlohmann::json one = {
-        {"flight", moment.flight->name},
-        {"time", shown::number(sample.time_s, 2)},
-        {"motor", "u" + std::to_string(moment.motor + 1)},
-        {"facts", facts_of(moment, in.dataset)},
-        {"happened", what_happened(moment, in.dataset)},
-        {"watch", watched == in.watched.end() ? nlohmann::json(false)
-                                              : nlohmann::json(watched->second + in_words("#t=%.2f", from_s))},
-        {"drawing", false}};
+    nlohmann::json one = {{"flight", moment.flight->name},
+                          {"time", shown::number(sample.time_s, 2)},
+                          {"motor", "u" + std::to_string(moment.motor + 1)},
+                          {"facts", facts_of(moment, in.dataset)},
+                          {"happened", what_happened(moment, in.dataset)},
+                          {"watch", watched == in.watched.end() ? "" : watched->second + in_words("#t=%.2f", from_s)},
+                          {"drawing", false}};
     if (list.size() < drawn) {
       std::vector<const Predictions*> predictions;
       for (const std::size_t k : shown) predictions.push_back(shown_predictions(in, k)[moment.fold]);
@@ -259,7 +253,7 @@ nlohmann::json certificate_json(const nlohmann::json& report) {
   const nlohmann::json& proven = report["certificate"];
   if (!proven.is_object()) return false;
   nlohmann::json told = {{"rows", nlohmann::json::array()}, {"bound", proven["in_words"]}};
-  told["bias"] = proven.contains("bias_in_words") ? proven["bias_in_words"] : nlohmann::json(false);
+  told["bias"] = proven.value("bias_in_words", "");
   const auto row = [&told, &proven](const std::string& name, double slope, double own, const char* unit) {
     const nlohmann::json& known = proven["known"][name];
     std::string interval = "unknown", by = "";
@@ -279,11 +273,6 @@ nlohmann::json certificate_json(const nlohmann::json& report) {
   told["thrust"] = proven.contains("thrust_slope");
   if (told["thrust"]) row("thrust", proven["thrust_slope"], proven["airframe_thrust_slope"], "s²/m");
   return told;
-}
-
-std::array<MotorFigures, 4> signs_of_sums(const NamedAirframe& airframe) {
-  const auto about = pinnquad::axis_signs(airframe.value);
-  return {{{1, 1, 1, 1}, about[0], about[1], about[2]}};
 }
 
 /// Shares of the held-out rows that the guard declines, by reason; false where nothing was judged.
@@ -316,14 +305,14 @@ nlohmann::json dynamics_told(const TrainingPage& in) {
   const HeldOutDynamics& dynamics = *in.dynamics;
   const JudgedKind& kind = in.judged.kinds[dynamics.kind];
   const std::string model = kind.kind.title;
-  nlohmann::json told = {{"name", model}, {"stretch", false}, {"spectra", false}, {"why_not", dynamics.why_not}};
+  nlohmann::json told = {{"name", model}, {"why_not", dynamics.why_not}};
   if (dynamics.typical.size > 0) {
     const HeldOutStretch& typical = dynamics.typical;
     const auto predictions = predictions_of_seed(in.plan, in.fits, dynamics.kind, dynamics.seed);
     told["stretch"] = {{"flight", typical.flight->name},
                        {"from", shown::number((*typical.flight)[typical.row].time_s, 1)},
                        {"drawing", inline_chart(stretch_chart(typical, model, *predictions[typical.fold],
-                                                              signs_of_sums(in.plan.airframe)))}};
+                                                              sum_signs(in.plan.airframe.value)))}};
   }
   if (!dynamics.has_spectra()) return told;
   nlohmann::json sums = nlohmann::json::array(), motors = nlohmann::json::array();
@@ -365,17 +354,16 @@ nlohmann::json dynamics_told(const TrainingPage& in) {
 nlohmann::json trust_json(const nlohmann::json& report) {
   const nlohmann::json& trust = report["trust"];
   if (!trust.is_object()) return false;
-  const auto text = [&trust](const char* key) { return trust[key].is_string() ? trust[key] : nlohmann::json(false); };
-  return {{"file", text("file")}, {"why_not", text("why_not")}};
+  return {{"file", trust["file"]}, {"why_not", trust["why_not"]}};
 }
 
 /// Numbers of the vehicle that the flights identify, with their intervals; false where they were not asked.
 nlohmann::json vehicle_told(const nlohmann::json& report) {
   if (!report.contains("vehicle") || !report["vehicle"].is_object()) return false;
   const nlohmann::json& vehicle = report["vehicle"];
-  nlohmann::json told = {{"rows", nlohmann::json::array()}, {"contradicted", vehicle["contradicted"]}};
-  told["why_not"] =
-      vehicle["not_identified_because"].is_string() ? vehicle["not_identified_because"] : nlohmann::json(false);
+  nlohmann::json told = {{"rows", nlohmann::json::array()},
+                         {"contradicted", vehicle["contradicted"]},
+                         {"why_not", vehicle["not_identified_because"]}};
   const auto text = [](const nlohmann::json& number) {
     return number.is_number() ? in_words("%.3g", number.get<double>()) : "–";
   };
@@ -385,12 +373,10 @@ nlohmann::json vehicle_told(const nlohmann::json& report) {
                             {"interval", text(number["low"]) + " to " + text(number["high"])},
                             {"unit", number["unit"]},
                             {"excitation", number["excitation"]},
-                            {"fly", number.contains("fly") ? number["fly"] : nlohmann::json("")}});
+                            {"fly", number.value("fly", "")}});
   }
   return told;
 }
-
-nlohmann::json or_false(const std::string& text) { return text.empty() ? nlohmann::json(false) : nlohmann::json(text); }
 
 nlohmann::json lines_of(const std::string& text) {
   nlohmann::json lines = nlohmann::json::array();
@@ -409,8 +395,8 @@ nlohmann::json found_json(const TrainingPage& in) {
   return {{"may_fly", word_of(in.found->may_fly())},
           {"short", in.found->short_words()},
           {"why", shown(in.found->why())},
-          {"evidence", or_false(in.found->reasons().empty() ? "" : shown(in.found->evidence()))},
-          {"next", or_false(in.found->next())}};
+          {"evidence", in.found->reasons().empty() ? "" : shown(in.found->evidence())},
+          {"next", in.found->next()}};
 }
 
 /// The path flown with the model and without it, and the error over time; false where it did not fly.
@@ -434,7 +420,7 @@ std::string training_page(const TrainingPage& in) {
   for (const std::size_t of_fold : in.judged.rows) rows += of_fold;
   nlohmann::json page = {
       {"title", "What the models of these flights are worth"},
-      {"held_out", detail::or_false(in.judged.flights.size() <= most_named ? listed(in.judged.flights) : "")},
+      {"held_out", in.judged.flights.size() <= most_named ? listed(in.judged.flights) : ""},
       {"flight_count", std::to_string(in.judged.flights.size()) +
                            (in.judged.flights.size() == 1 ? " held-out flight" : " held-out flights")},
       {"rows", rows},
@@ -462,16 +448,13 @@ std::string training_page(const TrainingPage& in) {
       {"warnings", collapsed(in.report["warnings"], "report.json has all")},
       {"period", shown::number(1e3 * in.dataset.sample_period_s, 1)},
       {"lag", shown::number(1e3 * in.dataset.lag_removed_s, 0)},
-      {"absent", detail::or_false(listed(in.dataset.absent))},
-      {"headline", false},
-      {"closed_loop", false},
+      {"absent", listed(in.dataset.absent)},
       {"certificate", detail::certificate_json(in.report)},
       {"trust", detail::trust_json(in.report)},
       {"guard", detail::guard_told(in)},
       {"vehicle", detail::vehicle_told(in.report)},
       {"dynamics", detail::dynamics_told(in)},
       {"moments", nlohmann::json::array()},
-      {"shown", false},
       {"watched", !in.watched.empty()}};
   for (const char* reach : {"causal", "centred"}) {
     for (const nlohmann::json& row : page[reach]) page["ranked"].push_back(row);
@@ -517,11 +500,8 @@ std::string training_page(const TrainingPage& in) {
     const KindVerdict& verdict = in.verdicts[*in.exported];
     const bool has_ceiling = in.dynamics != nullptr && in.dynamics->has_spectra();
     page["headline"] = {
-        {"ceiling", has_ceiling ? nlohmann::json(shown::number(mean_over_motors(in.dynamics->ceiling.r2), 3))
-                                : nlohmann::json(false)},
-        {"answered", in.dynamics != nullptr
-                         ? nlohmann::json(shown::number(100 * in.dynamics->guard.answered_share(), 1))
-                         : nlohmann::json(false)},
+        {"ceiling", has_ceiling ? shown::number(mean_over_motors(in.dynamics->ceiling.r2), 3) : ""},
+        {"answered", in.dynamics != nullptr ? shown::number(100 * in.dynamics->guard.answered_share(), 1) : ""},
         {"title", kind.kind.title},
         {"r2", shown::number(detail::r2_of(kind), 3)},
         {"unbiased", shown::number(pinnquad::summarize(over_seeds(kind, error_figures[1])).mean, 3)},
@@ -534,11 +514,10 @@ std::string training_page(const TrainingPage& in) {
     for (const std::size_t k : shown) {
       ellipses.push_back({in.judged.kinds[k].kind.title, detail::counted_series(in, k)});
     }
-    page["shown"] = {
-        {"name", in.judged.kinds[shown.front()].kind.title},
-        {"flights", inline_chart(flights_chart(in.judged, shown))},
-        {"over", detail::or_false(inline_chart(errors_over_chart(in.judged, shown, detail::errors_over(in, shown))))},
-        {"ellipses", inline_chart(ellipses_chart(ellipses))}};
+    page["shown"] = {{"name", in.judged.kinds[shown.front()].kind.title},
+                     {"flights", inline_chart(flights_chart(in.judged, shown))},
+                     {"over", inline_chart(errors_over_chart(in.judged, shown, detail::errors_over(in, shown)))},
+                     {"ellipses", inline_chart(ellipses_chart(ellipses))}};
     page["moments"] = detail::moments_json(in, shown);
   }
   return text_page("training_page.html", page);

@@ -30,12 +30,6 @@
 namespace programs {
 namespace detail {
 
-inline nlohmann::json by_axis(const std::array<double, 3>& values) {
-  nlohmann::json result;
-  for (std::size_t axis = 0; axis < 3; ++axis) result[axis_names[axis]] = values[axis];
-  return result;
-}
-
 /// Figures of a kind: over all partings, and by parting.
 inline nlohmann::json figures_of(const FitPlan& plan, const JudgedKind& kind) {
   nlohmann::json result, motors;
@@ -68,19 +62,18 @@ inline nlohmann::json figures_of(const FitPlan& plan, const JudgedKind& kind) {
   result["by_fold"] = nlohmann::json::object();
   for (std::size_t fold = 0; fold < kind.folds(); ++fold) {
     nlohmann::json& of_fold = result["by_fold"][pinnquad::printable(plan.folds[fold].name)];
-    for (const ErrorFigure& figure : error_figures) {
+    const auto over_seeds_here = [&](FlightErrors JudgedFit::*errors, const ErrorFigure& figure) {
       std::vector<double> values;
       for (std::size_t seed = 0; seed < kind.seeds.size(); ++seed) {
-        values.push_back(mean_over_motors(kind.at(seed, fold).errors.*figure.of));
+        values.push_back(mean_over_motors((kind.at(seed, fold).*errors).*figure.of));
       }
-      of_fold[figure.name] = described(values);
+      return described(values);
+    };
+    for (const ErrorFigure& figure : error_figures) {
+      of_fold[figure.name] = over_seeds_here(&JudgedFit::errors, figure);
     }
     for (const std::size_t i : adaptive_figures) {
-      std::vector<double> values;
-      for (std::size_t seed = 0; seed < kind.seeds.size(); ++seed) {
-        values.push_back(mean_over_motors(kind.at(seed, fold).adaptive.*error_figures[i].of));
-      }
-      of_fold["adaptive"][error_figures[i].name] = described(values);
+      of_fold["adaptive"][error_figures[i].name] = over_seeds_here(&JudgedFit::adaptive, error_figures[i]);
     }
     of_fold["adaptive"]["bias_time_constants_s"] = kind.at(0, fold).bias_time_constants_s;
   }
@@ -97,7 +90,7 @@ inline nlohmann::json results_json(const FitPlan& plan, const JudgedKinds& judge
                             {"held_out", pinnquad::printable(plan.folds[fit.fold].name)},
                             {"validation_mae", fit.validation_mae},
                             {"training_s", fit.fit_s}};
-      for (const Figure& figure : figures()) row[figure.name] = figure.of(fit.judged, figure.index);
+      for (const Figure& figure : figures()) row[figure.name] = figure.of(fit.judged);
       rows.push_back(std::move(row));
     }
   }
@@ -139,8 +132,7 @@ inline void write_results(const std::string& path, const FitPlan& plan, const Ju
   for (const JudgedKind& kind : judged.kinds) {
     for (const JudgedFit& fit : kind.fits) {
       cells = {kind.kind.key, std::to_string(kind.kind.seeded ? fit.seed : 0)};
-      for (const Figure& figure : figures())
-        cells.push_back(pinnquad::number_text(figure.of(fit.judged, figure.index)));
+      for (const Figure& figure : figures()) cells.push_back(pinnquad::number_text(figure.of(fit.judged)));
       cells.insert(cells.end(), {pinnquad::number_text(fit.validation_mae),
                                  pinnquad::printable(plan.folds[fit.fold].name), pinnquad::number_text(fit.fit_s)});
       text += pinnquad::csv_line(cells);
@@ -206,24 +198,14 @@ class TrainingReport {
              {"folds", std::move(folds)},
              {"models", nlohmann::json::object()},
              {"results", nlohmann::json::array()},
-             {"verdict", nullptr},
              {"exported", false},
              {"not_exported_because", "the training was not finished"},
-             {"exported_model", nullptr},
-             {"exported_reach", nullptr},
-             {"exported_seed", nullptr},
-             {"header", nullptr},
-             {"block", nullptr},
-             {"trust", nullptr},
-             {"certificate", nullptr},
-             {"vehicle", nullptr},
-             {"bias_time_constants_s", nullptr},
-             {"altitude", nullptr},
-             {"closed_loop", nullptr},
-             {"guard", nullptr},
-             {"response", nullptr},
-             {"noise_ceiling", nullptr},
              {"warnings", nlohmann::json::array()}};
+    for (const char* later :
+         {"verdict", "exported_model", "exported_reach", "exported_seed", "header", "block", "trust", "certificate",
+          "vehicle", "bias_time_constants_s", "altitude", "closed_loop", "guard", "response", "noise_ceiling"}) {
+      json_[later] = nullptr;
+    }
     json_["settings"].update(trainings);
     warn(dataset.warnings, "import: ");
   }
@@ -308,8 +290,8 @@ class TrainingReport {
                  const pinnquad::SlopesOfSums& known) {
     const std::optional<pinnquad::Certificate>& structure = signs.structure;
     json_["certificate"] = {{"proven", true},
-                            {"slope", detail::by_axis(signs.held_slope)},
-                            {"airframe_slope", detail::by_axis(pinnquad::hover_slopes(airframe))},
+                            {"slope", by_axis(signs.held_slope)},
+                            {"airframe_slope", by_axis(pinnquad::hover_slopes(airframe))},
                             {"in_words", bound_in_words(structure)}};
     for (std::size_t k = 0; k < known.size(); ++k) {
       const pinnquad::MeasuredSlope& slope = known[k];

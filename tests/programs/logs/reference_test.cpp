@@ -10,7 +10,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -102,13 +101,13 @@ TEST_CASE("the ULog file of a circle has pyulog's values, all of them") {
   const std::string folder = reference_folder() + "/sih";
   const FlightLog log = read_log(folder + "/test_circle.ulg");
   CHECK(log.warnings.empty());
-  CHECK(log.dropouts.empty());
+  CHECK(log.dropouts == 0);
   const std::size_t compared = compare_folder(log, folder + "/test_circle_csv", "test_circle_", true);
   MESSAGE("values compared: " << compared);
   CHECK(compared > 1500000);
 }
 
-TEST_CASE("its parameters and what was said, likewise") {
+TEST_CASE("its parameters, likewise") {
   const std::string folder = reference_folder() + "/sih";
   const FlightLog log = read_log(folder + "/test_circle.ulg");
   std::ifstream parameters(folder + "/test_circle_parameters.csv");
@@ -123,20 +122,6 @@ TEST_CASE("its parameters and what was said, likewise") {
   }
   CHECK(count == log.parameters.size());
   CHECK(count == 884);
-  std::ifstream messages(folder + "/test_circle_messages.csv");
-  std::getline(messages, line);
-  count = 0;
-  while (std::getline(messages, line)) {
-    INFO(line);
-    REQUIRE(count < log.messages.size());
-    const pinnquad::logs::LogMessage& message = log.messages[count++];
-    std::ostringstream expected;
-    expected << static_cast<long long>(std::llround(message.time_s * 1e6))
-             << (message.level == 6 ? ",INFO,\"" : ",?,\"") << message.text << '"';
-    CHECK(expected.str() == line);
-  }
-  CHECK(count == log.messages.size());
-  CHECK(count == 14);
 }
 
 TEST_CASE("folders of ulog2csv of three generations, value by value") {

@@ -191,21 +191,20 @@ def softsign(q):
     return q / (1 + np.abs(q))
 
 
+ACTIVATIONS = {
+    "relu": relu, "tanh": lambda v: np.tanh(v), "sigmoid": sigmoid, "gelu": gelu, "silu": lambda v: v * sigmoid(v),
+    "softplus": softplus, "sine": lambda v: np.sin(v), "clip": lambda v: np.clip(v, -CLIP_BOUND, CLIP_BOUND),
+    "elu": lambda v: np.where(v > 0, v, np.expm1(np.minimum(v, 0))), "leaky_relu": lambda v: np.where(v > 0, v, LEAKY * v),
+    "relu6": lambda v: np.clip(v, 0, 6), "hardtanh": lambda v: np.clip(v, -1, 1), "identity": lambda v: v,
+    "gelu_tanh": gelu_tanh, "hard_swish": hard_swish, "mish": mish, "softsign": softsign,
+}
 # an activation is a sum of these, scaled, and a constant; the simplest first
 FAMILIES = {
     "slopes": lambda q: (relu(q), relu(-q)),
     "elu": lambda q: (relu(q), np.expm1(np.minimum(q, 0))),
     "clip": lambda q: (np.clip(q, -1, 1),),
-    "tanh": lambda q: (np.tanh(q),),
-    "sigmoid": lambda q: (sigmoid(q),),
-    "gelu": lambda q: (gelu(q),),
-    "silu": lambda q: (q * sigmoid(q),),
-    "softplus": lambda q: (softplus(q),),
-    "sine": lambda q: (np.sin(q),),
-    "gelu_tanh": lambda q: (gelu_tanh(q),),
-    "hard_swish": lambda q: (hard_swish(q),),
-    "mish": lambda q: (mish(q),),
-    "softsign": lambda q: (softsign(q),),
+    **{name: lambda q, of=ACTIVATIONS[name]: (of(q),) for name in (
+        "tanh", "sigmoid", "gelu", "silu", "softplus", "sine", "gelu_tanh", "hard_swish", "mish", "softsign")},
 }
 # act(v) - act(-v) = this times v: what goes past such an activation does so in two halves
 ODD_PARTS = {"relu": 1, "leaky_relu": 1 + LEAKY, "gelu": 1, "silu": 1, "softplus": 1, "gelu_tanh": 1, "hard_swish": 1}
@@ -658,15 +657,6 @@ class Lowering:
 
 # ----------------------------------------------------------------------------------------------------------------------
 # Sources: chains of tensors by name
-
-
-ACTIVATIONS = {
-    "relu": relu, "tanh": lambda v: np.tanh(v), "sigmoid": sigmoid, "gelu": gelu, "silu": lambda v: v * sigmoid(v),
-    "softplus": softplus, "sine": lambda v: np.sin(v), "clip": lambda v: np.clip(v, -CLIP_BOUND, CLIP_BOUND),
-    "elu": lambda v: np.where(v > 0, v, np.expm1(np.minimum(v, 0))), "leaky_relu": lambda v: np.where(v > 0, v, LEAKY * v),
-    "relu6": lambda v: np.clip(v, 0, 6), "hardtanh": lambda v: np.clip(v, -1, 1), "identity": lambda v: v,
-    "gelu_tanh": gelu_tanh, "hard_swish": hard_swish, "mish": mish, "softsign": softsign,
-}
 
 
 def natural(name):

@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace pinnquad::logs {
@@ -37,6 +38,11 @@ struct LogTopic {
   std::vector<std::uint64_t> place;  ///< of each row in `file`: its line from 1, or its first byte
   bool places_are_lines = true;
 
+  /// Without columns, of a file whose places are bytes.
+  static LogTopic of_bytes(std::string name, int instance, std::string file) {
+    return {std::move(name), instance, {}, {}, {}, std::move(file), {}, false};
+  }
+
   std::size_t size() const noexcept { return time_s.size(); }
   /// Null if there is none of that name.
   const LogColumn* column(std::string_view wanted) const noexcept {
@@ -53,37 +59,18 @@ struct LogTopic {
   }
 };
 
-/// A message of the vehicle in flight.
-struct LogMessage {
-  double time_s = 0;
-  int level = 6;  ///< as syslog: 0 emergency to 7 debug
-  std::string text;
-};
-
-/// A time in which the logger lost what it should have written.
-struct LogDropout {
-  double after_s = 0;  ///< time of the last row before it
-  double duration_s = 0;
-};
-
-/// A parameter that was set while the log was running.
-struct LogParameterChange {
-  double after_s = 0;  ///< time of the last row before it
-  std::string name;
-  double value = 0;
-};
-
 struct FlightLog {
   std::string source;  ///< file or folder, as it was given
-  double start_s = 0;  ///< when the logger began, as it says itself; 0 where it does not. Rows before it are old news
   std::vector<LogTopic> topics;
   std::map<std::string, double> parameters;  ///< as they stood when the log began; "acc_1G", "motorOutput[0]"
-  std::map<std::string, std::string> facts;  ///< "sys_name", "ver_hw" ...
-  std::vector<LogMessage> messages;
-  std::vector<LogDropout> dropouts;
-  std::vector<LogParameterChange> parameter_changes;
-  std::vector<std::string> warnings;  ///< what of the file could not be read, a line each, with file and place
+  std::size_t dropouts = 0;                  ///< how often the logger lost what it should have written
+  std::vector<std::string> warnings;         ///< what of the file could not be read, a line each, with file and place
 
+  /// As it stood when the log began; `otherwise` where the log has none of that name.
+  double parameter(const std::string& name, double otherwise) const {
+    const auto found = parameters.find(name);
+    return found == parameters.end() ? otherwise : found->second;
+  }
   /// Null if there is none.
   const LogTopic* topic(std::string_view name, int instance = 0) const noexcept {
     for (const LogTopic& topic : topics) {

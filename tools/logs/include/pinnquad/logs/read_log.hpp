@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <set>
@@ -32,6 +33,12 @@ struct LogSelection {
 
   void report(double share) const {
     if (on_progress) on_progress(share);
+  }
+  /// The same of a reader that has come to byte `at` of `size`: once a MiB.
+  void report(std::uint64_t at, std::uint64_t size, std::uint64_t& next) const {
+    if (at < next) return;
+    next = at + (std::uint64_t{1} << 20);
+    report(static_cast<double>(at) / static_cast<double>(size));
   }
   bool wants(std::string_view topic) const {
     return topics.empty() || std::find(topics.begin(), topics.end(), topic) != topics.end();
