@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "loop/conditions.hpp"
+#include "loop/drawn_wind.hpp"
 #include "pinnquad/core/random.hpp"
 #include "pinnquad/simulation/switched_quadrotor.hpp"
 #include "pinnquad/simulation/tracking.hpp"
@@ -74,12 +75,11 @@ class LoopWorld {
     Draw(const pinnquad::Airframe<double>& airframe, const pinnquad::SwitchedEffects& still,
          const LoopCondition& condition, std::uint64_t seed)
         : told(airframe), flown(airframe), effects(still), engine(0x6c6f6f70u + 7919 * seed) {
-      const double heading = pinnquad::uniform(engine, 0, 6.283185307179586);
-      const std::array<double, 2> to = {std::cos(heading), std::sin(heading)};
-      const double wind_m_s = condition.wind_m_s * (condition.drawn ? pinnquad::uniform_01(engine) : 1);
-      drawn.wind_north_m_s = wind_m_s * to[0];
-      drawn.wind_east_m_s = wind_m_s * to[1];
-      switch_effect(effects, pinnquad::ConstantWind{{drawn.wind_north_m_s, drawn.wind_east_m_s, 0}});
+      DrawnWind wind(engine);
+      wind.mean_m_s = condition.wind_m_s * (condition.drawn ? pinnquad::uniform_01(engine) : 1);
+      drawn.wind_north_m_s = wind.mean_m_s * wind.to[0];
+      drawn.wind_east_m_s = wind.mean_m_s * wind.to[1];
+      wind.blow(effects);
       const auto weak = static_cast<std::size_t>(pinnquad::uniform_index(engine, pinnquad::rotor_count));
       drawn.rotor = condition.drawn ? pinnquad::uniform(engine, condition.rotor, 1) : condition.rotor;
       for (double& each : strength) each = condition.battery;
@@ -95,10 +95,7 @@ class LoopWorld {
       drawn.thrust = wrong();
       flown.thrust_coefficient *= drawn.thrust;
       flown.power_coefficient *= drawn.thrust;
-      if (!condition.gusts) return;
-      constexpr double height_m = 20;
-      switch_effect(effects, pinnquad::DrydenTurbulence<>(
-                                 engine, pinnquad::DrydenParameters::low_altitude(wind_m_s, height_m), wind_m_s, to));
+      if (condition.gusts) wind.gust(effects, engine, wind.mean_m_s);
     }
   };
 
@@ -115,7 +112,7 @@ class LoopWorld {
         sensors_(sensors),
         engine_(draw.engine),
         voltage_V_(voltage_V),
-        late_(static_cast<std::size_t>(std::lround(sensors.delay_s / (how.physics_step_s * how.steps_per_control)))) {}
+        late_(static_cast<std::size_t>(std::lround(sensors.delay_s / how.control_period_s()))) {}
 
   pinnquad::SwitchedQuadrotor before_, after_;
   pinnquad::SwitchedQuadrotor::TimeStep step_before_, step_after_;

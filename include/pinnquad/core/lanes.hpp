@@ -182,6 +182,11 @@ struct Lanes {
     return result;
   }
 
+  friend PINNQUAD_ALWAYS_INLINE Lanes absolute(const Lanes& a) noexcept {
+    Lanes result;
+    for (int i = 0; i < registers; ++i) result.part[i] = (Register)((Truths)a.part[i] & ~sign());
+    return result;
+  }
   friend PINNQUAD_ALWAYS_INLINE Lanes sqrt(const Lanes& a) noexcept {
     Lanes result;
     for (int i = 0; i < registers; ++i) result.part[i] = root(a.part[i]);
@@ -206,6 +211,12 @@ struct Lanes {
 
  private:
   using Register = typename Types::Register;
+  using Truths = typename Types::Truths;
+
+  /// Its bit.
+  static PINNQUAD_ALWAYS_INLINE Truths sign() noexcept {
+    return Truths{} + std::numeric_limits<std::decay_t<decltype(Truths{}[0])>>::min();
+  }
 
   /// Once where all lanes are equal, as the time constants of alike vehicles are.
   template <class Function>
@@ -262,6 +273,19 @@ struct Lanes {
       return (Register)_mm256_floor_pd((__m256d)v);
     }
 #else
+#if defined(PINNQUAD_UNIT_SSE2)
+    // towards zero through integers, then down; what these can't hold comes out as the least of them
+    Register whole{};
+    if constexpr (single) {
+      whole = (Register)_mm_cvtepi32_ps(_mm_cvttps_epi32((__m128)v));
+    } else {
+      whole = (Register)_mm_cvtepi32_pd(_mm_cvttpd_epi32((__m128d)v));
+    }
+    if (!detail::any_bit(whole <= Register{} - Scalar(0x1p31))) {
+      whole -= whole > v ? Register{} + Scalar(1) : Register{};
+      return (Register)((Truths)whole | ((Truths)v & sign()));
+    }
+#endif
     Register result{};
     for (int i = 0; i < Types::width; ++i)
       result[i] = single ? Scalar(__builtin_floorf(float(v[i]))) : Scalar(__builtin_floor(double(v[i])));
