@@ -194,6 +194,23 @@ struct Lanes {
   }
   friend PINNQUAD_ALWAYS_INLINE Lanes floor(const Lanes& a) noexcept {
     Lanes result;
+#if defined(PINNQUAD_UNIT_SSE2)
+    // towards zero through integers, then down; a number beyond them becomes the least of them
+    Truths beyond{};
+    for (int i = 0; i < registers; ++i) {
+      const Register& v = a.part[i];
+      Register whole;
+      if constexpr (std::is_same_v<Scalar, float>) {
+        whole = (Register)_mm_cvtepi32_ps(_mm_cvttps_epi32((__m128)v));
+      } else {
+        whole = (Register)_mm_cvtepi32_pd(_mm_cvttpd_epi32((__m128d)v));
+      }
+      beyond |= whole <= Register{} - Scalar(0x1p31);
+      whole -= whole > v ? Register{} + Scalar(1) : Register{};
+      result.part[i] = (Register)((Truths)whole | ((Truths)v & sign()));
+    }
+    if (!detail::any_bit(beyond)) return result;
+#endif
     for (int i = 0; i < registers; ++i) result.part[i] = rounded_down(a.part[i]);
     return result;
   }
@@ -273,19 +290,6 @@ struct Lanes {
       return (Register)_mm256_floor_pd((__m256d)v);
     }
 #else
-#if defined(PINNQUAD_UNIT_SSE2)
-    // towards zero through integers, then down; what these can't hold comes out as the least of them
-    Register whole{};
-    if constexpr (single) {
-      whole = (Register)_mm_cvtepi32_ps(_mm_cvttps_epi32((__m128)v));
-    } else {
-      whole = (Register)_mm_cvtepi32_pd(_mm_cvttpd_epi32((__m128d)v));
-    }
-    if (!detail::any_bit(whole <= Register{} - Scalar(0x1p31))) {
-      whole -= whole > v ? Register{} + Scalar(1) : Register{};
-      return (Register)((Truths)whole | ((Truths)v & sign()));
-    }
-#endif
     Register result{};
     for (int i = 0; i < Types::width; ++i)
       result[i] = single ? Scalar(__builtin_floorf(float(v[i]))) : Scalar(__builtin_floor(double(v[i])));
