@@ -101,18 +101,18 @@ std::optional<AnyTrajectory> any(const std::optional<Held>& held) {
 /// A path whose points at the ticks of flights are worked out once for all of them.
 AnyTrajectory sampled(const AnyTrajectory& path, double period_s, double duration_s) {
   constexpr double most = 100'000;  // 14 MB
-  struct Points {
+  struct Shared {
     std::once_flag once;
-    std::vector<TrajectoryPoint<double>> at;
+    std::vector<TrajectoryPoint<double>> points;
   };
   const double ticks = std::min(most, std::ceil(duration_s / period_s));
-  return {[path, period_s, ticks, points = std::make_shared<Points>()](double time_s) {
+  return {[path, period_s, ticks, shared = std::make_shared<Shared>()](double time_s) {
     const double tick = std::floor(time_s / period_s + 0.5);
     if (!(tick >= 0 && tick < ticks && tick * period_s == time_s)) return path.sample(time_s);
-    std::call_once(points->once, [&] {
-      for (double i = 0; i < ticks; ++i) points->at.push_back(path.sample(i * period_s));
+    std::call_once(shared->once, [&] {
+      for (double i = 0; i < ticks; ++i) shared->points.push_back(path.sample(i * period_s));
     });
-    return points->at[static_cast<std::size_t>(tick)];
+    return shared->points[static_cast<std::size_t>(tick)];
   }};
 }
 

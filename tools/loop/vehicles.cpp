@@ -16,8 +16,8 @@
 #include "command_line/folders.hpp"
 #include "command_line/parallel.hpp"
 #include "loop/any_policy.hpp"
-#include "loop/drawn_wind.hpp"
-#include "loop/quantile.hpp"
+#include "loop/conditions.hpp"
+#include "loop/loop_spread.hpp"
 #include "loop/unknown_vehicle.hpp"
 #include "loop/vehicle_course.hpp"
 #include "model/learnt_vehicle.hpp"
@@ -300,8 +300,8 @@ class Flown {
       std::mt19937_64 engine(0x67757374u + 7919 * seed);
       DrawnWind wind(engine);
       wind.mean_m_s = 4;
-      wind.blow(effects);
-      wind.gust(effects, engine, 2.5 * wind.mean_m_s);
+      switch_effect(effects, wind.mean());
+      switch_effect(effects, wind.gusts(engine, 2.5 * wind.mean_m_s));
     }
     return quadrotor_with(effects, truth_.airframe, Site<double>{});
   }
