@@ -205,6 +205,16 @@ TEST_CASE_TEMPLATE("lanes compute, compare and choose each for itself", Wide, On
     CHECK(!any_of(equal && !equal));
   }
   CHECK(std::signbit(Wide(Scalar(-0.0)).lane(0)));
+  constexpr auto infinite = std::numeric_limits<double>::infinity();
+  for (const double special :
+       {-0.0, -0.25, 0x1p31, -0x1p31, 0x1p31 + 0.5, -0x1p31 - 0.5, 0x1p52 - 0.5, -1e30, infinite}) {
+    Wide held(Scalar(0.75));  // beside a usual number
+    const auto x = static_cast<Scalar>(special);
+    held.set_lane(1, x);
+    CHECK(same_bits(floor(held).lane(1), std::floor(x)));
+    CHECK(same_bits(absolute(held).lane(1), std::abs(x)));
+    CHECK(same_bits(floor(held).lane(0), Scalar(0)));
+  }
   Wide odd(1);
   CHECK(all_of(is_finite(odd)));
   odd.set_lane(1, std::numeric_limits<Scalar>::infinity());

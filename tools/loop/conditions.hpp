@@ -4,6 +4,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <random>
+
+#include "pinnquad/core/random.hpp"
+#include "pinnquad/simulation/switched_quadrotor.hpp"
 
 namespace programs {
 
@@ -37,6 +42,22 @@ inline constexpr std::array<LoopCondition, 13> loop_conditions = {{
     {"drawn", "gusty wind to 8 m/s, one rotor at 85 to 100 %, mass, inertia, thrust within 15 %", 8, true, 1, 0.85, 1,
      0.15, false, true},
 }};
+
+/// A wind that blows where an engine draws.
+struct DrawnWind {
+  std::array<double, 2> to;  ///< north, east; of unit length
+  double mean_m_s = 0;
+
+  explicit DrawnWind(std::mt19937_64& engine) {
+    const double heading = pinnquad::uniform(engine, 0, 6.283185307179586);
+    to = {std::cos(heading), std::sin(heading)};
+  }
+  pinnquad::ConstantWind mean() const { return {{mean_m_s * to[0], mean_m_s * to[1], 0}}; }
+  /// 20 m above ground, by the wind at 20 ft.
+  pinnquad::DrydenTurbulence<> gusts(std::mt19937_64& engine, double at_20_ft_m_s) const {
+    return {engine, pinnquad::DrydenParameters::low_altitude(at_20_ft_m_s, 20), mean_m_s, to};
+  }
+};
 
 /// White noise of what a controller sees, a standard deviation for each sample of each axis; and its delay.
 struct LoopSensors {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 
@@ -96,6 +98,24 @@ std::optional<AnyTrajectory> any(const std::optional<Held>& held) {
   return AnyTrajectory{[path = *held](double time_s) { return path.sample(time_s); }};
 }
 
+/// A path whose points at the ticks of flights are worked out once for all of them.
+AnyTrajectory sampled(const AnyTrajectory& path, double period_s, double duration_s) {
+  constexpr double most = 100'000;  // 14 MB
+  struct Shared {
+    std::once_flag once;
+    std::vector<TrajectoryPoint<double>> points;
+  };
+  const double ticks = std::min(most, std::ceil(duration_s / period_s));
+  return {[path, period_s, ticks, shared = std::make_shared<Shared>()](double time_s) {
+    const double tick = std::floor(time_s / period_s + 0.5);
+    if (!(tick >= 0 && tick < ticks && tick * period_s == time_s)) return path.sample(time_s);
+    std::call_once(shared->once, [&] {
+      for (double i = 0; i < ticks; ++i) shared->points.push_back(path.sample(i * period_s));
+    });
+    return shared->points[static_cast<std::size_t>(tick)];
+  }};
+}
+
 AnyTrajectory required(const std::optional<AnyTrajectory>& held) {
   if (!held) throw std::invalid_argument("the model's envelope holds no trajectory of this kind, however slow");
   return *held;
@@ -127,6 +147,9 @@ ControlledLoop::ControlledLoop(const LoopSetting& setting)
     setting_.duration_s = std::max(setting_.duration_s, path.duration_s());
     at_once_[setting.waypoints] = any(std::optional(path));
   }
+  for (auto& [name, path] : at_once_) {
+    if (path) path = sampled(*path, TrackingPlan<double>{}.control_period_s(), setting_.duration_s);
+  }
   Status status = told_.status();
   Commands<double> trim{};
   if (status == Status::ok) status = hover_trim(told_, eight->center_m, trim);
@@ -150,7 +173,7 @@ nlohmann::json ControlledLoop::fly(const LoopFlight& flight, const LoopGains& ga
   TrackingPlan<double> how;
   how.duration_s = setting_.duration_s;
   const double half_s = 0.5 * how.duration_s;
-  const double period_s = how.physics_step_s * how.steps_per_control;
+  const double period_s = how.control_period_s();
   const Site<double> site = told_.site();
   std::vector<double> columns = setting_.columns;
   LoopWorld world(setting_.airframe, flown_, site, condition, setting_.sensors, how, seed,

@@ -29,7 +29,6 @@
 #include "loop/loop_flights.hpp"
 #include "loop/loop_model.hpp"
 #include "loop/loop_spread.hpp"
-#include "loop/quantile.hpp"
 #include "loop/vehicles.hpp"
 #include "model/model_evidence.hpp"
 #include "pinnquad/exported/model.hpp"

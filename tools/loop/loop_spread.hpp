@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,16 @@
 #include <nlohmann/json.hpp>
 
 namespace programs {
+
+/// The value below which a share of all lie, linear between two; NaN of none.
+inline double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
 
 /// Rows of one controller under one condition, of all seeds: how many lost the vehicle, and the others' errors.
 struct LoopSpread {

@@ -16,7 +16,8 @@
 #include "command_line/folders.hpp"
 #include "command_line/parallel.hpp"
 #include "loop/any_policy.hpp"
-#include "loop/quantile.hpp"
+#include "loop/conditions.hpp"
+#include "loop/loop_spread.hpp"
 #include "loop/unknown_vehicle.hpp"
 #include "loop/vehicle_course.hpp"
 #include "model/learnt_vehicle.hpp"
@@ -296,13 +297,11 @@ class Flown {
     SwitchedEffects effects = truth_.effects;
     if (flight_.condition == "payload_late") switch_effect(effects, Payload{0.3 * truth_.airframe.mass_kg, 30});
     if (flight_.condition == "gusts") {
-      constexpr double wind_m_s = 4, at_height = 2.5, height_m = 20;
       std::mt19937_64 engine(0x67757374u + 7919 * seed);
-      const double heading = uniform(engine, 0, 6.283185307179586);
-      const std::array<double, 2> to = {std::cos(heading), std::sin(heading)};
-      switch_effect(effects, ConstantWind{{wind_m_s * to[0], wind_m_s * to[1], 0}});
-      switch_effect(effects, DrydenTurbulence<>(engine, DrydenParameters::low_altitude(at_height * wind_m_s, height_m),
-                                                wind_m_s, to));
+      DrawnWind wind(engine);
+      wind.mean_m_s = 4;
+      switch_effect(effects, wind.mean());
+      switch_effect(effects, wind.gusts(engine, 2.5 * wind.mean_m_s));
     }
     return quadrotor_with(effects, truth_.airframe, Site<double>{});
   }
@@ -311,6 +310,7 @@ class Flown {
                   const std::function<Airframe<double>()>& airframe) {
     const std::uint64_t seed = options_.seed * 1'000'003 + flight_.vehicle;
     const SwitchedQuadrotor vehicle = world(seed);
+    const SwitchedQuadrotor::TimeStep step = vehicle.time_step(tick_s);
     const VehicleCourse course(truth_.airframe.thrust_to_weight(), options_.frozen_s);
     VehicleSensors sensors(tick_s, truth_.delay_s, flight_.condition == "noise_3" ? 3 : 1, seed);
     const auto clock_us = [](std::size_t tick) { return static_cast<std::uint64_t>(tick) * 2'000; };
@@ -341,7 +341,7 @@ class Flown {
       }
       static_cast<void>(controller(seen, point, clock_us(before + flown), commands));  // or they stay as they are
       if (saturated(commands)) ++saturated_ticks;
-      if (vehicle.step(state, commands, tick_s) != Status::ok) break;
+      if (vehicle.step(state, commands, step) != Status::ok) break;
     }
     saturated_share_ = static_cast<double>(saturated_ticks) / static_cast<double>(std::max<std::size_t>(1, flown));
     if (flown == ticks) return;

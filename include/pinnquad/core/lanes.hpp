@@ -188,6 +188,11 @@ struct Lanes {
     return result;
   }
 
+  friend PINNQUAD_ALWAYS_INLINE Lanes absolute(const Lanes& a) noexcept {
+    Lanes result;
+    for (int i = 0; i < registers; ++i) result.part[i] = (Register)((Truths)a.part[i] & ~sign());
+    return result;
+  }
   friend PINNQUAD_ALWAYS_INLINE Lanes sqrt(const Lanes& a) noexcept {
     Lanes result;
     for (int i = 0; i < registers; ++i) result.part[i] = root(a.part[i]);
@@ -195,6 +200,23 @@ struct Lanes {
   }
   friend PINNQUAD_ALWAYS_INLINE Lanes floor(const Lanes& a) noexcept {
     Lanes result;
+#if defined(PINNQUAD_UNIT_SSE2)
+    // towards zero through integers, then down; a number beyond them becomes the least of them
+    Truths beyond{};
+    for (int i = 0; i < registers; ++i) {
+      const Register& v = a.part[i];
+      Register whole;
+      if constexpr (std::is_same_v<Scalar, float>) {
+        whole = (Register)_mm_cvtepi32_ps(_mm_cvttps_epi32((__m128)v));
+      } else {
+        whole = (Register)_mm_cvtepi32_pd(_mm_cvttpd_epi32((__m128d)v));
+      }
+      beyond |= whole <= Register{} - Scalar(0x1p31);
+      whole -= whole > v ? Register{} + Scalar(1) : Register{};
+      result.part[i] = (Register)((Truths)whole | ((Truths)v & sign()));
+    }
+    if (!detail::any_bit(beyond)) return result;
+#endif
     for (int i = 0; i < registers; ++i) result.part[i] = rounded_down(a.part[i]);
     return result;
   }
@@ -212,6 +234,12 @@ struct Lanes {
 
  private:
   using Register = typename Types::Register;
+  using Truths = typename Types::Truths;
+
+  /// Its bit.
+  static PINNQUAD_ALWAYS_INLINE Truths sign() noexcept {
+    return Truths{} + std::numeric_limits<std::decay_t<decltype(Truths{}[0])>>::min();
+  }
 
   /// Once where all lanes are equal, as the time constants of alike vehicles are.
   template <class Function>

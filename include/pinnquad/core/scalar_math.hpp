@@ -123,9 +123,10 @@ PINNQUAD_ALWAYS_INLINE Scalar sine_of_turns(Scalar turns) noexcept {
 /// cos(2 pi turns), likewise; exactly 0 for quarter turns.
 template <class Scalar>
 PINNQUAD_ALWAYS_INLINE Scalar cosine_of_turns(Scalar turns) noexcept {
+  using detail::absolute;
   using std::floor;
   const Scalar r = turns - floor(turns + Scalar(0.5));
-  return detail::sine_of_quarter(Scalar(Scalar(0.25) - detail::absolute(r)));
+  return detail::sine_of_quarter(Scalar(Scalar(0.25) - absolute(r)));
 }
 
 }  // namespace pinnquad

@@ -15,6 +15,8 @@ struct TrackingPlan {
   Scalar duration_s = Scalar(30);
   Scalar physics_step_s = Scalar(0.001);
   int steps_per_control{2};  ///< the commands are held over these
+
+  constexpr Scalar control_period_s() const noexcept { return physics_step_s * Scalar(steps_per_control); }
 };
 
 /// Figures of a closed-loop flight.
@@ -74,7 +76,7 @@ TrackingResult<Scalar> track(const Quadrotor<Scalar, Effects...>& nominal, World
 
   TrackingController<Scalar, FeedForward> controller(nominal.airframe(), flight_controller, feed_forward, rotor_scale);
   Commands<Scalar> commands{};
-  const Scalar tick_s = plan.physics_step_s * Scalar(plan.steps_per_control);
+  const Scalar tick_s = plan.control_period_s();
   Scalar squares(0), largest_square(0), largest_speed_square(0);
   int ticks = 0, ticks_at_end = 0;
   for (; Scalar(ticks) * tick_s < plan.duration_s; ++ticks) {

@@ -229,7 +229,7 @@ class Quadrotor {
       const ThrustFractions<Scalar>& now = calls == 0 ? start : (calls < 3 ? middle : end);
       ++calls;
       const auto time_s = Scalar(state.time_s + Wide<Scalar>(offset_s));
-      if constexpr (is_switched) return asked_rate_of_change<plain, usual>(body, now, time_s, use, status);
+      if constexpr (is_switched && !usual) return asked_rate_of_change<plain>(body, now, time_s, use, status);
       return rate_of_change<plain, usual>(body, now, time_s, use, status);
     };
     const State<Scalar> next = detail::rk4_step(state.body, step_s, rate);
@@ -370,11 +370,11 @@ class Quadrotor {
   }
 
   /// Out of line: a step would hold four copies of all effects, more than an instruction cache does.
-  template <bool plain, bool usual>
+  template <bool plain>
   PINNQUAD_NOINLINE PINNQUAD_FLATTEN detail::StateDerivative<Scalar> asked_rate_of_change(
       const State<Scalar>& state, const ThrustFractions<Scalar>& thrusts, Scalar time_s, BatteryUse<Scalar>& use,
       Outcome<Scalar>& status) const noexcept {
-    return rate_of_change<plain, usual>(state, thrusts, time_s, use, status);
+    return rate_of_change<plain, false>(state, thrusts, time_s, use, status);
   }
 
   template <bool usual, class Function>
