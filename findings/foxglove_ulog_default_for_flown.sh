@@ -9,7 +9,7 @@
 # Seen: MC_ROLLRATE_P = 0.25 ('P'), default 0.15 ('Q'): the reader reports 0.15. The other order gives 0.25. A log of PX4 has
 #   60 to 100 such defaults, each of a parameter that was changed.
 # Why it matters: it is right for all parameters but those that were tuned: gains, thrust curves, rotor geometry.
-# pinnquad: import reads what flew, and its changes in flight; defaults are left out (tools/logs/ulog.cpp).
+# pinnquad: import reads what flew, as it was at the start; defaults are left out (tools/logs/ulog.cpp).
 set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf -- "$dir"' EXIT
