@@ -135,7 +135,8 @@ class Simulator {
   void reserve(std::size_t rows) { recording_.reserve(rows); }
 
   /// From the next tick on this vehicle flies: another airframe, site or effects, such as those of a SwitchedQuadrotor
-  /// (simulation/switched_quadrotor.hpp). State, pilot and clocks go on; so does the controller, which knows the first one.
+  /// (simulation/switched_quadrotor.hpp). State, pilot and clocks go on; so does the controller, which knows the first
+  /// vehicle.
   void set_quadrotor(const Vehicle& quadrotor) {
     quadrotor_ = quadrotor;
     step_ = quadrotor.time_step(settings_.physics_step_s);
