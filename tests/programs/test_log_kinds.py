@@ -180,12 +180,12 @@ def test_imu_quaternion_of_another_scale(pinnquad):
 
 
 def test_a_cut_table(pinnquad):
-    """The file ends within a row: that row is left out with a word. A short row before it is refused."""
+    """A last row without a line end is left out with a word. A short row before it is refused."""
     plain("log.csv")
     whole = Path("log.csv").read_text()
     last = whole.splitlines()[-1]
     Path("log.csv").write_text(whole[:-len(last) // 2])
-    assert f"line {ROWS + 1} ends in the middle" in comes_out(pinnquad, "log.csv")
+    assert f"line {ROWS + 1}, the last, has no line end" in comes_out(pinnquad, "log.csv")
     Path("log.csv").write_text(whole[:-len(last) // 2] + "\n")
     pinnquad.refused("import log.csv --mapping table.toml --out bad", at=f"log.csv:{ROWS + 1}:*", keyword="14 cells")
 

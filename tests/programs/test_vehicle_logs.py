@@ -32,6 +32,13 @@ def test_logs_of_several_kinds_and_several_flights_in_one_list(pinnquad):
     pinnquad.refused("import two.bbl --mapping px4 --out other", keyword="vehicle_attitude")
 
 
+def test_no_order_of_logs_decides_whose_airframe_they_have(pinnquad):
+    Path("craft.bin").write_bytes(dataflash())
+    Path("crazyflie.usd").write_bytes(b"\xbc\x01\x00")
+    for logs in "craft.bin crazyflie.usd", "crazyflie.usd craft.bin":
+        pinnquad.refused(f"import {logs} --out dataset", keyword="the mapping crazyflie is of crazyflie_2_1")
+
+
 def test_logs_of_one_name_are_called_by_their_folders(pinnquad):
     for begin, folder in enumerate(("monday/logs", "tuesday/logs")):
         Path(folder).mkdir(parents=True)

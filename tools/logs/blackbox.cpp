@@ -124,7 +124,7 @@ class Reader {
         continue;
       }
       const Outcome frame = decode(letter, at + 1);
-      const bool at_end = frame.end >= file_.size();
+      const bool at_end = ended_ || frame.end >= file_.size();  // pages of flash are filled behind a log's end
       const bool whole = at_end ? !frame.cut : letters.find(file_[frame.end]) != std::string_view::npos;
       if (frame.end - at - 1 > longest_frame || !whole) {
         lose(at, true);

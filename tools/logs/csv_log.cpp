@@ -26,12 +26,13 @@ class Table {
  public:
   static constexpr std::size_t no_text = static_cast<std::size_t>(-1);
 
-  /// `may_be_cut`: the file may end within a row, as a logger leaves it that lost its power.
+  /// `may_be_cut`: a last row without a line end is left out, for a logger that lost its power leaves such rows.
   Table(const std::string& path, const LogSelection& selection, bool may_be_cut)
       : path_(path), selection_(selection), records_(path) {
     std::error_code ignored;
     bytes_ = std::filesystem::file_size(path, ignored);
-    ends_in_row_ = may_be_cut && last_byte(path) != '\n';
+    const int last = last_byte(path);
+    ends_in_row_ = may_be_cut && last != '\n' && last != '\r';
     head_ = csv_head(path);
     names_ = head_.names;
     for (std::size_t i = 0; i < head_.records; ++i) records_.next(record_);
@@ -47,7 +48,7 @@ class Table {
   /// Of each column, the first row whose cell is no number.
   const std::vector<std::size_t>& first_text() const noexcept { return first_text_; }
   void set_first_text(const std::vector<std::size_t>& first_text) { first_text_ = first_text; }
-  /// The last row, where the file ends before its last cell and a line's end; 0: none. It is not among the rows.
+  /// The last row, where the file ends before its line does; 0: none. It is not among the rows.
   std::size_t cut_line() const noexcept { return cut_line_; }
   /// False where a column turned out to be text when there were rows already: they are not among its texts.
   bool complete() const noexcept { return complete_; }
@@ -71,7 +72,7 @@ class Table {
       } else {
         split_cells(record_, head_.separator, cells_);
       }
-      if (cells_.size() < size && ends_in_row_ && records_.bytes() >= bytes_) {
+      if (cells_.size() <= size && ends_in_row_ && records_.bytes() >= bytes_) {
         cut_line_ = records_.line();
         break;
       }
@@ -191,8 +192,7 @@ bool read_list(std::string_view text, std::vector<double>& numbers, std::vector<
 }
 
 /// A column of lists becomes columns of numbers: p[0], p[1], p[2]; of a matrix R[0][0], R[0][1] ... Numbers stand
-/// between commas or blanks. Columns of other text stay. Throws InputError with the row where a list has other numbers
-/// than the first one.
+/// between commas or blanks. Columns of other text stay, those too whose lists are not of one length.
 void expand_lists(LogTopic& topic) {
   std::vector<LogText> texts;
   for (LogText& text : topic.texts) {
@@ -203,13 +203,15 @@ void expand_lists(LogTopic& topic) {
       continue;
     }
     std::vector<std::vector<double>> values(numbers.size());
-    for (std::size_t row = 0; row < text.values.size(); ++row) {
-      if (!read_list(text.values[row], numbers, nullptr) || numbers.size() != values.size()) {
-        throw InputError(topic.file, static_cast<std::size_t>(topic.place[row]), 0,
-                         "a list of " + std::to_string(values.size()) + " numbers in column " + text.name,
-                         quoted_cell(text.values[row]));
-      }
+    std::size_t row = 0;
+    for (; row < text.values.size(); ++row) {
+      if (!read_list(text.values[row], numbers, nullptr) || numbers.size() != values.size()) break;
       for (std::size_t i = 0; i < values.size(); ++i) values[i].push_back(numbers[i]);
+    }
+    if (row < text.values.size()) {
+      text.first_text = row;
+      texts.push_back(std::move(text));
+      continue;
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
       // a list of one number is that number
@@ -239,7 +241,7 @@ void set_clock(LogTopic& topic, const Table& table, const LogSelection& selectio
   for (std::size_t i = 0; i < topic.size(); ++i) topic.time_s[i] = clock->values[i] / selection.clock_ticks_per_s;
 }
 
-/// `cut_line`: null where a last row that is cut short is refused; else its line, 0 for none.
+/// `cut_line`: null where a last row without a line end is as any other; else its line, 0 for none.
 LogTopic read_table(const std::string& path, const LogSelection& selection, CsvHead& head, std::size_t* cut_line) {
   Table table(path, selection, cut_line != nullptr);
   head = table.head();
@@ -272,7 +274,7 @@ FlightLog read_csv_log(const std::string& path, const LogSelection& selection) {
   for (const auto& [key, value] : head.facts) keep_parameters(log, key, value);
   if (cut_line > 0) {
     log.warnings.push_back(printable(std::filesystem::path(path).stem().string()) + ": line " +
-                           std::to_string(cut_line) + " ends in the middle, and so does the file: left out");
+                           std::to_string(cut_line) + ", the last, has no line end, so it may be cut: left out");
   }
   return log;
 }

@@ -8,7 +8,8 @@
 
 namespace pinnquad::logs {
 
-/// A log of one topic without name; numbers in rows of keys and values above the table are its parameters.
+/// A log of one topic without name; numbers in rows of keys and values above the table are its parameters. A last row
+/// without a line end, whose last cell may be cut, is left out with a warning.
 FlightLog read_csv_log(const std::string& path, const LogSelection& selection = {});
 
 }  // namespace pinnquad::logs

@@ -32,6 +32,14 @@ Dimension dimension_of(const Source& source) {
   return source.quantity == Quantity::extra ? Dimension::none : facts_of(source.quantity).dimension;
 }
 
+/// The column of lists among whose numbers "p[0]" would be; null where there is none.
+const LogText* lists_of(const LogTopic& topic, const std::string& name) {
+  for (std::size_t at = name.rfind('['); at != std::string::npos && at > 0; at = name.rfind('[', at - 1)) {
+    if (const LogText* text = topic.text(name.substr(0, at))) return text;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 const LogColumn* column_named(const LogTopic& topic, const std::string& name) {
@@ -52,6 +60,11 @@ std::vector<const LogColumn*> columns_in(const LogTopic& topic, const std::vecto
     if (const LogColumn* column = column_named(topic, one.name)) {
       found.push_back(column);
       continue;
+    }
+    const LogText* const lists = lists_of(topic, one.name);
+    if (lists != nullptr && (why || lists->first_text > 0)) {
+      throw wrong_cell(topic, lists->first_text, lists->name, "lists of one length in column " + lists->name,
+                       quoted_cell(lists->values[lists->first_text]));
     }
     if (!why) return {};
     if (const LogText* text = topic.text(one.name)) {

@@ -112,6 +112,7 @@ class Import {
       : logs_(logs), settings_(settings), steps_(dataset_.steps) {
     choose_mappings();
     if (settings.rate_hz) period_s_ = 1 / *settings.rate_hz;
+    if (settings.airframe.empty()) require_one_airframe();
     const std::string& name = settings.airframe.empty() ? mapping_.airframe : settings.airframe;
     if (!name.empty()) airframe_ = chosen_airframe(name);
     for (const Mapping& mapping : mappings_) dataset_.mapping += (dataset_.mapping.empty() ? "" : ", ") + mapping.name;
@@ -194,6 +195,18 @@ class Import {
     if (mappings_.empty()) refuse_without_log();
     if (settings_.thrust_curve) state_curve(*settings_.thrust_curve);
     use(0);
+  }
+
+  /// Not the first log's for all.
+  void require_one_airframe() const {
+    for (const Mapping& mapping : mappings_) {
+      if (mapping.airframe == mappings_.front().airframe) continue;
+      const auto words = [](const Mapping& of) {
+        return "the mapping " + of.name + " is of " + (of.airframe.empty() ? "no one airframe" : of.airframe);
+      };
+      throw std::invalid_argument("logs of several vehicles: " + words(mappings_.front()) + ", " + words(mapping) +
+                                  ": --airframe gives one for all, or each is imported alone");
+    }
   }
 
   /// As if each mapping said so.

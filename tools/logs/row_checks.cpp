@@ -57,11 +57,12 @@ std::array<bool, std::tuple_size<JudgedRow>::value> stepping_columns(const std::
   return found;
 }
 
-/// A flight of that name and those extra columns, without rows.
+/// The flight without its rows.
 Flight emptied(const Flight& flight) {
   Flight empty;
   empty.name = flight.name;
   empty.trajectory = flight.trajectory;
+  empty.weight = flight.weight;
   for (const ExtraColumn& column : flight.columns()) {
     ExtraColumn none;
     none.name = column.name;
@@ -267,9 +268,11 @@ std::vector<Flight> cut(Flight flight, double part_s) {
   const double begin_s = flight[0].time_s, length_s = flight.back().time_s - begin_s;
   const double parts = std::max(1.0, std::round(length_s / part_s));
   std::vector<std::size_t> begins = {0};
+  double done = 1;
   for (std::size_t row = 1; row < flight.size(); ++row) {
-    const double done = static_cast<double>(begins.size());
-    if (done < parts && flight[row].time_s - begin_s >= length_s * done / parts) begins.push_back(row);
+    const auto is_behind = [&] { return done < parts && flight[row].time_s - begin_s >= length_s * done / parts; };
+    if (is_behind()) begins.push_back(row);
+    while (is_behind()) ++done;  // a pause may hold whole parts
   }
   return split(std::move(flight), begins);
 }

@@ -195,6 +195,10 @@ TEST_CASE("flights of one file, one after the other; told by content") {
                           std::string(9, '\xff') + head(plain) + i_frame(0, 9000, 2) + end_of_log;
   CHECK(column(parsed(two), "x") == Values{1});
   CHECK(column(parsed(two, 1), "x") == Values{2});
+  CHECK((parsed(two).warnings.empty() && parsed(two, 1).warnings.empty()));  // flash is filled behind an end
+  const std::string one = head(plain) + i_frame(0, 1000, 1);
+  CHECK(column(parsed(one + end_of_log + std::string(2, '\0') + i_frame(8, 2000, 2)), "x") == Values{1});
+  CHECK(column(parsed(one + end_of_log.substr(0, 9) + i_frame(8, 2000, 2) + i_frame(16, 3000, 3)), "x").back() == 3);
   CHECK(pinnquad::logs::kind_of_log(folder.write("flight.csv", two)) == pinnquad::logs::LogKind::blackbox);
   CHECK(pinnquad_test::complaint_of([&] { parsed(two, 2); }, "x.bbl").find("found 2 flights") != std::string::npos);
 }

@@ -150,6 +150,25 @@ TEST_CASE("the table below comments, keys and values, and above a row of units")
   CHECK(read("t,flight\n1,a\n2,b\n").text("flight")->values == std::vector<std::string>{"a", "b"});
 }
 
+TEST_CASE("a last row without a line end may be cut: left out with a warning") {
+  const TemporaryFolder folder;
+  for (const std::string end : {"", "3,", "3,15", "3,1.2e"}) {
+    const auto log = read_csv_log(folder.write("log.csv", "t,x\n1,1532\n2,1533\n" + end), by("t"));
+    CHECK(log.topics[0].column("x")->values == std::vector<double>{1532, 1533});
+    REQUIRE(log.warnings.size() == (end.empty() ? 0 : 1));
+    if (!end.empty()) CHECK(log.warnings[0].find("log: line 4, the last, has no line end") == 0);
+  }
+  CHECK(read("t,x\n1,2\n3,4\r").size() == 2);
+}
+
+TEST_CASE("lists of one length are columns of numbers, others text") {
+  const LogTopic topic = read("t,p,q,r\n1,\"[1,2]\",\"[3,4]\",[]\n2,[5 6],[7],[]\n", by("t"));
+  CHECK(topic.column("p[1]")->values == std::vector<double>{2, 6});
+  CHECK(topic.column("q[0]") == nullptr);
+  CHECK(topic.text("q")->values == std::vector<std::string>{"[3,4]", "[7]"});
+  CHECK((topic.text("q")->first_text == 1 && topic.text("r")->first_text == 0));
+}
+
 TEST_CASE("decimal commas between commas: what to do about them") {
   const std::string numbers =
       ": expected numbers with a decimal point, or semicolons between the cells (export the table so), found ";

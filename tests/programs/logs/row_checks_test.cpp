@@ -106,3 +106,21 @@ TEST_CASE("a value like none of its neighbours is found, whatever its column; mo
   for (std::size_t row = 0; row < wrapped.size(); ++row) wrapped[row].yaw_rad += row % 2 == 0 ? 0 : 6.283185307179586;
   CHECK(count(pinnquad::logs::outlier_rows(wrapped)) == 0);
 }
+
+TEST_CASE("flights of another's rows weigh as much, and a pause longer than the parts is no part") {
+  Flight flight = synthetic_flight();
+  flight.weight = 3;
+  flight.name = "a";
+  flight.keep_rows([](std::size_t row) { return row < 500 || row >= 900; });
+  const auto parts = pinnquad::logs::split_at_gaps(flight, 0.015);
+  REQUIRE(parts.size() == 2);
+  CHECK((parts[1].weight == 3 && pinnquad::logs::joined(parts).weight == 3));
+  CHECK(pinnquad::logs::first_rows(flight, 10).weight == 3);
+  const std::size_t rows = flight.size();
+  std::size_t sum = 0;
+  for (const Flight& part : pinnquad::logs::cut(std::move(flight), 0.5)) {
+    CHECK(part.size() >= 49);
+    sum += part.size();
+  }
+  CHECK(sum == rows);
+}

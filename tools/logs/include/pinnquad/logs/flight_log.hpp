@@ -24,7 +24,9 @@ struct LogColumn {
 struct LogText {
   std::string name;  ///< "flight"
   std::vector<std::string> values;
-  std::size_t first_text = 0;  ///< the first row whose cell is no number: which to name where numbers are expected
+  /// The first row whose cell is no number, or no list as long as the first row's: which to name where numbers are
+  /// expected.
+  std::size_t first_text = 0;
 };
 
 /// Rows of one kind of message, in the file's order, which need not be that of time.
