@@ -41,13 +41,6 @@ def test_saved_and_loaded(trained, flight, tmp_path):
     np.testing.assert_array_equal(model.predict(x), trained.model.predict(x))
 
 
-def test_limits_of_another_model_do_not_stay(flight, tmp_path):
-    (tmp_path / "trust.hpp").write_text("another model's")
-    training = pinnquad.train(flight, models=["paper_vanilla"], seeds=1, epochs=1)
-    assert [path.rsplit("/")[-1] for path in training.save(tmp_path, allow_poor=True)] == ["model.hpp", "model.block"]
-    assert not (tmp_path / "trust.hpp").exists()
-
-
 def test_a_model_of_ones_own_airframe():
     airframe = pinnquad.Airframe("racer_5_inch")
     airframe.mass_kg *= 1.2
@@ -105,6 +98,13 @@ def test_flights_that_nobody_should_train_on(flight):
     for wrong in (None, 3, [], "flight.csv", [flight, 3]):
         with pytest.raises((TypeError, ValueError)):
             pinnquad.train(wrong)
+
+
+def test_limits_of_another_model_do_not_stay(flight, tmp_path):
+    (tmp_path / "trust.hpp").write_text("another model's")
+    training = pinnquad.train(flight, models=["paper_vanilla"], seeds=1, epochs=1)
+    assert [path.rsplit("/")[-1] for path in training.save(tmp_path, allow_poor=True)] == ["model.hpp", "model.block"]
+    assert not (tmp_path / "trust.hpp").exists()
 
 
 def test_nothing_is_half_written(trained, tmp_path):
