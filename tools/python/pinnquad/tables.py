@@ -66,7 +66,7 @@ def from_dataframe(frame, mapping=None, *, name="table", airframe=None, lag_s=No
 
     mapping: what the columns mean, as of `pinnquad import`: a ready one's name, a TOML file, or the TOML text itself;
     None: the columns are Flight.column_names (and others, which are kept where they hold numbers), as of Flight.to_frame().
-    Missing cells are NaN, None or masked. A frame that is a join of several (a row a message) is resampled column by
+    Missing cells are NaN, None or masked, and refused where mapping is None. A frame that is a join of several (a row a message) is resampled column by
     column. The index is no column: reset_index() makes it one. Raises ValueError or pinnquad.Error, one line.
     """
     if mapping is None:
