@@ -53,7 +53,9 @@ def test_round_trips(flight, tmp_path):
     dataset = Dataset.read([tmp_path / "dataset"])
     assert len(dataset) == 2 and dataset.rows == 2 * len(flight)
     np.testing.assert_array_equal(dataset[0].rows, flight.rows)
-    assert [len(one) for one in dataset] == [len(flight)] * 2
+    assert [(len(one), one.weight) for one in dataset] == [(len(flight), 1), (len(flight), 2)]
+    for one in (dataset, Dataset(dataset), pinnquad.split(flight)[0]):
+        assert one.sample_period_s == 0.05
 
 
 def test_logs_of_others():
@@ -83,10 +85,12 @@ def test_rows_that_are_none(flight):
         flight["u5"]
     with pytest.raises(IndexError, match="flight 1 of 1"):
         Dataset(flight)[1]
+    with pytest.raises(ValueError, match="row 1, column pack: expected a finite number, found nan"):
+        Flight(flight.rows[:2], columns=[("pack", "V", [1, np.nan])])
     assert len(Flight(np.zeros((0, 21)))) == 0
 
 
-def test_files_that_are_none(tmp_path):
+def test_files_that_are_none(flight, tmp_path):
     with pytest.raises(pinnquad.Error, match="nothing.csv"):
         Flight.read(tmp_path / "nothing.csv")
     bad = tmp_path / "bad.csv"
@@ -97,6 +101,9 @@ def test_files_that_are_none(tmp_path):
         with pytest.raises((pinnquad.Error, ValueError)) as caught:
             Dataset.read(paths)
         assert "\n" not in str(caught.value)
+    flight.save(tmp_path / "flight.csv")
+    with pytest.raises(ValueError, match="lag_s: only logs"):
+        Dataset.read([tmp_path / "flight.csv"], lag_s=0.1)
     with pytest.raises((pinnquad.Error, ValueError), match="martian"):
         Dataset.read([bad], mapping="martian")
     for wrong in (3, "abc", [1, 2], None):

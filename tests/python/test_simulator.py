@@ -276,6 +276,17 @@ def test_ctrl_c_stops_a_long_flight_which_can_go_on(ctrl_c):
     assert simulator.time_s == pytest.approx(stopped_s + 1.0, abs=1e-6)
 
 
+def test_what_a_handler_raises_ends_a_training(flight):
+    def late(number, frame):
+        raise TimeoutError("too late")
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, 0.5)
+    with pytest.raises(TimeoutError, match="too late"):
+        pinnquad.train(flight, models=["paper_vanilla"], seeds=50, epochs=3000)
+    signal.signal(signal.SIGALRM, before)
+
+
 def test_ctrl_c_stops_a_training(ctrl_c, flight):
     ctrl_c(1.0)
     start = time.monotonic()

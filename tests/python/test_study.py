@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A study of one's own: rows that a stopped run keeps, tests by pair, figure and table."""
 import csv
+import functools
 
 import numpy as np
 import pytest
@@ -103,6 +104,34 @@ def test_a_stopped_run_goes_on(flown, tmp_path):
     assert asked[-3:] == [4, -1, -1]
     with pytest.raises(ValueError, match="found one of others"):
         study.run({"own": contender}, pinnquad.fly(rows=2400, seed=9), tmp_path / "study", seeds=1)
+
+
+def test_rows_of_other_settings_are_made_anew(flown, tmp_path):
+    chosen = (1, "paper_quadrotor"), (2, "paper_quadrotor"), (2, "racer_5_inch"), (2, pinnquad.Airframe("racer_5_inch"))
+    rows = [study.run({"s": "structured"}, flown, tmp_path, seeds=1, epochs=epochs, airframe=airframe).rows[0]
+            for epochs, airframe in chosen]
+    assert rows[0] != rows[1] != rows[2] == rows[3]  # each has its own time
+    asked = []
+
+    def shifted(parts, seed, step):
+        asked.append(step)
+        return parts.test.commands + step
+
+    textless = eval("lambda parts, seed: shifted(parts, seed, 0)", {"shifted": shifted})
+    for own in [functools.partial(shifted, step=step) for step in (0.1, 0.2, 0.2)] + [textless, textless]:
+        assert study.run({"own": own}, flown, tmp_path, seeds=1).rows[0]["mean_absolute_error"] == pytest.approx(asked[-1])
+    assert asked == [0.1, 0.2, 0, 0]
+
+
+def test_flights_are_others_by_column_and_by_border(flown, tmp_path):
+    def require(*flights):
+        study.run({"own": noisy(0.01)}, flights, tmp_path, seeds=1)
+
+    parts = [pinnquad.Flight(flown.rows[rows], str(rows)) for rows in (slice(1200), slice(1200, 2400))]
+    require(flown)
+    for others in ([pinnquad.Flight(flown.rows, columns=[("pack", "V", flown.time_s)])], parts):
+        with pytest.raises(ValueError, match="found one of others"):
+            require(*others)
 
 
 def test_a_backend_of_joblib_is_used(flown, tmp_path):

@@ -46,6 +46,7 @@ def test_arrays(flown):
     again = Flight.from_arrays(**arrays(flown), name="mine", columns=[("pack", "V", np.linspace(16, 15, len(flown)))])
     assert again.name == "mine" and again.columns == [("pack", "V")]
     the_same(again, flown)
+    the_same(Flight.from_arrays(**arrays(flown), columns=[("commands", "1", np.zeros(len(flown)))]), flown)
 
 
 def test_frames_and_orders(flown):
@@ -62,6 +63,12 @@ def test_frames_and_orders(flown):
     given.update(world="enu", body="flu", quaternion_order="xyzw", motor_order="betaflight",
                  commands=u[:, [3, 0, 1, 2]])
     the_same(Flight.from_arrays(**given), flown)
+
+
+@pytest.mark.parametrize("names, words", [(['pa"ck'], "plain text"), (["pack", "pack"], "found 'pack' twice")])
+def test_names_of_columns(flown, names, words):
+    with pytest.raises((pinnquad.Error, ValueError), match=words):
+        Flight.from_arrays(**arrays(flown), columns=[(name, "V", np.ones(len(flown))) for name in names])
 
 
 @pytest.mark.parametrize("change, words", [
@@ -122,6 +129,8 @@ def test_dataframe(flown):
     assert len(dataset) == 1 and dataset[0].name == "mine"
     at = np.searchsorted(flown.time_s, dataset[0].time_s - 1e-6)
     np.testing.assert_allclose(dataset[0].body_rates_rad_s, flown.body_rates_rad_s[at], atol=1e-9)
+    with pytest.raises(ValueError, match="lag_s: a dataset was imported with one"):
+        pinnquad.train(dataset, lag_s=0.1)
     with pytest.raises(pinnquad.Error, match="the mapping:.*nearest: p"):
         Dataset.from_dataframe(frame_of(flown), MAPPING.replace('"p"', '"pp"'), **settings)
     with pytest.raises(ValueError, match="one length"):

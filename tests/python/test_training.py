@@ -53,7 +53,8 @@ def test_whole_flights_are_held_out_by_name():
 @pytest.mark.parametrize("arguments, words", [
     ({"models": ["paper_magic"]}, "no model of that name; nearest: paper_"),
     ({"seeds": 0}, "seeds must be"), ({"epochs": 0}, "epochs must be"), ({"threads": 5000}, "threads must be"),
-    ({"slopes": "steep"}, "no slopes named"), ({"lag_s": float("nan")}, "lag_s"), ({"airframe": "kite"}, "kite")])
+    ({"slopes": "steep"}, "no slopes named"), ({"slopes": "pinned", "models": ["paper_vanilla"]}, "are of structured models"),
+    ({"lag_s": float("nan")}, "lag_s"), ({"airframe": "kite"}, "kite")])
 def test_choices_that_make_no_sense(flight, arguments, words):
     with pytest.raises(ValueError, match=words) as caught:
         pinnquad.train(flight, **arguments)
@@ -89,6 +90,13 @@ def test_flights_that_nobody_should_train_on(flight):
     for wrong in (None, 3, [], "flight.csv", [flight, 3]):
         with pytest.raises((TypeError, ValueError)):
             pinnquad.train(wrong)
+
+
+def test_limits_of_another_model_do_not_stay(flight, tmp_path):
+    (tmp_path / "trust.hpp").write_text("another model's")
+    training = pinnquad.train(flight, models=["paper_vanilla"], seeds=1, epochs=1)
+    assert [path.rsplit("/")[-1] for path in training.save(tmp_path, allow_poor=True)] == ["model.hpp", "model.block"]
+    assert not (tmp_path / "trust.hpp").exists()
 
 
 def test_nothing_is_half_written(trained, tmp_path):

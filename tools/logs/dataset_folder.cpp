@@ -96,6 +96,7 @@ std::string dataset_json(const ImportedDataset& dataset) {
     json["flights"].push_back({{"name", printable(flight.name)},
                                {"file", files[i]},
                                {"trajectory", printable(flight.trajectory)},
+                               {"weight", flight.weight},
                                {"rows", flight.size()},
                                {"source", i < dataset.sources.size() ? printable(dataset.sources[i]) : ""}});
   }
@@ -189,6 +190,7 @@ ImportedDataset read_dataset_folder(const std::string& path, const OnProgress& o
     }
     flight.name = text(entry, "name");
     flight.trajectory = text(entry, "trajectory");
+    if (entry.contains("weight")) flight.weight = number(entry, "weight", 0);
     try {
       dataset.flights.add(std::move(flight));
     } catch (const std::invalid_argument& refused) {

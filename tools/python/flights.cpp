@@ -70,6 +70,13 @@ std::vector<std::string> names_of_columns() {
   return {std::begin(pinnquad::sample_field_names), std::end(pinnquad::sample_field_names)};
 }
 
+/// As files of flights are read.
+void require_finite(std::size_t row, std::string_view column, double value) {
+  if (pinnquad::is_finite(value)) return;
+  throw py::value_error("row " + std::to_string(row) + ", column " + std::string(column) +
+                        ": expected a finite number, found " + std::to_string(value));
+}
+
 std::shared_ptr<Flight> made(const py::object& given, const std::string& name, const std::string& trajectory,
                              double weight, const Columns& columns) {
   const Numbers rows = doubles("rows", given, names_of_columns());
@@ -85,16 +92,17 @@ std::shared_ptr<Flight> made(const py::object& given, const std::string& name, c
     Sample::Values values;
     std::copy_n(rows.data(row, 0), values.size(), values.begin());
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (pinnquad::is_finite(values[i])) continue;
-      throw py::value_error("row " + std::to_string(row) + ", column " + std::string(pinnquad::sample_field_names[i]) +
-                            ": expected a finite number, found " + std::to_string(values[i]));
+      require_finite(static_cast<std::size_t>(row), pinnquad::sample_field_names[i], values[i]);
     }
     if (!flight->empty() && !(values[0] > flight->back().time_s)) {
       throw py::value_error("row " + std::to_string(row) + ": time does not increase");
     }
     flight->push_back(pinnquad::to_sample(values));
   }
-  for (const auto& [column, unit, values] : columns) flight->add_column({{column, unit}, values});
+  for (const auto& [column, unit, values] : columns) {
+    flight->add_column({{column, unit}, values});
+    for (std::size_t row = 0; row < values.size(); ++row) require_finite(row, pinnquad::printable(column), values[row]);
+  }
   return flight;
 }
 
@@ -124,6 +132,9 @@ std::shared_ptr<ImportedDataset> read(const std::vector<std::filesystem::path>& 
   settings.airframe = airframe.value_or("").string();
   settings.lag_s = lag_s;
   settings.keep_saturated = keep_saturated;
+  if (lag_s && pinnquad::logs::kind_of_sources(texts, settings.mapping) != pinnquad::logs::SourceKind::logs) {
+    throw py::value_error("lag_s: only logs are imported with one");
+  }
   SignalWatch watch;
   settings.on_progress = [&watch](const std::string&, double) { watch.look(); };
   const py::gil_scoped_release without_gil;
@@ -142,15 +153,23 @@ py::object flight_at(const py::object& self, py::ssize_t index) {
   return py::cast(std::shared_ptr<Flight>(shared, const_cast<Flight*>(&flight)));
 }
 
+/// Flights in memory as a dataset whose period is theirs.
+std::shared_ptr<ImportedDataset> with_period(Dataset flights) {
+  auto own = std::make_shared<ImportedDataset>();
+  own->flights = std::move(flights);
+  own->sample_period_s = pinnquad::sample_period_s(pinnquad::all_rows(own->flights.flights()));
+  return own;
+}
+
 /// Rows of other flights as flights of their own.
 std::shared_ptr<ImportedDataset> dataset_of_rows(const pinnquad::RowSet& rows) {
-  auto own = std::make_shared<ImportedDataset>();
+  Dataset own;
   for (const pinnquad::FlightRows& piece : rows.pieces()) {
     Flight flight = *piece.flight;
     flight.keep_rows([&piece](std::size_t row) { return row >= piece.rows.begin && row < piece.rows.end; });
-    own->flights.add(std::move(flight));
+    own.add(std::move(flight));
   }
-  return own;
+  return with_period(std::move(own));
 }
 
 py::tuple split(const py::object& flights) {
@@ -244,9 +263,8 @@ void bind_flights(py::module_& module) {
                                                                         "Flights, each on a clock of its own.");
   dataset
       .def(py::init([](const py::object& flights) {
-             auto own = std::make_shared<ImportedDataset>();
-             own->flights = *dataset_of(flights);
-             return own;
+             if (!py::isinstance<ImportedDataset>(flights)) return with_period(*dataset_of(flights));
+             return std::make_shared<ImportedDataset>(flights.cast<const ImportedDataset&>());
            }),
            py::arg("flights"), "Of flights, which are copied.")
       .def_static(

@@ -13,15 +13,15 @@
 
 namespace python {
 
-/// Calls `work` on a thread of its own. Ctrl-C makes programs::interrupted() true, which `work` looks at, and becomes
-/// KeyboardInterrupt when `work` is back. One at a time: RuntimeError where another thread's is at work.
+/// Calls `work` on a thread of its own. What a signal's handler raises, as Ctrl-C's KeyboardInterrupt, makes
+/// programs::interrupted() true, which `work` looks at, and goes on when `work` is back. One at a time: RuntimeError
+/// where another thread's is at work.
 inline void run_interruptible(const std::function<void()>& work) {
   static bool busy = false;
   if (busy) throw std::runtime_error("another thread trains, identifies or certifies: one at a time");
   const Busy mine(busy);
-  std::exception_ptr failure;
+  std::exception_ptr failure, raised;
   std::atomic<bool> done{false};
-  bool stopped = false;
   {
     const py::gil_scoped_release without_gil;
     std::thread thread([&] {
@@ -34,20 +34,16 @@ inline void run_interruptible(const std::function<void()>& work) {
     });
     while (!done.load()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      if (stopped) continue;
+      if (raised) continue;
       const py::gil_scoped_acquire with_gil;
       if (PyErr_CheckSignals() == 0) continue;
-      PyErr_Clear();
-      stopped = true;
+      raised = std::make_exception_ptr(py::error_already_set());
       programs::detail::interrupt_wanted.store(true);
     }
     thread.join();
   }
   programs::detail::interrupt_wanted.store(false);
-  if (stopped) {
-    PyErr_SetNone(PyExc_KeyboardInterrupt);
-    throw py::error_already_set();
-  }
+  if (raised) std::rethrow_exception(raised);
   if (failure) std::rethrow_exception(failure);
 }
 

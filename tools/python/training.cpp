@@ -109,7 +109,10 @@ class Training {
     pinnquad::Provenance from = provenance();
     from.fitness = programs::fitness_in_words(flight_verdict());
     from.beside = programs::in_words(others(), judged_, chosen_);
-    return fit_->model->export_to(files, name, plan_.folds.front().split, from);
+    pinnquad::Exported written = fit_->model->export_to(files, name, plan_.folds.front().split, from);
+    std::error_code ignored;
+    if (files.trust.empty()) std::filesystem::remove(folder + "/trust.hpp", ignored);  // another model's
+    return written;
   }
 
   /// As the program's training finds it of an airframe that was given; flown and compared when it is first asked for.
@@ -145,7 +148,12 @@ class Training {
   programs::FitPlan plan_of(const TrainChoices& choices) {
     programs::TrainOptions options;  // what the checks of the command ask
     for (const pinnquad::Flight& flight : dataset_.flights.flights()) options.flights.push_back(flight.name);
-    if (!is_imported()) {
+    options.altitude = choices.altitude;
+    options.pinned_slopes = choices.pinned_slopes;
+    programs::require_structured(options, selection_);
+    if (is_imported()) {
+      if (choices.lag_s) throw std::invalid_argument("lag_s: a dataset was imported with one");
+    } else {
       const pinnquad::RowSet all = pinnquad::all_rows(dataset_.flights.flights());
       if (all.size() < programs::fewest_flight_rows) {
         throw std::invalid_argument("expected " + std::to_string(programs::fewest_flight_rows) +
@@ -228,7 +236,7 @@ void bind_training(py::module_& module) {
       .def(
           "save",
           [](const Training& self, const std::filesystem::path& folder, const std::string& name, bool allow_poor) {
-            const pinnquad::Exported written = self.save(folder.string(), name, allow_poor);
+            self.save(folder.string(), name, allow_poor);
             std::vector<std::string> files = {folder / "model.hpp", folder / "model.block"};
             if (std::filesystem::exists(folder / "trust.hpp")) files.push_back(folder / "trust.hpp");
             return files;
@@ -282,7 +290,7 @@ void bind_training(py::module_& module) {
       "hold_out   names of flights or trajectories that judge, in place of the last\n"
       "altitude   is the structured model shown it? None: where the validation rows gain by it\n"
       "slopes     'learned', or 'pinned' to the airframe's in hover\n"
-      "lag_s      from command to motion, s, to be removed; None: estimated\n\n"
+      "lag_s      from command to motion, s, to be removed; None: estimated, and of an imported dataset none\n\n"
       "Other threads run meanwhile; Ctrl-C ends it, and nothing is kept.");
 }
 

@@ -11,6 +11,7 @@ mine(parts, seed). It learns from parts.train and parts.validation, and returns 
 pinnquad.Model (of a program of one's own: Model.load("model.block")). docs/python.md has one with a loss in PyTorch.
 """
 import csv
+import functools
 import hashlib
 import inspect
 import json
@@ -23,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from . import plots
-from ._core import Dataset, Flight, Model, split, train
+from ._core import Airframe, Dataset, Flight, Model, split, train
 from .results import pandas
 
 #: columns of rows.csv; errors of the commands on the rows held out
@@ -172,8 +173,9 @@ def run(contenders, flights, folder, *, seeds=20, jobs=None, reference=None, air
     contenders  a dict, name: a name of train(), or a callable (see the module)
     flights     a Flight, a Dataset or a list of flights, parted as train() parts them, by pinnquad.split()
     folder      a row is a file in folder/rows as soon as it is finished: a run that was stopped goes on, and several
-                machines with one folder share the work. A row is made anew when the text of its callable has changed,
-                or a number that it closes over.
+                machines with one folder share the work. A row is made anew when airframe or epochs of its name have
+                changed, the text of its callable, a number that it closes over or what a functools.partial holds; and
+                in each run where Python does not have that text.
     seeds       how many, from 1; or the seeds themselves (a range for each task of a Slurm array)
     jobs        rows at a time, by joblib; None: as joblib.parallel_backend() says, such as "dask", else one
     reference   the contender that the others are compared with; None: the first
@@ -189,17 +191,20 @@ def run(contenders, flights, folder, *, seeds=20, jobs=None, reference=None, air
         flights = [flights]
     flights = [flight for flight in flights]
     wanted = list(range(1, seeds + 1)) if isinstance(seeds, int) else [int(seed) for seed in seeds]
+    settings = (epochs, Airframe(airframe).to_toml())
+    sources = {name: _source(contender, settings) for name, contender in contenders.items()}
     (folder / "rows").mkdir(parents=True, exist_ok=True)
     _require_the_same_flights(folder, flights)
     missing = [(name, contender, seed) for seed in wanted for name, contender in contenders.items()
-               if _read(folder, name, seed, _source(contender)) is None]
-    joblib.Parallel(n_jobs=jobs)(joblib.delayed(_fit)(folder, name, contender, seed, flights, airframe, epochs)
-                                 for name, contender, seed in missing)
-    rows = [_read(folder, name, seed, _source(contender)) for name, contender in contenders.items() for seed in wanted]
+               if sources[name] is None or _read(folder, name, seed, sources[name]) is None]
+    joblib.Parallel(n_jobs=jobs)(
+        joblib.delayed(_fit)(folder, name, contender, seed, flights, airframe, epochs, sources[name])
+        for name, contender, seed in missing)
+    rows = [_read(folder, name, seed, sources[name]) for name in contenders for seed in wanted]
     return Study(folder, rows, reference)
 
 
-def _fit(folder, name, contender, seed, flights, airframe, epochs):
+def _fit(folder, name, contender, seed, flights, airframe, epochs, source):
     """One row, written when it is whole."""
     begun = time.perf_counter()
     parts = Parts(*map(Part, split(flights)))
@@ -211,7 +216,7 @@ def _fit(folder, name, contender, seed, flights, airframe, epochs):
         if isinstance(commands, Model):
             commands = commands.predict(commands.features(parts.test.flights))
     figures = _figures(name, np.asarray(commands, float), parts.test.commands)
-    row = {"contender": name, "seed": seed, **figures, "seconds": time.perf_counter() - begun, "source": _source(contender)}
+    row = {"contender": name, "seed": seed, **figures, "seconds": time.perf_counter() - begun, "source": source}
     _write(_path(folder, name, seed), row)
 
 
@@ -249,24 +254,38 @@ def _read(folder, name, seed, source):
     return row if row["source"] == source else None
 
 
-def _source(contender):
-    """The name, or a digest of the callable's text and the plain values that it closes over; empty where Python does not
-    have the text."""
+def _source(contender, settings):
+    """A digest of what decides rows beside flights and seed: a name and its `settings`; or the text of a callable, the plain
+    values that it closes over, and what a functools.partial, a method or an object holds. None where Python has them not."""
     if isinstance(contender, str):
-        return contender
+        return _digest(contender, *settings)
+    held = []
+    if isinstance(contender, functools.partial):
+        held, contender = [contender.args, contender.keywords], contender.func
+    plain = {}
     try:
-        text = inspect.getsource(contender)
-        held = inspect.getclosurevars(contender).nonlocals
-    except (OSError, TypeError):
-        return ""
-    plain = {name: value for name, value in sorted(held.items()) if isinstance(value, (bool, int, float, str, tuple))}
-    return hashlib.sha256(f"{text}{plain}".encode()).hexdigest()[:16]
+        if inspect.isroutine(contender):
+            held.append(getattr(contender, "__self__", None))
+            plain = {name: value for name, value in sorted(inspect.getclosurevars(contender).nonlocals.items())
+                     if isinstance(value, (bool, int, float, str, tuple))}
+        else:
+            held.append(contender)
+            contender = type(contender)
+        return _digest(inspect.getsource(contender), plain, _joblib().hash(held))
+    except Exception:  # no text, or whatever a pickle of what it holds raises
+        return None
+
+
+def _digest(*parts):
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
 
 
 def _require_the_same_flights(folder, flights):
     digest = hashlib.sha256()
     for flight in flights:
-        digest.update(np.ascontiguousarray(flight.rows).tobytes())
+        digest.update(repr((len(flight), flight.trajectory, flight.weight, flight.columns)).encode())
+        for values in (flight.rows, *(flight[name] for name, _ in flight.columns)):
+            digest.update(np.ascontiguousarray(values).tobytes())
     path, own = folder / "study.json", {"flights": digest.hexdigest()}
     if not path.exists():
         _write(path, own)

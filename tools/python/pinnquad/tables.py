@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Flights of arrays and data frames: what a notebook holds, imported as `pinnquad import` does a table (docs/import.md)."""
+import json
 import os
 import tempfile
 from pathlib import Path
@@ -34,6 +35,11 @@ def _numbers(name, values, width, rows=None):
     return array.astype(float).reshape(len(array), -1)
 
 
+def _quoted(text):
+    """Text in quotation marks, as TOML has it."""
+    return json.dumps(str(text), ensure_ascii=False)
+
+
 def _imported(columns, mapping, name, **settings):
     """The columns as a table, imported; messages name the table, not its file."""
     with tempfile.TemporaryDirectory() as folder:
@@ -60,7 +66,7 @@ def from_dataframe(frame, mapping=None, *, name="table", airframe=None, lag_s=No
 
     mapping: what the columns mean, as of `pinnquad import`: a ready one's name, a TOML file, or the TOML text itself;
     None: the columns are Flight.column_names (and others, which are kept where they hold numbers), as of Flight.to_frame().
-    Missing cells are NaN, None or masked. A frame that is a join of several (a row a message) is resampled column by
+    Missing cells are NaN, None or masked, and refused where mapping is None. A frame that is a join of several (a row a message) is resampled column by
     column. The index is no column: reset_index() makes it one. Raises ValueError or pinnquad.Error, one line.
     """
     if mapping is None:
@@ -137,7 +143,7 @@ def from_arrays(time_s, *, world, body, body_rates_rad_s, commands, motor_order,
         array = _numbers(what, values, width, rows)
         names = [f"{what}[{i}]" for i in range(width)]
         table.update(zip(names, array.T))
-        told = ", ".join(f'"{one}"' for one in names)
+        told = ", ".join(map(_quoted, names))
         mapping += "\n".join([f"[{key}]", f"{keyword} = [{told}]" if width > 1 else f"{keyword} = {told}", *lines, ""])
 
     if quaternion is not None:
@@ -157,9 +163,10 @@ def from_arrays(time_s, *, world, body, body_rates_rad_s, commands, motor_order,
         add("altitude", "altitude_m", altitude_m, 1)
     add("motors", "commands", commands, 4, f'order = "{motor_order}"')
     for column, unit, values in columns:
-        add("[extra]", column, values, 1, f'name = "{column}"', f'unit = "{unit}"', keyword="column")
-        table[column] = table.pop(f"{column}[0]")
-        mapping = mapping.replace(f'column = "{column}[0]"', f'column = "{column}"')
+        if f"columns: {column}[0]" in table:
+            raise ValueError(f"columns: expected names that differ, found {column!r} twice")
+        add("[extra]", f"columns: {column}", values, 1, f"name = {_quoted(column)}", f"unit = {_quoted(unit)}",
+            keyword="column")
     dataset = _imported(table, mapping, name, airframe=airframe, lag_s=lag_s, keep_saturated=keep_saturated)
     if len(dataset) > 1:
         raise ValueError(f"time_s: expected one flight, found {len(dataset)}, parted by pauses of more than 5 s; "

@@ -2,7 +2,7 @@
 // An imported dataset as a folder: dataset.json says what it is and how it was made, each flight is a CSV file
 // (data/csv.hpp).
 //   {"format": 1, "sample_period_s": 0.02, "lag_removed_s": 0.03, "absent": ["velocity"],
-//    "flights": [{"name", "file", "trajectory", "rows", "source"}],
+//    "flights": [{"name", "file", "trajectory", "weight", "rows", "source"}],
 //    "steps": [{"step", "rows_before", "rows_after", "told"}]}
 #pragma once
 
