@@ -33,6 +33,7 @@
 #include "model/model_evidence.hpp"
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/csv_table.hpp"
 
 namespace {
 
@@ -168,7 +169,7 @@ void write_rows(const std::string& path, const std::vector<nlohmann::json>& rows
     for (const char* name : columns) {
       const nlohmann::json& value = row[name];
       file.stream() << (name == columns.front() ? '\n' : ',');
-      if (value.is_string()) file.stream() << value.get<std::string>();
+      if (value.is_string()) file.stream() << pinnquad::detail::csv_cell(value.get<std::string>());
       if (!value.is_string() && !value.is_null()) file.stream() << value;
     }
   }
@@ -180,6 +181,13 @@ void write_rows(const std::string& path, const std::vector<nlohmann::json>& rows
 bool compares_controllers(const LoopOptions& options) {
   return !options.controllers.empty() || !options.conditions.empty() || options.seeds || options.duration_s ||
          !options.unknown.out.empty();
+}
+
+/// With a line where the model must not fly.
+int exit_code(const BlockModel& model, const programs::FlightVerdict& verdict) {
+  if (verdict.may_fly() != programs::MayFly::no) return 0;
+  programs::complain("loop", model.path() + ": " + verdict.why());
+  return programs::exit_failed;
 }
 
 /// Controllers side by side, each under each condition, of each seed.
@@ -227,7 +235,7 @@ int fly_controllers(const LoopOptions& options, const programs::LoopModel& given
   }
   if (options.json) {
     print_json(report);
-    return 0;
+    return exit_code(given.model, verdict);
   }
   programs::print_verdict(verdict);
   programs::print_entry(
@@ -243,7 +251,7 @@ int fly_controllers(const LoopOptions& options, const programs::LoopModel& given
   }
   for (const std::string& line : programs::bias_warnings(rows)) programs::print_message("warning: " + line);
   if (!out.empty()) programs::print_line("each flight: " + printable(out) + "/rows.csv");
-  return 0;
+  return exit_code(given.model, verdict);
 }
 
 /// Throws std::invalid_argument, one line, for a name that `mode` does not fly.
@@ -294,9 +302,7 @@ int loop(const LoopOptions& options) {
     programs::print_verdict(flown.verdict);
     print_table(options, given, flown);
   }
-  if (flown.verdict.may_fly() != programs::MayFly::no) return 0;
-  programs::complain("loop", model.path() + ": " + flown.verdict.why());
-  return programs::exit_failed;
+  return exit_code(model, flown.verdict);
 }
 
 }  // namespace
@@ -361,7 +367,8 @@ Command loop_command(CLI::App& program) {
   add_number(*line, "--draw", unknown.drawn, std::size_t{0}, std::size_t{9'999},
              "vehicle whose learnt slopes are drawn, from 0 on")
       ->needs(vehicles);
-  add_path(*line, "--out", unknown.out, "FOLDER", "folder of loop.json, rows.csv; the same command goes on in it")
+  add_path(*line, "--out", unknown.out, "FOLDER",
+           "folder of loop.json (of a model rows.csv too); the same command goes on in it")
       ->excludes(guard);
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(
