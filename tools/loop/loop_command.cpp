@@ -96,9 +96,12 @@ void print_json(const nlohmann::json& value) {
   std::printf("%s\n", value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-/// The verdict on `model`, worse where a controller that flies it loses the vehicle.
-programs::FlightVerdict controllers_verdict(const BlockModel& model, const std::vector<programs::LoopSpread>& spreads) {
-  programs::FlightVerdict verdict = programs::model_verdict(programs::evidence_of(model));
+/// The verdict on the model with its columns and battery, worse where a controller that flies it loses the vehicle.
+programs::FlightVerdict controllers_verdict(const programs::LoopModel& given,
+                                            const std::vector<programs::LoopSpread>& spreads) {
+  programs::ModelEvidence evidence = programs::evidence_of(given.model, false);
+  evidence.flown = programs::eight_of(given.model, given.columns, given.battery);
+  programs::FlightVerdict verdict = programs::model_verdict(evidence);
   for (const programs::LoopSpread& each : spreads) {
     const bool by_model = each.controller.find("structured") == 0 || each.controller == "adaptive";
     if (!by_model || each.lost == 0) continue;
@@ -218,7 +221,7 @@ int fly_controllers(const LoopOptions& options, const programs::LoopModel& given
                           return row;
                         });
   const std::vector<programs::LoopSpread> spreads = programs::loop_spreads(rows);
-  const programs::FlightVerdict verdict = controllers_verdict(given.model, spreads);
+  const programs::FlightVerdict verdict = controllers_verdict(given, spreads);
   nlohmann::json report = {{"path", given.model.path()},
                            {"verdict", programs::verdict_json(verdict)},
                            {"airframe", given.airframe.name},
