@@ -228,9 +228,50 @@ def test_many_seeds(pinnquad):
     assert summary["rmse_cm"]["median"] == errors[2] and summary["rmse_cm"]["worst"] == errors[-1], (summary, errors)
     assert re.search(rf"^  adaptive +drawn .* {errors[2]:.2f} .* {errors[-1]:.2f} +0 of 5$", said.out, re.M), said.out
     kept = Path("some/loop.journal").read_bytes(), Path("some/rows.csv").read_bytes()
-    for other, more in ("airframe", "--airframe reference_1.5kg"), ("battery", "--battery 4x5000"):
+    for other, more in ("airframe, airframe_numbers", "--airframe reference_1.5kg"), ("battery", "--battery 4x5000"):
         pinnquad.refused(f"{words} some --seeds 1 {more}", at="some/loop.journal", keyword=f"another plan ({other}): give --out")
     assert kept == (Path("some/loop.journal").read_bytes(), Path("some/rows.csv").read_bytes()), "what was flown stays"
+
+
+def changed_vehicle(into, *changes):
+    replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", into, *changes)
+
+
+def test_what_decides_a_row_is_in_the_plan(pinnquad):
+    """An airframe of the same name and mass; another program."""
+    words = f"loop {MODELS}/structured_quadrotor.block --airframe mine.toml --controllers pid --duration 15 --out d"
+    changed_vehicle("mine.toml")
+    pinnquad(words)
+    changed_vehicle("mine.toml", ("^inertia_kg_m2 = .*", "inertia_kg_m2 = [0.02, 0.02, 0.04]"))
+    pinnquad.refused(words, at="d/loop.journal", keyword="another plan (airframe_numbers): give --out")
+    changed_vehicle("mine.toml")
+    replaced("d/loop.journal", "d/loop.journal", ('"program":"', '"program":"0'))
+    pinnquad.refused(words, at="d/loop.journal", keyword="another plan (program): give --out")
+
+
+def test_lost_before_its_error_counts(pinnquad):
+    """In air that stops it at once: no figure, where 0 would be the best."""
+    changed_vehicle("thick.toml", ("^drag_area_m2 = .*", "drag_area_m2 = [1e5, 1e5, 1e5]"))
+    pinnquad(f"loop {MODELS}/structured_quadrotor.block --airframe thick.toml --controllers pid --duration 15 --out d")
+    row, = json.loads(Path("d/loop.json").read_text())["rows"]
+    cells, = csv.DictReader(Path("d/rows.csv").open())
+    assert row["crashed"] and row["rmse_cm"] is None and row["worst_cm"] is None, row
+    assert cells["crashed"] == "true" and cells["rmse_cm"] == cells["worst_cm"] == "", cells
+
+
+def test_do_not_fly_is_exit_code_1(pinnquad):
+    """Where a controller that flies the model loses the vehicle, table and --json."""
+    words = f"loop {MODELS}/demo_quadrotor.block --airframe reference_1.5kg --trajectory yaw_eight --duration 15 --controllers"
+    assert "loses the vehicle under calm" in pinnquad(f"{words} structured", code=1).lines[-1]
+    assert flown_by(pinnquad, f"{words} structured", code=1)["verdict"]["may_fly"] == "no"
+    pinnquad(f"{words} pid")
+
+
+def test_a_trajectory_with_commas(pinnquad):
+    waypoints("a,\"b.csv", "0,0,0,0,0", "12,3,0,0,0")
+    pinnquad("loop", MODELS / "structured_quadrotor.block", "--controllers=pid", "--out=d", "--trajectory=a,\"b.csv")
+    row, = csv.DictReader(Path("d/rows.csv").open())
+    assert row["trajectory"] == "a,\"b.csv" and row["seed"] == "1" and row["crashed"] == "false", row
 
 
 @pytest.mark.parametrize("words, keyword", [

@@ -76,7 +76,8 @@ def test_the_same_seed_is_the_same_file(pinnquad):
     for name in "loop.json", "slopes_gusts_1.svg", "slopes_noise_3_1.svg":
         files = [Path(out, name).read_bytes() for out in "abc"]
         assert files[0] == files[1] != files[2]
-    assert len(list(Path("a").iterdir())) == 3
+    assert len(list(Path("a").iterdir())) == 4
+    pinnquad.refused(f"loop {words} --seed 6 --out a", at="a/loop.journal", keyword="another plan (seed)")
     no_partial_files("a")
 
 
@@ -122,10 +123,16 @@ def test_out_is_refused(pinnquad):
 
 
 def test_interrupted(pinnquad):
-    """Nothing is written by halves."""
+    """Nothing is written by halves, and what was flown is kept: here a row that the command itself would not fly."""
     process = pinnquad.start("loop --vehicles 10000 --out o")
     until(lambda: " %" in said(), process)
     done = ended(process)
     assert done.code == 130 and not done.out and len(done.lines) == 1, done
     assert not Path("o/loop.json").exists()
     no_partial_files("o")
+    flown(pinnquad, "--vehicles 1 --controllers start", "p")
+    journal = Path("p/loop.journal")
+    plan, row = map(json.loads, journal.read_text().splitlines())
+    journal.write_text("\n".join(map(json.dumps, (plan, {**row, "rmse_cm": 12345.5}))) + "\n")
+    rows, _ = flown(pinnquad, "--vehicles 2 --controllers start", "p")
+    assert [each["vehicle"] for each in rows] == [0, 1] and rows[0]["rmse_cm"] == 12345.5 != rows[1]["rmse_cm"], rows

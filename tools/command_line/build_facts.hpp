@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Compiler and processor of this program: for reports of measured figures.
+// Compiler and processor of this program, for reports of measured figures; its file, for what is kept between its runs.
 #pragma once
 
+#include <cstdint>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <string>
+#include <system_error>
+
+#include "pinnquad/core/fnv1a.hpp"
 
 namespace programs {
 
@@ -62,6 +67,18 @@ inline std::string cpu_name() {
     if (line.compare(0, 10, "model name") == 0 && colon != std::string::npos) return line.substr(colon + 2);
   }
   return "unknown";
+}
+
+/// Another number for another program, by size and time of its file.
+inline std::uint64_t program_hash() {
+  pinnquad::detail::Fnv1a fnv;
+  std::error_code ignored;
+  const std::filesystem::path program = "/proc/self/exe";
+  const auto size = std::filesystem::file_size(program, ignored);
+  fnv.absorb_word(ignored ? 0 : size);
+  const auto time = std::filesystem::last_write_time(program, ignored);
+  fnv.absorb_word(ignored ? 0 : static_cast<std::uint64_t>(time.time_since_epoch().count()));
+  return fnv.hash;
 }
 
 /// "2026-11-21T13:05:00Z"

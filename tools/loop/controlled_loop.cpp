@@ -30,12 +30,15 @@ struct Errors {
   double period_s = 0;
   bool low = false;  ///< came to the ground
 
+  bool reaches(double time_s) const { return at(time_s) < squares.size(); }
+  /// Of a flight that reaches `from_s`.
   double rmse_m(double from_s, double to_s) const {
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t i = at(from_s); i < std::min(at(to_s), squares.size()); ++i, ++count) sum += squares[i];
-    return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
+    return std::sqrt(sum / static_cast<double>(count));
   }
+  /// 0 where the flight ends before.
   double worst_m(double from_s) const {
     double most = 0;
     for (std::size_t i = at(from_s); i < squares.size(); ++i) most = std::max(most, squares[i]);
@@ -219,8 +222,8 @@ nlohmann::json ControlledLoop::fly(const LoopFlight& flight, const LoopGains& ga
                         {"trajectory", flight.trajectory},
                         {"gains", flight.gains},
                         {"seed", flight.seed},
-                        {"rmse_cm", 100 * errors.rmse_m(settled_s, how.duration_s)},
-                        {"worst_cm", 100 * errors.worst_m(settled_s)},
+                        {"rmse_cm", nullptr},
+                        {"worst_cm", nullptr},
                         {"recovery_s", nullptr},
                         {"crashed", crashed},
                         {"saturated_share", flown.saturated_share},
@@ -234,6 +237,10 @@ nlohmann::json ControlledLoop::fly(const LoopFlight& flight, const LoopGains& ga
                         {"inertia_factor", world.drawn().inertia},
                         {"thrust_factor", world.drawn().thrust},
                         {"rotor_factor", world.drawn().rotor}};
+  if (errors.reaches(settled_s)) {
+    row["rmse_cm"] = 100 * errors.rmse_m(settled_s, how.duration_s);
+    row["worst_cm"] = 100 * errors.worst_m(settled_s);
+  }
   const auto recovered = errors.recovery_s(onset_s, usual_m);
   if (recovered && !crashed) row["recovery_s"] = *recovered;
   if (flown.fallback.asked > 0) row["answered_share"] = answered_share(flown.fallback);

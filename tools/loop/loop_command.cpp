@@ -33,6 +33,7 @@
 #include "model/model_evidence.hpp"
 #include "pinnquad/exported/model.hpp"
 #include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/csv_table.hpp"
 
 namespace {
 
@@ -95,9 +96,12 @@ void print_json(const nlohmann::json& value) {
   std::printf("%s\n", value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-/// The verdict on `model`, worse where a controller that flies it loses the vehicle.
-programs::FlightVerdict controllers_verdict(const BlockModel& model, const std::vector<programs::LoopSpread>& spreads) {
-  programs::FlightVerdict verdict = programs::model_verdict(programs::evidence_of(model));
+/// The verdict on the model with its columns and battery, worse where a controller that flies it loses the vehicle.
+programs::FlightVerdict controllers_verdict(const programs::LoopModel& given,
+                                            const std::vector<programs::LoopSpread>& spreads) {
+  programs::ModelEvidence evidence = programs::evidence_of(given.model, false);
+  evidence.flown = programs::eight_of(given.model, given.columns, given.battery);
+  programs::FlightVerdict verdict = programs::model_verdict(evidence);
   for (const programs::LoopSpread& each : spreads) {
     const bool by_model = each.controller.find("structured") == 0 || each.controller == "adaptive";
     if (!by_model || each.lost == 0) continue;
@@ -168,7 +172,7 @@ void write_rows(const std::string& path, const std::vector<nlohmann::json>& rows
     for (const char* name : columns) {
       const nlohmann::json& value = row[name];
       file.stream() << (name == columns.front() ? '\n' : ',');
-      if (value.is_string()) file.stream() << value.get<std::string>();
+      if (value.is_string()) file.stream() << pinnquad::detail::csv_cell(value.get<std::string>());
       if (!value.is_string() && !value.is_null()) file.stream() << value;
     }
   }
@@ -180,6 +184,13 @@ void write_rows(const std::string& path, const std::vector<nlohmann::json>& rows
 bool compares_controllers(const LoopOptions& options) {
   return !options.controllers.empty() || !options.conditions.empty() || options.seeds || options.duration_s ||
          !options.unknown.out.empty();
+}
+
+/// With a line where the model must not fly.
+int exit_code(const BlockModel& model, const programs::FlightVerdict& verdict) {
+  if (verdict.may_fly() != programs::MayFly::no) return 0;
+  programs::complain("loop", model.path() + ": " + verdict.why());
+  return programs::exit_failed;
 }
 
 /// Controllers side by side, each under each condition, of each seed.
@@ -210,7 +221,7 @@ int fly_controllers(const LoopOptions& options, const programs::LoopModel& given
                           return row;
                         });
   const std::vector<programs::LoopSpread> spreads = programs::loop_spreads(rows);
-  const programs::FlightVerdict verdict = controllers_verdict(given.model, spreads);
+  const programs::FlightVerdict verdict = controllers_verdict(given, spreads);
   nlohmann::json report = {{"path", given.model.path()},
                            {"verdict", programs::verdict_json(verdict)},
                            {"airframe", given.airframe.name},
@@ -227,7 +238,7 @@ int fly_controllers(const LoopOptions& options, const programs::LoopModel& given
   }
   if (options.json) {
     print_json(report);
-    return 0;
+    return exit_code(given.model, verdict);
   }
   programs::print_verdict(verdict);
   programs::print_entry(
@@ -243,7 +254,7 @@ int fly_controllers(const LoopOptions& options, const programs::LoopModel& given
   }
   for (const std::string& line : programs::bias_warnings(rows)) programs::print_message("warning: " + line);
   if (!out.empty()) programs::print_line("each flight: " + printable(out) + "/rows.csv");
-  return 0;
+  return exit_code(given.model, verdict);
 }
 
 /// Throws std::invalid_argument, one line, for a name that `mode` does not fly.
@@ -294,9 +305,7 @@ int loop(const LoopOptions& options) {
     programs::print_verdict(flown.verdict);
     print_table(options, given, flown);
   }
-  if (flown.verdict.may_fly() != programs::MayFly::no) return 0;
-  programs::complain("loop", model.path() + ": " + flown.verdict.why());
-  return programs::exit_failed;
+  return exit_code(model, flown.verdict);
 }
 
 }  // namespace
@@ -361,7 +370,8 @@ Command loop_command(CLI::App& program) {
   add_number(*line, "--draw", unknown.drawn, std::size_t{0}, std::size_t{9'999},
              "vehicle whose learnt slopes are drawn, from 0 on")
       ->needs(vehicles);
-  add_path(*line, "--out", unknown.out, "FOLDER", "folder of loop.json, rows.csv; the same command goes on in it")
+  add_path(*line, "--out", unknown.out, "FOLDER",
+           "folder of loop.json (of a model rows.csv too); the same command goes on in it")
       ->excludes(guard);
   line->add_flag("--json", options->json, "the figures as JSON");
   line->footer(

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <system_error>
 
+#include "command_line/build_facts.hpp"
 #include "command_line/listed.hpp"
 #include "command_line/parallel.hpp"
+#include "pinnquad/exported/contents_hash.hpp"
 #include "pinnquad/io/decimal.hpp"
 #include "pinnquad/io/text_file.hpp"
 
@@ -73,8 +75,8 @@ void LoopJournal::file(const nlohmann::json& value) {
   if (value.contains("tuned")) {
     tuned_[value["tuned"]] = value;
   } else {
-    rows_[key_of({value["controller"], value["condition"], value["trajectory"], value["gains"], value["seed"]})] =
-        value;
+    rows_[key_of({value["controller"], value["condition"], value.value("trajectory", ""), value.value("gains", ""),
+                  value[value.contains("vehicle") ? "vehicle" : "seed"]})] = value;
   }
 }
 
@@ -85,19 +87,21 @@ void LoopJournal::write(const nlohmann::json& value) {
 
 nlohmann::json plan_of(const LoopSetting& setting, const std::string& airframe) {
   const LoopSensors& sensors = setting.sensors;
-  nlohmann::json plan = {{"format", 1},
-                         {"model", setting.model.path()},
-                         {"contents", pinnquad::hexadecimal(setting.model.contents_hash())},
-                         {"airframe", airframe},
-                         {"mass_kg", setting.airframe.mass_kg},
-                         {"columns", setting.columns},
-                         {"duration_s", setting.duration_s},
-                         {"noise",
-                          {{"position_m", sensors.position_m},
-                           {"velocity_m_s", sensors.velocity_m_s},
-                           {"attitude_rad", sensors.attitude_rad},
-                           {"body_rates_rad_s", sensors.body_rates_rad_s}}},
-                         {"delay_s", sensors.delay_s}};
+  nlohmann::json plan = {
+      {"format", 1},
+      {"program", pinnquad::hexadecimal(program_hash())},
+      {"model", setting.model.path()},
+      {"contents", pinnquad::hexadecimal(setting.model.checksum())},
+      {"airframe", airframe},
+      {"airframe_numbers", pinnquad::hexadecimal(pinnquad::detail::constant_hash("airframe", setting.airframe))},
+      {"columns", setting.columns},
+      {"duration_s", setting.duration_s},
+      {"noise",
+       {{"position_m", sensors.position_m},
+        {"velocity_m_s", sensors.velocity_m_s},
+        {"attitude_rad", sensors.attitude_rad},
+        {"body_rates_rad_s", sensors.body_rates_rad_s}}},
+      {"delay_s", sensors.delay_s}};
   if (!setting.waypoints.empty()) plan["waypoints"] = pinnquad::file_text(setting.waypoints);
   if (!setting.battery) return plan;
   plan["battery"] = {setting.battery->cells, setting.battery->capacity_Ah, setting.battery->start_charge};

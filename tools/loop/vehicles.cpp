@@ -2,7 +2,6 @@
 #include "loop/vehicles.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -13,10 +12,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "command_line/folders.hpp"
-#include "command_line/parallel.hpp"
+#include "command_line/build_facts.hpp"
 #include "loop/any_policy.hpp"
 #include "loop/conditions.hpp"
+#include "loop/loop_flights.hpp"
 #include "loop/loop_spread.hpp"
 #include "loop/unknown_vehicle.hpp"
 #include "loop/vehicle_course.hpp"
@@ -24,6 +23,7 @@
 #include "pinnquad/control/adaptive_inverse.hpp"
 #include "pinnquad/control/onboard/onboard_inverse.hpp"
 #include "pinnquad/io/atomic_file.hpp"
+#include "pinnquad/io/decimal.hpp"
 
 namespace programs {
 
@@ -425,39 +425,37 @@ void print_vehicles(const VehiclesOptions& options, const std::vector<nlohmann::
 }  // namespace
 
 int fly_vehicles(const VehiclesOptions& options) {
-  make_folders(options.out);
-  AtomicFile file(options.out + "/loop.json");
-  std::vector<VehicleFlight> flights;
+  std::vector<LoopFlight> flights;
   for (const std::string& condition : options.conditions) {
     for (const std::string& controller : options.controllers) {
-      for (std::size_t i = 0; i < options.vehicles; ++i) flights.push_back({controller, condition, i});
+      for (std::size_t i = 0; i < options.vehicles; ++i)
+        flights.push_back({controller, condition, "", "", static_cast<int>(i)});
     }
   }
-  std::vector<nlohmann::json> rows(flights.size());
-  std::vector<std::optional<Chart>> pictures(flights.size());
-  std::atomic<std::size_t> finished{0};
-  run_parallel(
-      std::to_string(flights.size()) + " flights", flights.size(), std::max(1U, std::thread::hardware_concurrency()),
-      [&] { return static_cast<double>(finished.load()) / static_cast<double>(flights.size()); },
-      [&](std::size_t i) {
-        stop_if_interrupted();
-        Flown flown(options, flights[i]);
-        rows[i] = flown.row();
-        pictures[i] = flown.picture();
-        ++finished;
+  const nlohmann::json plan = {{"format", 1},
+                               {"program", hexadecimal(program_hash())},
+                               {"seed", options.seed},
+                               {"start", options.start},
+                               {"frozen", options.frozen_s},
+                               {"draw", options.drawn}};
+  LoopJournal journal(options.out, plan);
+  const std::vector<nlohmann::json> rows =
+      rows_of(flights, &journal, std::max(1U, std::thread::hardware_concurrency()), [&](const LoopFlight& flight) {
+        Flown flown(options, {flight.controller, flight.condition, static_cast<std::size_t>(flight.seed)});
+        nlohmann::json row = flown.row();
+        if (flown.picture()) {
+          const std::string of = flight.condition + "_" + std::to_string(flight.seed);
+          write_svg(options.out + "/slopes_" + of + ".svg", *flown.picture());
+        }
+        return row;
       });
-  stop_if_interrupted();
   const nlohmann::json report = {{"vehicles", options.vehicles},
                                  {"seed", options.seed},
                                  {"start", options.start},
                                  {"frozen_s", options.frozen_s},
                                  {"rows", rows}};
+  AtomicFile file(options.out + "/loop.json");
   file.stream() << report.dump(2) << '\n';
-  for (std::size_t i = 0; i < flights.size(); ++i) {
-    if (!pictures[i]) continue;
-    const std::string of = flights[i].condition + "_" + std::to_string(flights[i].vehicle);
-    write_svg(options.out + "/slopes_" + of + ".svg", *pictures[i]);
-  }
   file.commit();
   if (options.json) {
     std::printf("%s\n", report.dump(2).c_str());

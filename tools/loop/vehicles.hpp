@@ -28,8 +28,8 @@ struct VehiclesOptions {
   bool json = false;
 };
 
-/// Flies all, writes `out`/loop.json, slopes_CONDITION_VEHICLE.svg of what is learnt on board, and prints a table. Its
-/// exit code.
+/// Flies what the folder's journal lacks, writes `out`/loop.json, slopes_CONDITION_VEHICLE.svg of what is learnt on
+/// board, and prints a table. Its exit code.
 int fly_vehicles(const VehiclesOptions& options);
 
 }  // namespace programs

@@ -3,6 +3,7 @@
 // (training/model_verdict.hpp).
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,13 +18,15 @@
 
 namespace programs {
 
-/// A figure-eight that the model flies in the simulator, its columns held at the middle of their training ranges.
-inline nlohmann::json eight_of(const pinnquad::BlockModel& model) {
+/// A figure-eight that the model flies in the simulator, its columns held at these values, or at the middle of their
+/// training ranges.
+inline nlohmann::json eight_of(const pinnquad::BlockModel& model, std::optional<std::vector<double>> columns = {},
+                               const std::optional<pinnquad::Battery>& battery = {}) {
   if (model.features().window().latest_s > 0) return {};
   try {
     const std::string eight = loop_trajectories.front();
-    const std::vector<double> columns = held_columns(range_of(model).columns(), {});
-    return flight_evidence(fly_loop(model, {eight, model.airframe(), true, columns}), eight);
+    if (!columns) columns = held_columns(range_of(model).columns(), {});
+    return flight_evidence(fly_loop(model, {eight, model.airframe(), true, *columns, battery}), eight);
   } catch (const std::invalid_argument& refused) {
     return {{"why_not", refused.what()}};
   }

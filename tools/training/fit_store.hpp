@@ -15,9 +15,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "command_line/build_facts.hpp"
 #include "command_line/folders.hpp"
 #include "pinnquad/core/fnv1a.hpp"
 #include "pinnquad/data/dataset.hpp"
+#include "pinnquad/exported/contents_hash.hpp"
 #include "pinnquad/io/atomic_file.hpp"
 #include "training/fits.hpp"
 
@@ -75,22 +77,15 @@ class FitStore : public KnownFits {
   }
 
  private:
-  static void absorb(pinnquad::detail::Fnv1a& fnv, double value) { pinnquad::detail::absorb_number(fnv, value); }
-
-  /// The program (by size and time of its file), the airframe, what the flights lack, what was asked for.
+  /// The program, the airframe, what the flights lack, what was asked for.
   static std::uint64_t plan_hash(const FitPlan& plan) {
     pinnquad::detail::Fnv1a fnv;
-    std::error_code ignored;
-    const std::filesystem::path program = "/proc/self/exe";
-    const auto size = std::filesystem::file_size(program, ignored);
-    fnv.absorb_word(ignored ? 0 : size);
-    const auto time = std::filesystem::last_write_time(program, ignored);
-    fnv.absorb_word(ignored ? 0 : static_cast<std::uint64_t>(time.time_since_epoch().count()));
-    each_number(plan.airframe.value, [&fnv](auto number) { absorb(fnv, static_cast<double>(number)); });
+    fnv.absorb_word(program_hash());
+    fnv.absorb_word(pinnquad::detail::constant_hash("airframe", plan.airframe.value));
     for (const std::string& name : plan.absent) fnv.absorb_text(name);
-    absorb(fnv, plan.sample_period_s);
-    absorb(fnv, plan.past.delay_s);
-    absorb(fnv, plan.past.least_time_constant_s);
+    for (const double value : {plan.sample_period_s, plan.past.delay_s, plan.past.least_time_constant_s}) {
+      pinnquad::detail::absorb_number(fnv, value);
+    }
     fnv.absorb_word(static_cast<std::uint64_t>(plan.epochs));
     const FitSettings& asked = plan.settings;
     for (const int word : {int{asked.library_airframe}, asked.altitude ? 1 + int{*asked.altitude} : 0,
@@ -114,6 +109,7 @@ class FitStore : public KnownFits {
         fnv.absorb_word(hash_of(*piece.flight));
         fnv.absorb_word(piece.rows.begin);
         fnv.absorb_word(piece.rows.end);
+        pinnquad::detail::absorb_number(fnv, piece.flight->weight);
       }
     }
     return fnv.hash;
