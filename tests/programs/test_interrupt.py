@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Ctrl-C in training keeps what is finished: the results are whole, the exit code says that it was interrupted."""
 import re
+import shutil
 import signal
 import time
 from pathlib import Path
 
 import pytest
-from conftest import Program, ended, no_partial_files, report_of, said, same_bytes, until
+from conftest import SOURCE, Program, ended, no_partial_files, replaced, report_of, said, same_bytes, until
 
 
 @pytest.fixture(scope="module")
@@ -33,6 +34,9 @@ def test_train(pinnquad, flight):
     assert report["fits"] == {"finished": kept, "wanted": 1501}
     assert not Path("out/model.hpp").exists()
     no_partial_files("out")
+    shutil.copytree("out", "other")
+    replaced(SOURCE / "examples/airframes/paper_quadrotor.toml", "other.toml", ("^drag_deadband_m_s = .*", "drag_deadband_m_s = 0.5"))
+    assert "earlier run" not in pinnquad("train --out other --seeds 2 --epochs 30 --airframe other.toml", flight).out
     said = pinnquad("train --out out --seeds 2 --epochs 30", flight).out
     assert "7 of 7 fits were finished by an earlier run" in said, said
     assert not Path("out/fits").exists()
