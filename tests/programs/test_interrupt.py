@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Ctrl-C in training keeps what is finished: the results are whole, the exit code says that it was interrupted."""
 import re
+import shutil
 import signal
 import time
 from pathlib import Path
 
 import pytest
-from conftest import Program, ended, no_partial_files, report_of, said, same_bytes, until
+from conftest import SOURCE, Program, ended, no_partial_files, replaced, report_of, said, same_bytes, until
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +24,8 @@ def finished(done, of):
 
 def test_train(pinnquad, flight):
     """More work than any machine does in a test, in pieces small enough for any; taken up again."""
-    process = pinnquad.start("train --out out --seeds 500 --epochs 30 --threads 2", flight)
+    shutil.copy(SOURCE / "examples/airframes/paper_quadrotor.toml", "own.toml")
+    process = pinnquad.start("train --airframe own.toml --out out --seeds 500 --epochs 30 --threads 2", flight)
     until(lambda: len(list(Path("out").glob("fits/*-2-1.fit"))) == 3, process)
     pinnquad.refused("train --out out --seeds 1 --epochs 1", flight, at="out", keyword="another program")
     kept = finished(ended(process), 1501)
@@ -33,10 +35,13 @@ def test_train(pinnquad, flight):
     assert report["fits"] == {"finished": kept, "wanted": 1501}
     assert not Path("out/model.hpp").exists()
     no_partial_files("out")
-    said = pinnquad("train --out out --seeds 2 --epochs 30", flight).out
+    shutil.copytree("out", "other")
+    replaced("own.toml", "other.toml", ("^drag_deadband_m_s = .*", "drag_deadband_m_s = 0.5"))
+    assert "earlier run" not in pinnquad("train --airframe other.toml --out other --seeds 2 --epochs 30", flight).out
+    said = pinnquad("train --airframe own.toml --out out --seeds 2 --epochs 30", flight).out
     assert "7 of 7 fits were finished by an earlier run" in said, said
     assert not Path("out/fits").exists()
-    pinnquad("train --out whole --seeds 2 --epochs 30", flight)
+    pinnquad("train --airframe own.toml --out whole --seeds 2 --epochs 30", flight)
     for file in "model.hpp", "model.block", "replay.txt":
         same_bytes(f"out/{file}", f"whole/{file}")
 
