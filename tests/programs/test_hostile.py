@@ -198,4 +198,4 @@ def test_hostile(cases, pinnquad, given, work):
 
 def test_hostile_study(study, given, work):
     report = Program(sys.executable, SOURCE / "tools/study/report.py")
-    assert try_all(study_cases(), {"study": study, "report": report}, given, work) >= 60
+    assert try_all(study_cases(), {"study": study, "report": report}, given, work) >= 50
