@@ -73,7 +73,7 @@ def test_names_of_columns(flown, names, words):
 
 @pytest.mark.parametrize("change, words", [
     ({"world": "nwu"}, "world: expected 'ned' or 'enu', found 'nwu'"), ({"body": None}, "body"),
-    ({"motor_order": "x"}, "motor_order"), ({"euler_rad": None}, "neither"),
+    ({"name": "../x"}, "without folders"), ({"motor_order": "x"}, "motor_order"), ({"euler_rad": None}, "neither"),
     ({"quaternion": np.ones((1200, 4))}, "both"), ({"velocity_axes": None}, "velocity_axes"),
     ({"commands": np.ones((1200, 3))}, "1200 x 4 numbers, found shape \\(1200, 3\\)"),
     ({"commands": np.ones((7, 4))}, "found shape \\(7, 4\\)"),

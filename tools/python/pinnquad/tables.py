@@ -42,6 +42,8 @@ def _quoted(text):
 
 def _imported(columns, mapping, name, **settings):
     """The columns as a table, imported; messages name the table, not its file."""
+    if Path(name).name != name:
+        raise ValueError(f"name: expected a file's name without folders, found {name!r}")
     with tempfile.TemporaryDirectory() as folder:
         table, text = Path(folder, f"{name}.csv"), Path(folder, "mapping.toml")
         quoted = ['"' + key.replace('"', '""') + '"' for key in columns]
