@@ -14,7 +14,7 @@ namespace {
 using Net =
     pinnquad::Mlp<float, pinnquad::InputSize<16>, pinnquad::Hidden<10, 25>, pinnquad::OutputSize<4>, pinnquad::Relu>;
 constexpr int samples = 37, more = 40;  // whole packs and a rest
-/// Of everything that is computed, one after the other.
+/// Outputs of each kernel, of one choice of bits.
 struct Results {
   int width;  // of a pack
   std::array<float, 4> predicted;

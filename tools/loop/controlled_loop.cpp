@@ -31,7 +31,7 @@ struct Errors {
   bool low = false;  ///< came to the ground
 
   bool reaches(double time_s) const { return at(time_s) < squares.size(); }
-  /// Of a flight that reaches `from_s`.
+  /// Root mean square error between the times, m; the flight reaches `from_s`.
   double rmse_m(double from_s, double to_s) const {
     double sum = 0;
     std::size_t count = 0;

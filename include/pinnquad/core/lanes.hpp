@@ -236,7 +236,7 @@ struct Lanes {
   using Register = typename Types::Register;
   using Truths = typename Types::Truths;
 
-  /// Its bit.
+  /// A register whose lanes have the bit of the sign alone.
   static PINNQUAD_ALWAYS_INLINE Truths sign() noexcept {
     return Truths{} + std::numeric_limits<std::decay_t<decltype(Truths{}[0])>>::min();
   }
